@@ -1,0 +1,120 @@
+//! A heading: a point on the circle with its two derivatives, never a wrapped angle.
+//!
+//! nu = (cos psi, sin psi) in the horizontal world plane; psi' = nu x nu', psi'' = nu x nu'', and conversely
+//! nu' = psi' S nu, nu'' = psi'' S nu - psi'^2 nu with S the quarter turn. The pair (psi', psi'') holds the same facts as
+//! (nu', nu'') with the constraint |nu| = 1 built in, so that is what is stored. No angle is.
+
+use crate::error::{ParameterError, Reason, require};
+use crate::math;
+use nalgebra::Vector2;
+
+/// A heading nu_d on S^1 with its rates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heading {
+    direction: Vector2<f32>,
+    rate: f32,
+    acceleration: f32,
+}
+
+impl Heading {
+    /// How far from one the length of a direction may be, and its derivatives from the tangent, relative.
+    pub const TOLERANCE: f32 = 1e-3;
+
+    /// The heading along world x, at rest.
+    pub const FORWARD: Self = Self { direction: Vector2::new(1.0, 0.0), rate: 0.0, acceleration: 0.0 };
+
+    /// From a direction (normalised here), psi' in rad/s and psi'' in rad/s^2.
+    ///
+    /// # Errors
+    /// [`Reason::NotFinite`], or [`Reason::NotOnCircle`] if |direction| is not one within [`Self::TOLERANCE`].
+    pub fn new(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Result<Self, ParameterError> {
+        let finite = direction.x.is_finite() && direction.y.is_finite() && rate.is_finite() && acceleration.is_finite();
+        require(finite, "heading", Reason::NotFinite)?;
+        let length = math::sqrt(direction.x * direction.x + direction.y * direction.y);
+        require((length - 1.0).abs() <= Self::TOLERANCE, "heading.direction", Reason::NotOnCircle)?;
+        Ok(Self { direction: direction / length, rate, acceleration })
+    }
+
+    /// From the paper's nu_d with its first and second derivative.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and [`Reason::NotOnCircle`] if the derivatives do not belong to a point on the circle:
+    /// nu.nu' = 0 and nu.nu'' = -|nu'|^2.
+    pub fn from_derivatives(
+        direction: Vector2<f32>,
+        first: Vector2<f32>,
+        second: Vector2<f32>,
+    ) -> Result<Self, ParameterError> {
+        let rate = direction.x * first.y - direction.y * first.x;
+        let acceleration = direction.x * second.y - direction.y * second.x;
+        let heading = Self::new(direction, rate, acceleration)?;
+        let room = Self::TOLERANCE * (1.0 + first.norm_squared() + second.norm());
+        let on_circle =
+            direction.dot(&first).abs() <= room && (direction.dot(&second) + first.norm_squared()).abs() <= room;
+        require(on_circle, "heading.derivatives", Reason::NotOnCircle)?;
+        Ok(heading)
+    }
+
+    /// From an exact phase psi = `turns` / 2^64 of a full turn, with psi' (rad/s) and psi'' (rad/s^2).
+    pub(crate) fn from_phase(turns: u64, rate: f32, acceleration: f32) -> Self {
+        let (sin, cos) = math::sin_cos_turns(turns);
+        Self { direction: Vector2::new(cos, sin), rate, acceleration }
+    }
+
+    /// nu_d, unit length.
+    #[must_use]
+    pub fn direction(&self) -> Vector2<f32> {
+        self.direction
+    }
+
+    /// psi', rad/s.
+    #[must_use]
+    pub fn rate(&self) -> f32 {
+        self.rate
+    }
+
+    /// psi'', rad/s^2.
+    #[must_use]
+    pub fn acceleration(&self) -> f32 {
+        self.acceleration
+    }
+
+    /// nu_d' = psi' S nu, 1/s.
+    #[must_use]
+    pub fn first_derivative(&self) -> Vector2<f32> {
+        Vector2::new(-self.direction.y, self.direction.x) * self.rate
+    }
+
+    /// nu_d'' = psi'' S nu - psi'^2 nu, 1/s^2.
+    #[must_use]
+    pub fn second_derivative(&self) -> Vector2<f32> {
+        Vector2::new(-self.direction.y, self.direction.x) * self.acceleration - self.direction * (self.rate * self.rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_and_rates_say_the_same() {
+        let (sin, cos) = (0.6_f32, 0.8_f32);
+        let heading = Heading::new(Vector2::new(cos, sin), 1.5, -0.7).unwrap();
+        let again =
+            Heading::from_derivatives(heading.direction(), heading.first_derivative(), heading.second_derivative());
+        let again = again.unwrap();
+        assert!((again.rate() - 1.5).abs() < 1e-6 && (again.acceleration() + 0.7).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_derivative_off_the_circle_is_refused() {
+        let error = Heading::from_derivatives(Vector2::new(1.0, 0.0), Vector2::new(0.5, 0.0), Vector2::zeros());
+        assert_eq!(error.unwrap_err().field, "heading.derivatives");
+    }
+
+    #[test]
+    fn a_direction_that_is_no_unit_vector_is_refused() {
+        assert_eq!(Heading::new(Vector2::new(0.5, 0.5), 0.0, 0.0).unwrap_err().reason, Reason::NotOnCircle);
+        assert_eq!(Heading::new(Vector2::new(f32::NAN, 0.5), 0.0, 0.0).unwrap_err().reason, Reason::NotFinite);
+    }
+}

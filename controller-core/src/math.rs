@@ -1,0 +1,126 @@
+//! The only door to elementary functions: the same bits on every machine.
+//!
+//! Operators stay separate multiplications and additions (no fused operations), so a desktop, a Cortex-M4F and a
+//! Cortex-M7 agree to the last bit. Stated errors are the worst ones found by this module's tests over the ranges given.
+//!
+//! | function | range | worst absolute error |
+//! |---|---|---|
+//! | [`sqrt`] | x >= 0 | correctly rounded |
+//! | [`sin_cos_turns`] | all phases | 1.2e-7 |
+//! | [`tanh`] | all x | 2.0e-7 |
+
+#![allow(unsafe_code)] // one instruction, in `sqrt`
+
+/// Square root, correctly rounded. The hardware instruction where there is one.
+#[inline(always)]
+#[must_use]
+pub fn sqrt(x: f32) -> f32 {
+    #[cfg(all(target_arch = "arm", target_feature = "vfp2"))]
+    {
+        let mut bits = x.to_bits();
+        // SAFETY: one register-to-register instruction; it touches no memory and only the register it names.
+        unsafe {
+            core::arch::asm!(
+                "vmov s0, {b}", "vsqrt.f32 s0, s0", "vmov {b}, s0",
+                b = inout(reg) bits, out("s0") _, options(pure, nomem, nostack)
+            );
+        }
+        f32::from_bits(bits)
+    }
+    #[cfg(not(all(target_arch = "arm", target_feature = "vfp2")))]
+    libm::sqrtf(x)
+}
+
+/// Sine and cosine of `phase` / 2^64 turns.
+///
+/// The phase is an integer, so its reduction to an octant is exact however long the clock has run.
+#[must_use]
+pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
+    /// Radians per unit of a phase whose full turn is 2^32.
+    const RADIANS: f32 = core::f32::consts::TAU / 4_294_967_296.0;
+    // The nearest quarter turn, and what is left of it in [-1/8, 1/8) turn as a signed 32-bit phase.
+    let rounded = phase.wrapping_add(1 << 61);
+    let quadrant = rounded >> 62;
+    let rest = (((rounded << 2) >> 2) as i64).wrapping_sub(1 << 61) >> 32;
+    let x = rest as f32 * RADIANS;
+    let x2 = x * x;
+    let sin = x + x * x2 * (-0.166_666_55 + x2 * (0.008_332_161 - x2 * 0.000_195_152_96));
+    let cos = 1.0 - 0.5 * x2 + x2 * x2 * (0.041_666_646 + x2 * (-0.001_388_731_6 + x2 * 0.000_024_433_157));
+    match quadrant {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// Hyperbolic tangent, odd, never beyond ±1.
+///
+/// tanh x = 2 t / (1 + t^2) with t = tanh(x/2) = A / Q, the seventh convergent of its continued fraction, so that one
+/// division serves: 2 A Q / (A^2 + Q^2). The double-argument formula squeezes the convergent's error where it is large.
+#[inline]
+#[must_use]
+pub fn tanh(x: f32) -> f32 {
+    /// tanh rounds to one beyond this.
+    const SATURATION: f32 = 9.01;
+    let y = 0.5 * x.clamp(-SATURATION, SATURATION);
+    let y2 = y * y;
+    // Coefficients over 135135, so that the squares stay near one.
+    let a = y * (1.0 + y2 * (0.128_205_13 + y2 * (0.002_797_202_8 + y2 * 7.400_007e-6)));
+    let q = 1.0 + y2 * (0.461_538_46 + y2 * (0.023_310_024 + y2 * 2.072_002e-4));
+    (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
+}
+
+/// e^x, for configuration time (not used in a tick).
+#[must_use]
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sin_cos_turns_is_within_its_stated_error() {
+        let mut worst: f64 = 0.0;
+        for i in 0..2_000_000_u64 {
+            let phase = i.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let (sin, cos) = sin_cos_turns(phase);
+            let angle = phase as f64 * (core::f64::consts::TAU / 18_446_744_073_709_551_616.0);
+            worst = worst.max((f64::from(sin) - angle.sin()).abs()).max((f64::from(cos) - angle.cos()).abs());
+        }
+        assert!(worst < 1.2e-7, "worst error {worst:e}");
+    }
+
+    #[test]
+    fn sin_cos_turns_is_exact_at_quarter_turns() {
+        assert_eq!(sin_cos_turns(0), (0.0, 1.0));
+        assert_eq!(sin_cos_turns(1 << 62), (1.0, -0.0));
+        assert_eq!(sin_cos_turns(1 << 63), (-0.0, -1.0));
+        assert_eq!(sin_cos_turns(3 << 62), (-1.0, 0.0));
+    }
+
+    #[test]
+    fn tanh_is_within_its_stated_error_odd_and_bounded() {
+        let mut worst: f64 = 0.0;
+        for i in 0..2_000_000 {
+            let x = 12.0 * i as f32 / 2_000_000.0;
+            let y = tanh(x);
+            assert!(y <= 1.0 && tanh(-x) == -y);
+            worst = worst.max((f64::from(y) - f64::from(x).tanh()).abs());
+        }
+        assert!(worst < 2.0e-7, "worst error {worst:e}");
+        assert_eq!((tanh(f32::MAX), tanh(f32::INFINITY)), (tanh(9.01), tanh(9.01)));
+    }
+
+    #[test]
+    fn sqrt_is_correctly_rounded() {
+        for i in 1..100_000_u32 {
+            let x = f32::from_bits(i.wrapping_mul(21_000));
+            if x.is_finite() {
+                assert_eq!(sqrt(x), f64::from(x).sqrt() as f32);
+            }
+        }
+    }
+}

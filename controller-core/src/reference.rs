@@ -1,0 +1,123 @@
+//! What the vehicle is asked to do: the reference r(t) of the paper's Section III, and its bounds Omega_r.
+//!
+//! The law needs the position to its fourth derivative (snap) and the heading to its second; Assumption 1 needs bounds
+//! on all of them. Each kind of reference states its own bounds, rigorously:
+//!
+//! - [`hover`]: a point and a heading, at rest;
+//! - [`harmonic`]: a cosine on each axis, and a heading that turns and swings (the paper's experiment);
+//! - [`waypoints`]: polynomials through given points, smooth to snap.
+//!
+//! Time is integer microseconds; see [`phase`] for why a month of uptime costs a periodic reference no precision.
+
+pub mod harmonic;
+pub mod hover;
+pub mod phase;
+pub mod waypoints;
+
+use crate::error::{InputError, ParameterError, Reason, require, require_finite};
+use crate::heading::Heading;
+use crate::state::{STATE_RANGE, check_vector};
+use nalgebra::Vector3;
+
+/// The greatest magnitude of a reference derivative's component, in its SI unit.
+pub const DERIVATIVE_RANGE: f32 = 1e6;
+
+/// A reference at one instant. World frame, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference {
+    /// p_d, m.
+    pub position: Vector3<f32>,
+    /// p_d', m/s.
+    pub velocity: Vector3<f32>,
+    /// p_d'', m/s^2.
+    pub acceleration: Vector3<f32>,
+    /// p_d''', m/s^3.
+    pub jerk: Vector3<f32>,
+    /// p_d'''', m/s^4.
+    pub snap: Vector3<f32>,
+    /// nu_d with its derivatives.
+    pub heading: Heading,
+}
+
+impl Reference {
+    /// Checks that every field is finite and in range.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        check_vector(&self.position, STATE_RANGE, "reference.position")?;
+        check_vector(&self.velocity, STATE_RANGE, "reference.velocity")?;
+        check_vector(&self.acceleration, DERIVATIVE_RANGE, "reference.acceleration")?;
+        check_vector(&self.jerk, DERIVATIVE_RANGE, "reference.jerk")?;
+        check_vector(&self.snap, DERIVATIVE_RANGE, "reference.snap")?;
+        let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
+        check_vector(&turning, DERIVATIVE_RANGE, "reference.heading")
+    }
+}
+
+/// Omega_r of Assumption 1: how hard a reference may ask the vehicle to move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReferenceBounds {
+    /// K_a12: horizontal acceleration, Euclidean, m/s^2.
+    pub horizontal_acceleration: f32,
+    /// K_a3: |vertical acceleration|, m/s^2.
+    pub vertical_acceleration: f32,
+    /// K_j: jerk, Euclidean, m/s^3.
+    pub jerk: f32,
+    /// K_s: snap, Euclidean, m/s^4.
+    pub snap: f32,
+    /// K_nu': |nu_d'| = |psi'|, rad/s.
+    pub heading_rate: f32,
+    /// K_nu'': |nu_d''| = sqrt(psi''^2 + psi'^4), 1/s^2.
+    pub heading_second_derivative: f32,
+}
+
+impl ReferenceBounds {
+    /// The bounds of a reference at rest.
+    pub const REST: Self = Self {
+        horizontal_acceleration: 0.0,
+        vertical_acceleration: 0.0,
+        jerk: 0.0,
+        snap: 0.0,
+        heading_rate: 0.0,
+        heading_second_derivative: 0.0,
+    };
+
+    /// Checks that every bound is finite and not negative.
+    ///
+    /// # Errors
+    /// Names the first field that is not.
+    pub fn validated(self) -> Result<Self, ParameterError> {
+        for (value, field) in [
+            (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
+            (self.vertical_acceleration, "reference_bounds.vertical_acceleration"),
+            (self.jerk, "reference_bounds.jerk"),
+            (self.snap, "reference_bounds.snap"),
+            (self.heading_rate, "reference_bounds.heading_rate"),
+            (self.heading_second_derivative, "reference_bounds.heading_second_derivative"),
+        ] {
+            require_finite(value, field)?;
+            require(value >= 0.0, field, Reason::Negative)?;
+        }
+        Ok(self)
+    }
+
+    /// Whether `reference` lies inside, with a relative allowance for single-precision rounding.
+    #[must_use]
+    pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
+        let a = &reference.acceleration;
+        let within = |value: f32, bound: f32| value <= bound * (1.0 + allowance) + allowance;
+        within(a.xy().norm(), self.horizontal_acceleration)
+            && within(a.z.abs(), self.vertical_acceleration)
+            && within(reference.jerk.norm(), self.jerk)
+            && within(reference.snap.norm(), self.snap)
+            && within(reference.heading.rate().abs(), self.heading_rate)
+            && within(reference.heading.second_derivative().norm(), self.heading_second_derivative)
+    }
+}
+
+/// A trajectory: a reference at every instant, and bounds it never leaves.
+pub trait Trajectory {
+    /// The reference at `time_us` microseconds after the start.
+    fn at(&self, time_us: u64) -> Reference;
+
+    /// Bounds that hold at every instant, rounded outwards.
+    fn bounds(&self) -> ReferenceBounds;
+}
