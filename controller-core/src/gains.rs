@@ -37,9 +37,12 @@ pub struct Gains(GainParameters);
 
 impl Gains {
     /// The greatest value of any gain: beyond it, products with the largest accepted states overflow single precision.
-    pub const GREATEST: f32 = 1e4;
+    pub const GREATEST: f32 = 1e3;
 
-    /// Checks that every gain is positive and below [`Self::GREATEST`], M_p < g and alpha < 1.
+    /// The least value of any gain, for the same reason: the law divides by k_f, k_s and M_p.
+    pub const LEAST: f32 = 1e-7;
+
+    /// Checks that every gain is between [`Self::LEAST`] and [`Self::GREATEST`], M_p < g and alpha < 1.
     ///
     /// # Errors
     /// Names the first gain that is not.
@@ -59,6 +62,7 @@ impl Gains {
             (p.alpha, "gains.alpha"),
         ] {
             require_positive(value, field)?;
+            require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
             require(value < Self::GREATEST, field, Reason::NotBelow(Self::GREATEST))?;
         }
         require(p.m_p < vehicle.gravity, "gains.m_p", Reason::NotBelow(vehicle.gravity))?;

@@ -77,6 +77,24 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
+/// The nearest integer, halves away from zero, for configuration time.
+#[must_use]
+pub fn round(x: f64) -> f64 {
+    libm::round(x)
+}
+
+/// The greatest integer not above x, for configuration time.
+#[must_use]
+pub fn floor(x: f64) -> f64 {
+    libm::floor(x)
+}
+
+/// e^x - 1 without cancellation near zero, for configuration time.
+#[must_use]
+pub fn exp_m1(x: f64) -> f64 {
+    libm::expm1(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -23,6 +23,10 @@ pub struct VehicleParameters {
 pub struct Vehicle(VehicleParameters);
 
 impl Vehicle {
+    /// By how much, relative, the largest moment of inertia may exceed the sum of the others. Moments are measured, and
+    /// measured moments of flat vehicles come out slightly beyond the inequality: the paper's own by 3.1 %.
+    pub const INERTIA_ALLOWANCE: f32 = 0.05;
+
     /// Checks that every number is finite and positive and that the inertia belongs to some mass distribution.
     ///
     /// # Errors
@@ -34,9 +38,10 @@ impl Vehicle {
         require_positive(j.y, "vehicle.inertia[1]")?;
         require_positive(j.z, "vehicle.inertia[2]")?;
         require_positive(parameters.gravity, "vehicle.gravity")?;
-        // A flat body meets the inequality with equality: leave room for the rounding of the file's numbers.
-        let sum = (j.x + j.y + j.z) * (1.0 + 1e-5);
-        require(2.0 * j.max() <= sum, "vehicle.inertia", Reason::TriangleInequality)?;
+        let largest = j.max();
+        let others = j.sum() - largest;
+        let rigid = largest <= (1.0 + Self::INERTIA_ALLOWANCE) * others;
+        require(rigid, "vehicle.inertia", Reason::TriangleInequality)?;
         Ok(Self(parameters))
     }
 }

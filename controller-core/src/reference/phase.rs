@@ -6,6 +6,7 @@
 //! after 30 days 4.5e-7 rad.
 
 use crate::error::{ParameterError, Reason, require};
+use crate::math;
 use core::f64::consts::TAU;
 
 /// One turn, 2^64, as a floating-point number.
@@ -35,7 +36,7 @@ impl Phase {
         require(rate.is_finite(), rate_field, Reason::NotFinite)?;
         require(offset.is_finite(), offset_field, Reason::NotFinite)?;
         require(rate.abs() < Self::GREATEST_RATE, rate_field, Reason::NotBelow(Self::GREATEST_RATE as f32))?;
-        let per_microsecond = libm::round(rate / TAU * 1e-6 * TURN) as i64;
+        let per_microsecond = math::round(rate / TAU * 1e-6 * TURN) as i64;
         Ok(Self { per_microsecond, offset: turns(offset) })
     }
 
@@ -50,7 +51,7 @@ impl Phase {
 #[must_use]
 pub fn turns(angle: f64) -> u64 {
     let turns = angle / TAU;
-    let fraction = turns - libm::floor(turns);
+    let fraction = turns - math::floor(turns);
     // 2^64 itself would saturate rather than wrap.
-    libm::round(fraction * (TURN / 2.0)) as u64 * 2
+    math::round(fraction * (TURN / 2.0)) as u64 * 2
 }

@@ -1,0 +1,210 @@
+//! The whole law as one step: state and reference in, wrench out.
+//!
+//! ```text
+//! State, Reference -> position -> attitude_reference -> path_lifting -> attitude -> Wrench
+//! ```
+//!
+//! T = m |u| and tau as in Section V. The step uses the filters as they stand and then advances them by one period, so the
+//! wrench is the one for the instant the state was taken. The only way a step can fail is an input it cannot use; then the
+//! memory is what it was before, and the next good input is served as if the bad one had never come.
+//!
+//! ```
+//! use controller_core::prelude::*;
+//!
+//! let vehicle = Vehicle::new(VehicleParameters {
+//!     mass: 0.46, inertia: Vector3::new(2.24e-3, 2.9e-3, 5.3e-3), gravity: 9.81,
+//! })?;
+//! let gains = Gains::new(GainParameters {
+//!     k_p: 9.0, k_v: 6.0, k_f: 2.0, k_s: 20.0, k_theta: 100.0, k_omega: 0.1,
+//!     m_p: 2.0, m_theta: 0.206, m_omega: 0.045, delta: 0.02, alpha: 0.25,
+//! }, &vehicle)?;
+//! let mut controller = Controller::new(vehicle, gains, 0.01)?;
+//!
+//! let hover = Hover::new(Vector3::new(0.0, 0.0, 2.0), Heading::FORWARD)?;
+//! let upside_down = State {
+//!     position: Vector3::zeros(),
+//!     velocity: Vector3::zeros(),
+//!     attitude: Quaternion::new(0.0, 1.0, 0.0, 0.0),
+//!     angular_velocity: Vector3::zeros(),
+//! };
+//! let (wrench, _) = controller.step(&upside_down, &hover.at(0)).unwrap();
+//! assert!((wrench.thrust - 0.46 * 9.81).abs() < 1e-5); // the filters start at zero
+//! assert!((wrench.torque.x.abs() - 0.5 * 0.206).abs() < 1e-3); // and the roll torque at its bound
+//! # Ok::<(), controller_core::error::ParameterError>(())
+//! ```
+
+use crate::attitude::{self, TorqueCommand};
+use crate::attitude_reference::attitude_reference;
+use crate::error::{InputError, ParameterError};
+use crate::gains::Gains;
+use crate::path_lifting::{self, Lift};
+use crate::position::{self, FilterState, FilterTransition};
+use crate::reference::Reference;
+use crate::state::{State, Wrench};
+use crate::vehicle::Vehicle;
+use nalgebra::{Quaternion, Vector3};
+
+/// Everything the law remembers from one tick to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Memory {
+    /// x_f, the filters' states.
+    pub filter: FilterState,
+    /// The path lifting's memory; none before the first step.
+    pub lift: Option<Lift>,
+}
+
+impl Memory {
+    /// What a reset leaves: x_f = 0, the path to be lifted anew.
+    pub const RESET: Self = Self { filter: FilterState::ZERO, lift: None };
+}
+
+/// What a step went through, at the state it was given and before the filters advance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Diagnostics {
+    /// p~ = p - p_d, m, world.
+    pub position_error: Vector3<f32>,
+    /// v~ = v - p_d', m/s, world.
+    pub velocity_error: Vector3<f32>,
+    /// z_1, m, world.
+    pub z_1: Vector3<f32>,
+    /// z_2, m/s, world.
+    pub z_2: Vector3<f32>,
+    /// ubar_p, m/s^2, world.
+    pub feedback: Vector3<f32>,
+    /// u_f as used, m/s^2, world.
+    pub filtered: Vector3<f32>,
+    /// u_s as used, m/s^2, world.
+    pub intermediate: Vector3<f32>,
+    /// u, m/s^2, world.
+    pub acceleration_command: Vector3<f32>,
+    /// R_d as a unit quaternion, body to world.
+    pub desired_attitude: Quaternion<f32>,
+    /// omega_d, rad/s, axes of the desired body frame.
+    pub desired_angular_velocity: Vector3<f32>,
+    /// omega_d', rad/s^2, axes of the desired body frame.
+    pub desired_angular_acceleration: Vector3<f32>,
+    /// m* Phi(q_hat, R~), unit quaternion.
+    pub attitude_error: Quaternion<f32>,
+    /// theta~.
+    pub mrp: Vector3<f32>,
+    /// m*: +1 or -1.
+    pub lift_sign: f32,
+    /// omega~, rad/s, body.
+    pub angular_velocity_error: Vector3<f32>,
+    /// s_theta, N m, body.
+    pub attitude_feedback: Vector3<f32>,
+    /// s_omega, N m, body.
+    pub rate_feedback: Vector3<f32>,
+}
+
+/// The controller of the paper for one vehicle, one set of gains and one period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controller {
+    vehicle: Vehicle,
+    gains: Gains,
+    transition: FilterTransition,
+    switching_scalar: f32,
+    memory: Memory,
+}
+
+impl Controller {
+    /// A controller as after a reset. `period` is the time between steps, s, in (0, 0.1].
+    ///
+    /// # Errors
+    /// Names `control.period` if it is outside.
+    pub fn new(vehicle: Vehicle, gains: Gains, period: f32) -> Result<Self, ParameterError> {
+        let transition = FilterTransition::new(&gains, period)?;
+        let switching_scalar = path_lifting::switching_scalar(gains.delta);
+        Ok(Self { vehicle, gains, transition, switching_scalar, memory: Memory::RESET })
+    }
+
+    /// Changes the time by which the next steps advance the filters, s.
+    ///
+    /// # Errors
+    /// Names `control.period` if it is outside (0, 0.1]; the period then stays what it was.
+    pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
+        self.transition = FilterTransition::new(&self.gains, period)?;
+        Ok(())
+    }
+
+    /// Filters to zero, path lifted anew with m* = +1: the only way into flight.
+    pub fn reset(&mut self) {
+        self.memory = Memory::RESET;
+    }
+
+    /// What the law remembers.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        self.memory
+    }
+
+    /// Puts back what [`Self::memory`] returned, or any other memory for an experiment.
+    pub fn restore(&mut self, memory: Memory) {
+        self.memory = memory;
+    }
+
+    /// One tick of the law.
+    ///
+    /// # Errors
+    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or (the
+    /// reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
+    #[inline]
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        let attitude = state.checked_attitude()?;
+        reference.check()?;
+        if reference.acceleration.z <= self.gains.m_p - self.vehicle.gravity {
+            return Err(InputError::FallsTooFast);
+        }
+
+        let command = position::command(&self.gains, self.vehicle.gravity, state, reference, &self.memory.filter);
+        let desired = attitude_reference(
+            &command.acceleration_command,
+            &command.jerk_command,
+            &command.snap_command,
+            &reference.heading,
+        );
+        let error = desired.attitude.conjugate() * attitude;
+        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
+        let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } =
+            attitude::torque_command(
+                &self.gains,
+                &self.vehicle.inertia,
+                &lifted.quaternion,
+                &lifted.mrp,
+                &state.angular_velocity,
+                &desired.angular_velocity,
+                &desired.angular_acceleration,
+            );
+        let wrench = Wrench { thrust: self.vehicle.mass * desired.magnitude, torque };
+        // Inputs in range can still overflow together, on a reference that all but cancels gravity.
+        if !(wrench.thrust + torque.x + torque.y + torque.z).is_finite() {
+            return Err(InputError::OutOfRange { field: "reference" });
+        }
+
+        let FilterState { filtered, intermediate } = self.memory.filter;
+        self.memory = Memory {
+            filter: self.transition.advance(&self.memory.filter, &command.feedback, self.gains.m_p),
+            lift: Some(lifted.lift),
+        };
+        let diagnostics = Diagnostics {
+            position_error: command.position_error,
+            velocity_error: command.velocity_error,
+            z_1: command.z_1,
+            z_2: command.z_2,
+            feedback: command.feedback,
+            filtered,
+            intermediate,
+            acceleration_command: command.acceleration_command,
+            desired_attitude: desired.attitude,
+            desired_angular_velocity: desired.angular_velocity,
+            desired_angular_acceleration: desired.angular_acceleration,
+            attitude_error: lifted.quaternion,
+            mrp: lifted.mrp,
+            lift_sign: lifted.lift.sign,
+            angular_velocity_error,
+            attitude_feedback,
+            rate_feedback,
+        };
+        Ok((wrench, diagnostics))
+    }
+}

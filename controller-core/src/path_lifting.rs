@@ -1,0 +1,131 @@
+//! The hybrid path lifting from rotations to modified Rodrigues parameters, the paper's Appendix A.
+//!
+//! | paper | here | equation |
+//! |---|---|---|
+//! | Q(R~) | {q, -q} of the error quaternion | Section II |
+//! | Phi(q_hat, R~): the lift nearest to the memory | `nearest` | Appendix A |
+//! | q_hat := Phi when dist(q_hat, Q(R~)) >= alpha | first jump | D_q, G_l |
+//! | m* := -m* when \|phi(m* Phi)\| >= 1 + delta | second jump | D_m, G_l |
+//! | theta~ = phi(m* Phi) | [`Lifted::mrp`] | output of H_l |
+//!
+//! The memory follows the error along its path, so that the lift never flips at a half turn; m* chooses between the
+//! parameters and their shadow with hysteresis delta, so that noise cannot make it chatter. Where both jumps are due the
+//! paper allows either order; the memory goes first, then the sign.
+//!
+//! |phi(q)| = sqrt((1 - q_0) / (1 + q_0)), so |phi(q)| >= 1 + delta is q_0 <= (1 - (1 + delta)^2) / (1 + (1 + delta)^2): a
+//! comparison, and no division comes near the singularity of phi.
+//!
+//! A fresh lift takes q_0 >= 0 and m* = +1; at q_0 = 0 exactly, the lift whose first non-zero vector component is positive.
+
+use crate::mrp;
+use nalgebra::{Quaternion, Vector3};
+
+/// The mechanism's memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lift {
+    /// q_hat, a unit quaternion near the error's path.
+    pub memory: Quaternion<f32>,
+    /// m*: +1 or -1.
+    pub sign: f32,
+}
+
+/// The lifted attitude error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lifted {
+    /// m* Phi(q_hat, R~), a unit quaternion with q_0 above [`switching_scalar`].
+    pub quaternion: Quaternion<f32>,
+    /// theta~ = phi of it, |theta~| <= 1 + delta.
+    pub mrp: Vector3<f32>,
+    /// The memory after this instant's jumps.
+    pub lift: Lift,
+}
+
+/// The scalar part at which |phi(q)| = 1 + `delta`.
+#[must_use]
+pub fn switching_scalar(delta: f32) -> f32 {
+    let square = (1.0 + delta) * (1.0 + delta);
+    (1.0 - square) / (1.0 + square)
+}
+
+/// Lifts the attitude error `error` (a unit quaternion of either sign), continuing from `lift` or starting afresh.
+///
+/// `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the memory's distance, 1 - q_hat . p.
+#[inline]
+#[must_use]
+pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {
+    let canonical = canonical(error);
+    let Lift { mut memory, mut sign } = previous.copied().unwrap_or(Lift { memory: canonical, sign: 1.0 });
+
+    let agreement = memory.coords.dot(&canonical.coords);
+    let nearest = if agreement >= 0.0 { canonical } else { -canonical };
+    if 1.0 - agreement.abs() >= alpha {
+        memory = nearest;
+    }
+    if sign * nearest.w <= switching_scalar {
+        sign = -sign;
+    }
+    let quaternion = nearest * sign;
+    Lifted { quaternion, mrp: mrp::from_quaternion(&quaternion), lift: Lift { memory, sign } }
+}
+
+/// The one of ±q with q_0 > 0, or at q_0 = 0 with its first non-zero vector component positive.
+#[inline]
+fn canonical(q: &Quaternion<f32>) -> Quaternion<f32> {
+    let leading = [q.w, q.i, q.j, q.k].into_iter().find(|component| *component != 0.0).unwrap_or(0.0);
+    if leading < 0.0 { -*q } else { *q }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DELTA: f32 = 0.02;
+    const ALPHA: f32 = 0.25;
+
+    fn about_x(angle: f32) -> Quaternion<f32> {
+        Quaternion::new((0.5 * angle).cos(), (0.5 * angle).sin(), 0.0, 0.0)
+    }
+
+    #[test]
+    fn a_fresh_lift_takes_the_shorter_way() {
+        let lifted = lift(None, &-about_x(1.0), switching_scalar(DELTA), ALPHA);
+        assert!(lifted.quaternion.w > 0.0 && lifted.mrp.x > 0.0 && lifted.lift.sign == 1.0);
+    }
+
+    #[test]
+    fn an_exact_half_turn_lifts_to_its_positive_axis() {
+        for q in [Quaternion::new(0.0, 0.0, -1.0, 0.0), Quaternion::new(-0.0, 0.0, 1.0, 0.0)] {
+            assert!(lift(None, &q, switching_scalar(DELTA), ALPHA).mrp.y == 1.0);
+        }
+    }
+
+    #[test]
+    fn the_lift_follows_its_path_through_a_half_turn_and_switches_once_past_the_hysteresis() {
+        let mut memory = None;
+        let mut switches = 0;
+        for step in 0..628 {
+            let lifted = lift(memory.as_ref(), &about_x(0.01 * step as f32), switching_scalar(DELTA), ALPHA);
+            assert!(lifted.mrp.norm() <= 1.0 + DELTA + 1e-6);
+            if let Some(Lift { sign, .. }) = memory {
+                switches += usize::from(sign != lifted.lift.sign);
+            }
+            memory = Some(lifted.lift);
+        }
+        assert_eq!(switches, 1);
+    }
+
+    #[test]
+    fn the_switch_happens_at_one_plus_delta() {
+        let scalar = switching_scalar(DELTA);
+        assert!((((1.0 - scalar) / (1.0 + scalar)).sqrt() - (1.0 + DELTA)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_memory_follows_in_steps_of_alpha() {
+        let start = lift(None, &about_x(0.0), switching_scalar(DELTA), ALPHA);
+        let near = lift(Some(&start.lift), &about_x(1.0), switching_scalar(DELTA), ALPHA);
+        let far = lift(Some(&start.lift), &about_x(1.6), switching_scalar(DELTA), ALPHA);
+        assert_eq!(near.lift.memory, start.lift.memory);
+        assert_eq!(far.lift.memory, about_x(1.6));
+    }
+}

@@ -1,0 +1,138 @@
+//! The saturated position law with its two filters, Section IV of the paper.
+//!
+//! | paper | here | equation |
+//! |---|---|---|
+//! | p~ = p - p_d, v~ = v - p_d' | `position_error`, `velocity_error` | Section IV |
+//! | z_1 = p~ + (1/k_f + 1/k_s) v~ + u_f / (k_s k_f) | `z_1` | (Zcoordinates) |
+//! | z_2 = v~ + u_f / k_f + u_s / k_s | `z_2` | (Zcoordinates) |
+//! | ubar_p = -sigma_p(k_p z_1 + k_v z_2), sigma_p(s) = M_p tanh(s / M_p) | `feedback` | Section IV, VI |
+//! | u = u_f + g e3 + p_d'' | `acceleration_command` | (PositionControlLaw) |
+//! | u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar_p) | [`FilterTransition`] | (FilterDynamics) |
+//! | u' = u_f' + p_d''' | `jerk_command` | from the two above |
+//! | u'' = -k_f (u_f' - u_s') + p_d'''' | `snap_command` | from the two above |
+//!
+//! All vectors are in the world frame; u in m/s^2. The filters are linear and their input is held between ticks, so they
+//! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
+
+use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::gains::Gains;
+use crate::math;
+use crate::reference::Reference;
+use crate::state::State;
+use nalgebra::Vector3;
+
+/// x_f = (u_f, u_s), the filters' states, m/s^2. Zero after a reset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterState {
+    /// u_f: what reaches the vehicle.
+    pub filtered: Vector3<f32>,
+    /// u_s: the state between the two filters.
+    pub intermediate: Vector3<f32>,
+}
+
+impl FilterState {
+    /// x_f = 0, the only way into flight: the certificate's bounds start from it.
+    pub const ZERO: Self = Self { filtered: Vector3::new(0.0, 0.0, 0.0), intermediate: Vector3::new(0.0, 0.0, 0.0) };
+}
+
+/// The exact solution of the filters over one period with their input held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterTransition {
+    /// Weight of u_f in the next u_f: e^(-k_f h).
+    filtered: f32,
+    /// Weight of u_s in the next u_f: k_f (e^(-k_f h) - e^(-k_s h)) / (k_s - k_f).
+    intermediate: f32,
+    /// Weight of u_s in the next u_s: e^(-k_s h).
+    memory: f32,
+}
+
+impl FilterTransition {
+    /// The longest period, s: the slowest tick the link's simulators may ask for.
+    pub const LONGEST_PERIOD: f32 = 0.1;
+
+    /// For the bandwidths in `gains` and a period in (0, [`Self::LONGEST_PERIOD`]] s.
+    ///
+    /// # Errors
+    /// Names `control.period` if it is outside.
+    pub fn new(gains: &Gains, period: f32) -> Result<Self, ParameterError> {
+        require_positive(period, "control.period")?;
+        let longest = Self::LONGEST_PERIOD;
+        require(period <= longest, "control.period", Reason::NotBelow(longest))?;
+        let (k_f, k_s, h) = (f64::from(gains.k_f), f64::from(gains.k_s), f64::from(period));
+        let (slow, fast) = (math::exp(-k_f * h), math::exp(-k_s * h));
+        // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
+        let spread = (k_s - k_f) * h;
+        let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
+        Ok(Self { filtered: slow as f32, intermediate: (k_f * h * mixed) as f32, memory: fast as f32 })
+    }
+
+    /// The filters' states one period later, with `feedback` held. Every component stays within ±`level`.
+    #[inline]
+    #[must_use]
+    pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
+        let to_input = 1.0 - self.filtered - self.intermediate;
+        // The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the level, to the bit.
+        let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
+            (self.filtered * u_f + self.intermediate * u_s + to_input * ubar).clamp(-level, level)
+        });
+        let intermediate = state
+            .intermediate
+            .zip_map(feedback, |u_s, ubar| (self.memory * u_s + (1.0 - self.memory) * ubar).clamp(-level, level));
+        FilterState { filtered, intermediate }
+    }
+}
+
+/// What the position law asks of the attitude, with the quantities it went through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionCommand {
+    /// p~, m.
+    pub position_error: Vector3<f32>,
+    /// v~, m/s.
+    pub velocity_error: Vector3<f32>,
+    /// z_1, m.
+    pub z_1: Vector3<f32>,
+    /// z_2, m/s.
+    pub z_2: Vector3<f32>,
+    /// ubar_p, m/s^2, each component within ±M_p.
+    pub feedback: Vector3<f32>,
+    /// u, m/s^2.
+    pub acceleration_command: Vector3<f32>,
+    /// u', m/s^3.
+    pub jerk_command: Vector3<f32>,
+    /// u'', m/s^4.
+    pub snap_command: Vector3<f32>,
+}
+
+/// Evaluates the law at one instant; the filters are read, not advanced.
+#[inline]
+#[must_use]
+pub fn command(
+    gains: &Gains,
+    gravity: f32,
+    state: &State,
+    reference: &Reference,
+    filter: &FilterState,
+) -> PositionCommand {
+    let (k_f, k_s, m_p) = (gains.k_f, gains.k_s, gains.m_p);
+    let FilterState { filtered: u_f, intermediate: u_s } = filter;
+
+    let position_error = state.position - reference.position;
+    let velocity_error = state.velocity - reference.velocity;
+    let z_1 = position_error + velocity_error * (1.0 / k_f + 1.0 / k_s) + u_f * (1.0 / (k_s * k_f));
+    let z_2 = velocity_error + u_f * (1.0 / k_f) + u_s * (1.0 / k_s);
+    let per_level = 1.0 / m_p;
+    let feedback = (z_1 * gains.k_p + z_2 * gains.k_v).map(|s| -m_p * math::tanh(s * per_level));
+
+    let filtered_rate = (u_s - u_f) * k_f;
+    let intermediate_rate = (feedback - u_s) * k_s;
+    PositionCommand {
+        position_error,
+        velocity_error,
+        z_1,
+        z_2,
+        feedback,
+        acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, gravity),
+        jerk_command: filtered_rate + reference.jerk,
+        snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+    }
+}
