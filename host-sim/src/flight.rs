@@ -1,0 +1,105 @@
+//! A closed-loop flight: plant, reference and controller, one control tick at a time.
+//!
+//! At each tick the law sees the plant's state rounded to single precision and the reference of that instant; its wrench is
+//! held until the next tick. Time is integer microseconds.
+
+use crate::plant::{BodyState, Clipping, Diverged, Plant};
+use crate::scenario::Scenario;
+use controller_core::controller::{Controller, Diagnostics};
+use controller_core::error::{InputError, ParameterError};
+use controller_core::reference::{Reference, Trajectory};
+use controller_core::state::Wrench;
+use std::fmt;
+use std::sync::Arc;
+
+/// A flight under way.
+#[derive(Clone)]
+pub struct Flight {
+    plant: Plant,
+    controller: Controller,
+    trajectory: Arc<dyn Trajectory + Send + Sync>,
+    period_us: u64,
+    steps_per_tick: u32,
+    tick: u64,
+}
+
+/// What happened at one control tick.
+#[derive(Debug, Clone, Copy)]
+pub struct Tick {
+    /// Time since the start, us.
+    pub time_us: u64,
+    /// The plant's state before the tick's steps.
+    pub state: BodyState,
+    /// What was asked for.
+    pub reference: Reference,
+    /// What the law commanded, before the plant clipped it.
+    pub wrench: Wrench,
+    /// What the law went through.
+    pub diagnostics: Diagnostics,
+    /// What the plant cut.
+    pub clipping: Clipping,
+}
+
+/// A flight that could not go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightError {
+    /// When, us after the start.
+    pub time_us: u64,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a flight could not go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cause {
+    /// The law refused its input.
+    Law(InputError),
+    /// The simulated motion is no longer finite.
+    Plant(Diverged),
+}
+
+impl fmt::Display for FlightError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at {} s: ", self.time_us as f64 / 1e6)?;
+        match &self.cause {
+            Cause::Law(error) => write!(f, "the law refused its input: {error}"),
+            Cause::Plant(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for FlightError {}
+
+impl Flight {
+    /// A flight of `scenario`, at its start, the controller reset.
+    ///
+    /// # Errors
+    /// If the controller refuses the scenario's period; a [`Scenario`] that was read from a file has a good one.
+    pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
+        let timing = &scenario.timing;
+        Ok(Self {
+            plant: Plant::new(&scenario.vehicle, &scenario.limits, timing.step(), scenario.initial),
+            controller: Controller::new(scenario.vehicle, scenario.gains, timing.period() as f32)?,
+            trajectory: Arc::clone(&scenario.trajectory),
+            period_us: timing.period_us,
+            steps_per_tick: timing.steps_per_tick,
+            tick: 0,
+        })
+    }
+
+    /// One control tick and the plant's motion until the next.
+    ///
+    /// # Errors
+    /// [`FlightError`] with the time; the flight cannot go on after it.
+    pub fn tick(&mut self) -> Result<Tick, FlightError> {
+        let time_us = self.tick * self.period_us;
+        let fail = |cause| FlightError { time_us, cause };
+        let state = *self.plant.state();
+        let reference = self.trajectory.at(time_us);
+        let (wrench, diagnostics) =
+            self.controller.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
+        let clipping = self.plant.hold(&wrench, self.steps_per_tick).map_err(|error| fail(Cause::Plant(error)))?;
+        self.tick += 1;
+        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipping })
+    }
+}
