@@ -4,7 +4,7 @@
 //! State, Reference -> position -> attitude_reference -> path_lifting -> attitude -> Wrench
 //! ```
 //!
-//! T = m |u| and tau as in Section V. The step uses the filters as they stand and then advances them by one period, so the
+//! T = m |u| (or its [projection](crate::projection) where that is turned on) and tau as in Section V. The step uses the filters as they stand and then advances them by one period, so the
 //! wrench is the one for the instant the state was taken. The only way a step can fail is an input it cannot use; then the
 //! memory is what it was before, and the next good input is served as if the bad one had never come.
 //!
@@ -18,9 +18,13 @@
 //!     k_p: 9.0, k_v: 6.0, k_f: 2.0, k_s: 20.0, k_theta: 100.0, k_omega: 0.1,
 //!     m_p: 2.0, m_theta: 0.206, m_omega: 0.045, delta: 0.02, alpha: 0.25,
 //! }, &vehicle)?;
-//! let mut controller = Controller::new(vehicle, gains, 0.01)?;
-//!
 //! let hover = Hover::new(Vector3::new(0.0, 0.0, 2.0), Heading::FORWARD)?;
+//! let torque_max = Vector3::repeat(0.5);
+//! let limits = Limits::new(LimitParameters { thrust_max: 7.0, torque_max }, &vehicle)?;
+//! let configuration = Configuration::new(vehicle, limits, gains, hover.bounds())?;
+//! let certified = Certified::new(configuration).expect("Table I holds its limits");
+//! let mut controller = Controller::new(&certified, 0.01)?;
+//!
 //! let upside_down = State {
 //!     position: Vector3::zeros(),
 //!     velocity: Vector3::zeros(),
@@ -35,10 +39,12 @@
 
 use crate::attitude::{self, TorqueCommand};
 use crate::attitude_reference::attitude_reference;
+use crate::certificate::configuration::Certified;
 use crate::error::{InputError, ParameterError};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
 use crate::position::{self, FilterState, FilterTransition};
+use crate::projection::projected_thrust;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use crate::vehicle::Vehicle;
@@ -104,18 +110,39 @@ pub struct Controller {
     gains: Gains,
     transition: FilterTransition,
     switching_scalar: f32,
+    thrust_floor: Option<f32>,
     memory: Memory,
 }
 
 impl Controller {
-    /// A controller as after a reset. `period` is the time between steps, s, in (0, 0.1].
+    /// A controller for a certified configuration, as after a reset. `period` is the time between steps, s, in (0, 0.1].
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
-    pub fn new(vehicle: Vehicle, gains: Gains, period: f32) -> Result<Self, ParameterError> {
+    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
+        let configuration = certified.configuration();
+        Self::build(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
+    }
+
+    /// A controller for gains that nothing is proven about: for simulation, never for flight. `thrust_floor` in N turns the
+    /// [projection](crate::projection) on.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    #[cfg(any(test, feature = "uncertified"))]
+    pub fn uncertified(
+        vehicle: Vehicle,
+        gains: Gains,
+        thrust_floor: Option<f32>,
+        period: f32,
+    ) -> Result<Self, ParameterError> {
+        Self::build(vehicle, gains, thrust_floor, period)
+    }
+
+    fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(&gains, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
-        Ok(Self { vehicle, gains, transition, switching_scalar, memory: Memory::RESET })
+        Ok(Self { vehicle, gains, transition, switching_scalar, thrust_floor, memory: Memory::RESET })
     }
 
     /// Changes the time by which the next steps advance the filters, s.
@@ -175,7 +202,12 @@ impl Controller {
                 &desired.angular_velocity,
                 &desired.angular_acceleration,
             );
-        let wrench = Wrench { thrust: self.vehicle.mass * desired.magnitude, torque };
+        let mass = self.vehicle.mass;
+        let thrust = match self.thrust_floor {
+            None => mass * desired.magnitude,
+            Some(floor) => projected_thrust(mass, &command.acceleration_command, &attitude, floor),
+        };
+        let wrench = Wrench { thrust, torque };
         // Inputs in range can still overflow together, on a reference that all but cancels gravity.
         if !(wrench.thrust + torque.x + torque.y + torque.z).is_finite() {
             return Err(InputError::OutOfRange { field: "reference" });

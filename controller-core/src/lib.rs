@@ -4,6 +4,7 @@
 
 pub mod attitude;
 pub mod attitude_reference;
+pub mod certificate;
 pub mod controller;
 pub mod error;
 pub mod gains;
@@ -12,12 +13,15 @@ pub mod math;
 pub mod mrp;
 pub mod path_lifting;
 pub mod position;
+pub mod projection;
 pub mod reference;
 pub mod state;
 pub mod vehicle;
 
 /// What most users need in scope.
 pub mod prelude {
+    pub use crate::certificate::Certificate;
+    pub use crate::certificate::configuration::{Certified, Configuration};
     pub use crate::controller::{Controller, Diagnostics, Memory};
     pub use crate::error::{InputError, ParameterError};
     pub use crate::gains::{GainParameters, Gains};

@@ -71,10 +71,40 @@ pub fn tanh(x: f32) -> f32 {
     (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
 }
 
+/// Square root in double precision, correctly rounded, for configuration time.
+#[must_use]
+pub fn sqrt_f64(x: f64) -> f64 {
+    libm::sqrt(x)
+}
+
 /// e^x, for configuration time (not used in a tick).
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
+}
+
+/// ln(1 + x), for configuration time.
+#[must_use]
+pub fn ln_1p(x: f64) -> f64 {
+    libm::log1p(x)
+}
+
+/// sqrt(x^2 + y^2) without overflow, for configuration time.
+#[must_use]
+pub fn hypot(x: f64, y: f64) -> f64 {
+    libm::hypot(x, y)
+}
+
+/// Sine in double precision, for configuration time.
+#[must_use]
+pub fn sin_f64(x: f64) -> f64 {
+    libm::sin(x)
+}
+
+/// Cosine in double precision, for configuration time.
+#[must_use]
+pub fn cos_f64(x: f64) -> f64 {
+    libm::cos(x)
 }
 
 /// The nearest integer, halves away from zero, for configuration time.

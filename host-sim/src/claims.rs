@@ -14,9 +14,9 @@ use crate::scenario::Scenario;
 use std::fmt::Write;
 
 /// Section VI: thrust, N.
-const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
+pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
 /// Section VI: |torque| about each axis, N m.
-const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
+pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 /// Section VI: steady-state position error, m.
 const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
@@ -107,14 +107,17 @@ impl Flown {
     }
 }
 
-/// Theorem 1's least and greatest thrust, N, for the scenario's vehicle, gains and reference.
+/// Theorem 1's least and greatest thrust, N, for the scenario's vehicle, gains and reference; with a thrust floor, that is
+/// the least.
 #[must_use]
 pub fn theorem_1_thrust(scenario: &Scenario) -> (f64, f64) {
     let bounds = scenario.trajectory.bounds();
-    let (mass, gravity) = (f64::from(scenario.vehicle.mass), f64::from(scenario.vehicle.gravity));
+    let configuration = &scenario.configuration;
+    let (mass, gravity) = (f64::from(configuration.vehicle().mass), f64::from(configuration.vehicle().gravity));
     let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
-    let m_p = f64::from(scenario.gains.m_p);
-    (mass * (gravity - m_p - vertical), mass * (3.0_f64.sqrt() * m_p + horizontal.hypot(vertical + gravity)))
+    let m_p = f64::from(configuration.gains().m_p);
+    let least = configuration.thrust_floor().map_or(mass * (gravity - m_p - vertical), f64::from);
+    (least, mass * (3.0_f64.sqrt() * m_p + horizontal.hypot(vertical + gravity)))
 }
 
 /// The claims about a flight of `scenario` that showed `flown`.
@@ -143,12 +146,22 @@ pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
             at_most(format!("|torque {axis}|, published bound"), value, Some(limit), " N m");
         }
     }
-    let limits = scenario.limits.torque_max;
+    let limits = scenario.configuration.limits().torque_max;
     for (axis, (value, limit)) in ["x", "y", "z"].into_iter().zip(flown.torque.into_iter().zip(limits.iter())) {
         at_most(format!("|torque {axis}|, vehicle's limit"), value, Some(f64::from(*limit)), " N m");
     }
-    at_most("thrust, vehicle's limit".into(), flown.thrust.1, Some(f64::from(scenario.limits.thrust_max)), " N");
-    at_most("|u_f|, |u_s| per axis, M_p".into(), flown.filter, Some(f64::from(scenario.gains.m_p)), " m/s^2");
+    at_most(
+        "thrust, vehicle's limit".into(),
+        flown.thrust.1,
+        Some(f64::from(scenario.configuration.limits().thrust_max)),
+        " N",
+    );
+    at_most(
+        "|u_f|, |u_s| per axis, M_p".into(),
+        flown.filter,
+        Some(f64::from(scenario.configuration.gains().m_p)),
+        " m/s^2",
+    );
     at_most("ticks clipped by the plant".into(), flown.clipped as f64, Some(0.0), "");
     at_most("changes of m*".into(), flown.lift_changes as f64, None, "");
     at_most("height lost".into(), flown.height_lost, None, " m");

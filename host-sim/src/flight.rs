@@ -70,16 +70,26 @@ impl fmt::Display for FlightError {
 
 impl std::error::Error for FlightError {}
 
+/// The law for the scenario's vehicle and gains, reset. A simulation may fly what no certificate covers.
+///
+/// # Errors
+/// If the controller refuses the scenario's period; a [`Scenario`] that was read from a file has a good one.
+pub fn controller(scenario: &Scenario) -> Result<Controller, ParameterError> {
+    let configuration = &scenario.configuration;
+    let period = scenario.timing.period() as f32;
+    Controller::uncertified(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
+}
+
 impl Flight {
     /// A flight of `scenario`, at its start, the controller reset.
     ///
     /// # Errors
-    /// If the controller refuses the scenario's period; a [`Scenario`] that was read from a file has a good one.
+    /// As [`controller`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
-        let timing = &scenario.timing;
+        let (timing, configuration) = (&scenario.timing, &scenario.configuration);
         Ok(Self {
-            plant: Plant::new(&scenario.vehicle, &scenario.limits, timing.step(), scenario.initial),
-            controller: Controller::new(scenario.vehicle, scenario.gains, timing.period() as f32)?,
+            plant: Plant::new(configuration.vehicle(), configuration.limits(), timing.step(), scenario.initial),
+            controller: controller(scenario)?,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
             steps_per_tick: timing.steps_per_tick,

@@ -11,6 +11,7 @@
 //! SI units and rad. The output uses the filters as they stand; they then advance by the line's dt. t serves messages
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
+use crate::flight::controller;
 use crate::scenario::Scenario;
 use controller_core::controller::Controller;
 use controller_core::error::ParameterError;
@@ -22,10 +23,39 @@ use std::io::{self, BufRead, Write};
 
 /// The 33 numbers by the names that messages use.
 const FIELDS: [&str; 33] = [
-    "t", "dt", "x[0]", "x[1]", "x[2]", "v[0]", "v[1]", "v[2]", "q.x", "q.y", "q.z", "q.w", "omega[0]", "omega[1]",
-    "omega[2]", "reference x[0]", "reference x[1]", "reference x[2]", "reference v[0]", "reference v[1]",
-    "reference v[2]", "reference a[0]", "reference a[1]", "reference a[2]", "reference j[0]", "reference j[1]",
-    "reference j[2]", "reference s[0]", "reference s[1]", "reference s[2]", "yaw", "yaw_rate", "yaw_acceleration",
+    "t",
+    "dt",
+    "x[0]",
+    "x[1]",
+    "x[2]",
+    "v[0]",
+    "v[1]",
+    "v[2]",
+    "q.x",
+    "q.y",
+    "q.z",
+    "q.w",
+    "omega[0]",
+    "omega[1]",
+    "omega[2]",
+    "reference x[0]",
+    "reference x[1]",
+    "reference x[2]",
+    "reference v[0]",
+    "reference v[1]",
+    "reference v[2]",
+    "reference a[0]",
+    "reference a[1]",
+    "reference a[2]",
+    "reference j[0]",
+    "reference j[1]",
+    "reference j[2]",
+    "reference s[0]",
+    "reference s[1]",
+    "reference s[2]",
+    "yaw",
+    "yaw_rate",
+    "yaw_acceleration",
 ];
 
 /// Longest dt, s.
@@ -61,9 +91,10 @@ impl LawServer {
     /// # Errors
     /// As [`Controller::new`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
-        let (m_p, gravity) = (f64::from(scenario.gains.m_p), f64::from(scenario.vehicle.gravity));
+        let configuration = &scenario.configuration;
+        let (m_p, gravity) = (f64::from(configuration.gains().m_p), f64::from(configuration.vehicle().gravity));
         Ok(Self {
-            controller: Controller::new(scenario.vehicle, scenario.gains, scenario.timing.period() as f32)?,
+            controller: controller(scenario)?,
             // A step of single precision above M_p - g, so that rounding never turns a refused number into a served one.
             least_vertical_acceleration: m_p - gravity * (1.0 - f64::from(f32::EPSILON)),
         })

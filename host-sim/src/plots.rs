@@ -2,6 +2,7 @@
 
 pub mod panel;
 pub mod path;
+
 pub mod record;
 
 use crate::claims::{PUBLISHED_THRUST, PUBLISHED_TORQUE, theorem_1_thrust};
@@ -30,7 +31,8 @@ impl std::error::Error for PlotError {}
 /// # Errors
 /// [`PlotError`] if the drawing library refuses.
 pub fn figure_1(samples: &[Sample]) -> Result<String, PlotError> {
-    let reference = |label: &str, get: fn(&Sample) -> f64| Curve { dashed: true, color: INK, ..curve(samples, label, BLUE, get) };
+    let reference =
+        |label: &str, get: fn(&Sample) -> f64| Curve { dashed: true, color: INK, ..curve(samples, label, BLUE, get) };
     let position = Panel {
         title: "Position",
         quantity: "position [m]",
@@ -75,7 +77,7 @@ pub fn figure_1(samples: &[Sample]) -> Result<String, PlotError> {
 /// [`PlotError`] if the drawing library refuses.
 pub fn figure_2(scenario: &Scenario, samples: &[Sample]) -> Result<String, PlotError> {
     let bound = |value: f64, label: String| Bound { value, label, color: INK };
-    let gains = &scenario.gains;
+    let gains = scenario.configuration.gains();
     let thrust = Panel {
         title: "Thrust",
         quantity: "thrust [N]",
@@ -103,7 +105,10 @@ pub fn figure_2(scenario: &Scenario, samples: &[Sample]) -> Result<String, PlotE
             curve(samples, "|u_f|", VERMILION, |s| s.filter_norms.y),
             curve(samples, "|u_s|", GREEN, |s| s.filter_norms.z),
         ],
-        bounds: vec![bound(3f64.sqrt() * f64::from(gains.m_p), format!("√3 M_p = {:.3}", 3f64.sqrt() * f64::from(gains.m_p)))],
+        bounds: vec![bound(
+            3f64.sqrt() * f64::from(gains.m_p),
+            format!("√3 M_p = {:.3}", 3f64.sqrt() * f64::from(gains.m_p)),
+        )],
     };
     let feedbacks = Panel {
         title: "Saturated attitude and rate feedback",
@@ -123,12 +128,9 @@ pub fn figure_2(scenario: &Scenario, samples: &[Sample]) -> Result<String, PlotE
 
 /// The published thrust interval for the paper's scenario, Theorem 1's for any other, and the vehicle's limit.
 fn thrust_bounds(scenario: &Scenario) -> Vec<Bound> {
-    let (name, (least, greatest)) = if scenario.is_papers() {
-        ("published", PUBLISHED_THRUST)
-    } else {
-        ("Theorem 1", theorem_1_thrust(scenario))
-    };
-    let limit = f64::from(scenario.limits.thrust_max);
+    let (name, (least, greatest)) =
+        if scenario.is_papers() { ("published", PUBLISHED_THRUST) } else { ("Theorem 1", theorem_1_thrust(scenario)) };
+    let limit = f64::from(scenario.configuration.limits().thrust_max);
     let bound = |value: f64, label: String| Bound { value, label, color: INK };
     vec![
         bound(least, format!("{name}: {least:.2} N")),
@@ -139,7 +141,7 @@ fn thrust_bounds(scenario: &Scenario) -> Vec<Bound> {
 
 /// The published bound of each axis for the paper's scenario, the vehicle's limits for any other; equal ones drawn once.
 fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
-    let limits = scenario.limits.torque_max.map(f64::from);
+    let limits = scenario.configuration.limits().torque_max.map(f64::from);
     let values = if scenario.is_papers() { PUBLISHED_TORQUE } else { limits.into() };
     let equal = values.iter().all(|value| *value == values[0]);
     let named = [("roll", BLUE), ("pitch", VERMILION), ("yaw", GREEN)];

@@ -3,7 +3,7 @@
 //! | section | left out |
 //! |---|---|
 //! | `name`, `duration`, `[vehicle]`, `[limits]`, `[gains]`, `[reference]` | an error |
-//! | `[control]` | 100 Hz |
+//! | `[control]` | `rate` 100 Hz; no `thrust_floor`: the paper's thrust |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
@@ -17,10 +17,9 @@ pub mod timing;
 pub mod vehicle;
 
 use crate::plant::BodyState;
+use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
-use controller_core::gains::Gains;
 use controller_core::reference::Trajectory;
-use controller_core::vehicle::{Limits, Vehicle};
 use reference::ReferenceKind;
 use section::{FieldError, Section};
 use std::fmt;
@@ -43,12 +42,8 @@ pub struct Scenario {
     pub name: String,
     /// Duration, control period, plant step.
     pub timing: Timing,
-    /// The rigid body.
-    pub vehicle: Vehicle,
-    /// What its actuators can do.
-    pub limits: Limits,
-    /// The law's gains.
-    pub gains: Gains,
+    /// Vehicle, limits, gains, the reference's bounds, thrust floor: what a certificate would be about.
+    pub configuration: Configuration,
     /// Where it starts.
     pub initial: BodyState,
     /// What it is asked to do, as the file says it.
@@ -92,24 +87,19 @@ impl Scenario {
         root.allow(&SECTIONS)?;
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
-        let vehicle = vehicle::read_vehicle(root)?;
-        let limits = vehicle::read_limits(root, &vehicle)?;
-        let gains = vehicle::read_gains(root, &vehicle)?;
         let reference = ReferenceKind::read(root)?;
         let trajectory = reference.build().map_err(|error| refused(root, &error))?;
-        require_upward_thrust(&vehicle, &gains, trajectory.as_ref())?;
+        let configuration = vehicle::read_configuration(root, &trajectory.bounds())?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
-        Ok(Self { name, timing, vehicle, limits, gains, initial, reference, trajectory })
+        Ok(Self { name, timing, configuration, initial, reference, trajectory })
     }
 
     /// Whether `other` is the same flight, whatever its name.
     #[must_use]
     pub fn flies_like(&self, other: &Self) -> bool {
         self.timing == other.timing
-            && self.vehicle == other.vehicle
-            && self.limits == other.limits
-            && self.gains == other.gains
+            && self.configuration == other.configuration
             && self.initial == other.initial
             && self.reference == other.reference
     }
@@ -137,21 +127,6 @@ impl fmt::Display for ScenarioError {
 }
 
 impl std::error::Error for ScenarioError {}
-
-/// The law is undefined unless the thrust direction always has an upward part: M_p < g - K_a3.
-fn require_upward_thrust(vehicle: &Vehicle, gains: &Gains, trajectory: &dyn Trajectory) -> Result<(), FieldError> {
-    let vertical = trajectory.bounds().vertical_acceleration;
-    let greatest = vehicle.gravity - vertical;
-    if gains.m_p < greatest {
-        return Ok(());
-    }
-    let problem = format!(
-        "must be below vehicle.gravity less the reference's vertical acceleration K_a3 = {vertical}, \
-         that is below {greatest}, found {}",
-        gains.m_p
-    );
-    Err(FieldError::new("gains.m_p", problem))
-}
 
 /// A name that is safe as a directory's.
 fn read_name(root: &Section) -> Result<String, FieldError> {

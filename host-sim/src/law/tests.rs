@@ -21,7 +21,8 @@ fn server() -> LawServer {
 #[test]
 fn the_order_of_the_numbers_is_the_contracts() {
     let scenario = Scenario::paper().unwrap();
-    let mut controller = Controller::new(scenario.vehicle, scenario.gains, 0.02).unwrap();
+    let mut controller = controller(&scenario).unwrap();
+    controller.set_period(0.02).unwrap();
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let state = State {
         position: Vector3::new(1.0, 2.0, 3.0),

@@ -165,7 +165,10 @@ impl Panel {
                 let seen = values.filter(|value| *value > LEAST_ON_LOG);
                 let (low, high) = seen.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value)));
                 let (low, high) = if low > high { (LEAST_ON_LOG, 1.0) } else { (low, high) };
-                return (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil().max(low.log10().floor() + 1.0)));
+                return (
+                    10f64.powf(low.log10().floor()),
+                    10f64.powf(high.log10().ceil().max(low.log10().floor() + 1.0)),
+                );
             }
         };
         let room = if high - low > 1e-9 { 0.1 * (high - low) } else { 1.0 };

@@ -71,16 +71,10 @@ impl<'a> Section<'a> {
     /// The value at a dotted path such as `limits.torque_max[0]`, as text.
     #[must_use]
     pub fn lookup(&self, path: &str) -> Option<String> {
-        let (path, index) = match path.strip_suffix(']').and_then(|path| path.split_once('[')) {
-            Some((path, index)) => (path, Some(index.parse::<usize>().ok()?)),
-            None => (path, None),
-        };
-        let (sections, key) = path.rsplit_once('.').map_or((None, path), |(sections, key)| (Some(sections), key));
-        let table = sections.into_iter().flat_map(|path| path.split('.')).try_fold(self.table, |table, key| {
-            table.get(key)?.as_table()
-        })?;
-        let value = table.get(key)?;
-        index.map_or(Some(value), |index| value.get(index)).map(Value::to_string)
+        let (parents, last) = path.rsplit_once('.').map_or((None, path), |(parents, last)| (Some(parents), last));
+        let mut parents = parents.into_iter().flat_map(|path| path.split('.'));
+        let table = parents.try_fold(self.table, |table, key| element(table, key)?.as_table())?;
+        element(table, last).map(Value::to_string)
     }
 
     /// Whether `key` is there.
@@ -167,8 +161,8 @@ impl<'a> Section<'a> {
         }
         let mut vector = Vector3::zeros();
         for (index, (component, value)) in vector.iter_mut().zip(elements).enumerate() {
-            *component = finite(value)
-                .map_err(|problem| FieldError::new(format!("{}[{index}]", self.path_of(key)), problem))?;
+            *component =
+                finite(value).map_err(|problem| FieldError::new(format!("{}[{index}]", self.path_of(key)), problem))?;
         }
         Ok(vector)
     }
@@ -187,6 +181,14 @@ impl<'a> Section<'a> {
 
     fn mismatch(&self, key: &str, wanted: &str, found: &Value) -> FieldError {
         FieldError::new(self.path_of(key), format!("must be {wanted}, found {}", found.type_str()))
+    }
+}
+
+/// What a table holds at `key` or, with an index, at `key[index]`.
+fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
+    match key.strip_suffix(']').and_then(|key| key.split_once('[')) {
+        Some((key, index)) => table.get(key)?.get(index.parse::<usize>().ok()?),
+        None => table.get(key),
     }
 }
 
@@ -249,10 +251,12 @@ mod tests {
 
     #[test]
     fn lookup_follows_dotted_paths_and_indices() {
-        let table = table("[a]\nb = [1, 2]\n[a.c]\nd = 0.5");
+        let table = table("[a]\nb = [1, 2]\np = [{ t = 3 }]\n[a.c]\nd = 0.5");
         let section = Section::root(&table);
         assert_eq!(section.lookup("a.b[1]").as_deref(), Some("2"));
         assert_eq!(section.lookup("a.c.d").as_deref(), Some("0.5"));
+        assert_eq!(section.lookup("a.p[0].t").as_deref(), Some("3"));
+        assert_eq!(section.lookup("a.p[1].t"), None);
         assert_eq!(section.lookup("a.x.d"), None);
     }
 

@@ -73,8 +73,8 @@ fn read_period(root: &Section) -> Result<u64, FieldError> {
     let Some(control) = root.optional_section("control")? else {
         return Ok((1e6 / DEFAULT_RATE) as u64);
     };
-    control.allow(&["rate"])?;
-    let rate = control.number("rate")?;
+    control.allow(&["rate", "thrust_floor"])?;
+    let rate = control.number_or("rate", DEFAULT_RATE)?;
     if !(LEAST_RATE..=GREATEST_RATE).contains(&rate) {
         let allowed = format!("must be from {LEAST_RATE} to {GREATEST_RATE:e} Hz");
         return Err(FieldError::new(FIELD, format!("{allowed}, found {rate}")));

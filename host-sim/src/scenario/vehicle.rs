@@ -1,15 +1,41 @@
-//! `[vehicle]`, `[limits]` and `[gains]`: what the certificate and the law are about. All fields are required.
+//! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about. All their fields are required.
+//!
+//! `[control] thrust_floor` (N) is an option of the law: see [`controller_core::projection`].
 
-use super::section::{FieldError, Section};
 use super::refused;
+use super::section::{FieldError, Section};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::gains::{GainParameters, Gains};
+use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 
-/// Reads `[vehicle]`.
+/// Reads the three sections and the thrust floor, for references within `bounds`.
 ///
 /// # Errors
-/// Names the field that is missing or not physical.
-pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
+/// Names the field that is missing, not physical, or leaves the law undefined: M_p >= g - K_a3.
+pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Configuration, FieldError> {
+    let vehicle = read_vehicle(root)?;
+    let limits = read_limits(root, &vehicle)?;
+    let gains = read_gains(root, &vehicle)?;
+    let configuration = Configuration::new(vehicle, limits, gains, *bounds).map_err(|error| {
+        let refused = refused(root, &error);
+        let problem = format!(
+            "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
+            refused.problem, bounds.vertical_acceleration
+        );
+        FieldError::new(refused.field, problem)
+    })?;
+    match root.optional_section("control")? {
+        Some(control) if control.has("thrust_floor") => {
+            let floor = control.number("thrust_floor")? as f32;
+            configuration.with_thrust_floor(floor).map_err(|error| refused(root, &error))
+        }
+        _ => Ok(configuration),
+    }
+}
+
+/// Reads `[vehicle]`.
+fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
     let section = root.section("vehicle")?;
     section.allow(&["mass", "inertia", "gravity"])?;
     let parameters = VehicleParameters {
@@ -21,10 +47,7 @@ pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
 }
 
 /// Reads `[limits]`.
-///
-/// # Errors
-/// Names the field that is missing, not positive, or too small to hover.
-pub fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldError> {
+fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldError> {
     let section = root.section("limits")?;
     section.allow(&["thrust_max", "torque_max"])?;
     let parameters = LimitParameters {
@@ -35,14 +58,10 @@ pub fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldErr
 }
 
 /// Reads `[gains]`.
-///
-/// # Errors
-/// Names the gain that is missing or for which the law is undefined.
-pub fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
+fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
     let section = root.section("gains")?;
-    section.allow(&[
-        "k_p", "k_v", "k_f", "k_s", "k_theta", "k_omega", "m_p", "m_theta", "m_omega", "delta", "alpha",
-    ])?;
+    section
+        .allow(&["k_p", "k_v", "k_f", "k_s", "k_theta", "k_omega", "m_p", "m_theta", "m_omega", "delta", "alpha"])?;
     let gain = |key: &str| section.number(key).map(|value| value as f32);
     let parameters = GainParameters {
         k_p: gain("k_p")?,

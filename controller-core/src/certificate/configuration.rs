@@ -1,0 +1,107 @@
+//! A configuration, and the only kind that may fly: a certified one.
+
+use super::Certificate;
+use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::gains::Gains;
+use crate::reference::ReferenceBounds;
+use crate::vehicle::{Limits, Vehicle};
+
+/// Everything the certificate judges: vehicle, limits, gains, the references that will be flown, and the options.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Configuration {
+    vehicle: Vehicle,
+    limits: Limits,
+    gains: Gains,
+    bounds: ReferenceBounds,
+    thrust_floor: Option<f32>,
+}
+
+impl Configuration {
+    /// The paper's law for `vehicle`, to fly references within `bounds`.
+    ///
+    /// # Errors
+    /// If a bound is not finite or negative, or M_p >= g - K_a3, where the law is undefined.
+    pub fn new(
+        vehicle: Vehicle,
+        limits: Limits,
+        gains: Gains,
+        bounds: ReferenceBounds,
+    ) -> Result<Self, ParameterError> {
+        let bounds = bounds.validated()?;
+        let room = vehicle.gravity - bounds.vertical_acceleration;
+        require(gains.m_p < room, "gains.m_p", Reason::NotBelow(room))?;
+        Ok(Self { vehicle, limits, gains, bounds, thrust_floor: None })
+    }
+
+    /// Turns on the thrust projection T = max(m u.R e3, floor), `floor` in N; see [`crate::projection`].
+    ///
+    /// # Errors
+    /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends.
+    pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
+        let field = "control.thrust_floor";
+        require_positive(floor, field)?;
+        let least = self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration);
+        require(floor <= least, field, Reason::NotBelow(least))?;
+        Ok(Self { thrust_floor: Some(floor), ..self })
+    }
+
+    /// The vehicle.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// The user's limits.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// The gains.
+    #[must_use]
+    pub fn gains(&self) -> &Gains {
+        &self.gains
+    }
+
+    /// Omega_r: the references this configuration is for.
+    #[must_use]
+    pub fn bounds(&self) -> &ReferenceBounds {
+        &self.bounds
+    }
+
+    /// The floor of the thrust projection, N; none for the paper's law.
+    #[must_use]
+    pub fn thrust_floor(&self) -> Option<f32> {
+        self.thrust_floor
+    }
+}
+
+/// A configuration whose certificate holds. There is no other way to make one than to certify it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certified {
+    configuration: Configuration,
+    certificate: Certificate,
+}
+
+impl Certified {
+    /// Certifies `configuration`.
+    ///
+    /// # Errors
+    /// The certificate, if it does not hold: it says which inequality fails and by how much.
+    pub fn new(configuration: Configuration) -> Result<Self, Certificate> {
+        let certificate = Certificate::new(&configuration);
+        if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(certificate) }
+    }
+
+    /// What was certified.
+    #[must_use]
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The proof.
+    #[must_use]
+    pub fn certificate(&self) -> &Certificate {
+        &self.certificate
+    }
+}

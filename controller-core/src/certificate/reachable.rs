@@ -1,0 +1,72 @@
+//! What the filters can reach from x_f = 0, and so what u, u', u'' can be.
+//!
+//! Each axis of the cascade u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar) has an input |ubar| <= M_p. Its reachable set
+//! from zero is the convex region between the two extremal arcs that run from (M_p, M_p) to (-M_p, -M_p) and back with
+//! the input at its bound. Along an arc, with E_f = e^(-k_f t), E_s = e^(-k_s t),
+//!
+//! u_s = M_p (2 E_s - 1),  u_f - u_s = 2 M_p k_s (E_f - E_s) / (k_s - k_f).
+//!
+//! The linear functions the law needs take their maxima on it, in closed form (`docs/sharp-bound.md`, step 1), with
+//! U_l = (k_f / k_s)^(k_f / (k_s - k_f)), e^-1 when the two are equal:
+//!
+//! | quantity, per axis | greatest magnitude | the paper's |
+//! |---|---|---|
+//! | u_f' = -k_f (u_f - u_s) | 2 k_f U_l M_p | the same |
+//! | u_f'' = k_f (k_f (u_f - u_s) - k_s (u_s - ubar)) | 2 k_f M_p (k_s + k_f U_l^2) | 2 k_f M_p (k_s + k_f U_l) |
+//!
+//! Single axes stay single axes here: the horizontal pair is bounded by its Euclidean norm, sqrt(2) times an axis, and the
+//! vertical axis by itself.
+
+use crate::math;
+use crate::reference::ReferenceBounds;
+
+/// Bounds on u and its derivatives over everything reachable after a reset, m/s^2, m/s^3, m/s^4.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reachable {
+    /// Least u_z = g - M_p - K_a3; the law is defined while it is positive.
+    pub vertical_least: f64,
+    /// Greatest u_z = g + M_p + K_a3.
+    pub vertical_greatest: f64,
+    /// Greatest |(u_x, u_y)| = sqrt(2) M_p + K_a12.
+    pub horizontal: f64,
+    /// Greatest |u'|.
+    pub jerk: f64,
+    /// Greatest |(u''_x, u''_y)|.
+    pub horizontal_snap: f64,
+    /// Greatest |u''_z|.
+    pub vertical_snap: f64,
+}
+
+/// U_l of Lemma 1: half the L1 norm of the impulse response from ubar to u_f - u_s.
+#[must_use]
+pub fn half_l1_norm(k_f: f64, k_s: f64) -> f64 {
+    // (k_f / k_s)^(k_f / (k_s - k_f)) = exp(-ln(1 + x) / x) with x = k_s / k_f - 1.
+    let x = k_s / k_f - 1.0;
+    if x.abs() < 1e-9 { math::exp(-1.0) } else { math::exp(-math::ln_1p(x) / x) }
+}
+
+impl Reachable {
+    /// For filters of bandwidth `k_f`, `k_s` (1/s), feedback level `m_p` (m/s^2) and a reference within `bounds`.
+    #[must_use]
+    pub fn new(k_f: f64, k_s: f64, m_p: f64, gravity: f64, bounds: &ReferenceBounds) -> Self {
+        let half_l1 = half_l1_norm(k_f, k_s);
+        let axis_jerk = 2.0 * k_f * half_l1 * m_p;
+        let axis_snap = 2.0 * k_f * m_p * (k_s + k_f * half_l1 * half_l1);
+        let (jerk, snap) = (f64::from(bounds.jerk), f64::from(bounds.snap));
+        let vertical = f64::from(bounds.vertical_acceleration);
+        Self {
+            vertical_least: gravity - m_p - vertical,
+            vertical_greatest: gravity + m_p + vertical,
+            horizontal: core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration),
+            jerk: math::sqrt_f64(3.0) * axis_jerk + jerk,
+            horizontal_snap: core::f64::consts::SQRT_2 * axis_snap + snap,
+            vertical_snap: axis_snap + snap,
+        }
+    }
+
+    /// Greatest |u|.
+    #[must_use]
+    pub fn magnitude(&self) -> f64 {
+        math::hypot(self.horizontal, self.vertical_greatest)
+    }
+}
