@@ -77,6 +77,12 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
+/// Square root in double precision, for configuration time.
+#[must_use]
+pub fn sqrt_f64(x: f64) -> f64 {
+    libm::sqrt(x)
+}
+
 /// The nearest integer, halves away from zero, for configuration time.
 #[must_use]
 pub fn round(x: f64) -> f64 {
