@@ -54,7 +54,7 @@ fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: &[f64]) -> f64 {
     /// Each step leaves a small part of the phase before it; this is far more than they need.
     const STEPS: usize = 40;
     /// Of a sample.
-    const RESOLUTION: f64 = 1e-10;
+    const RESOLUTION: f64 = 1e-8;
 
     // What each frequency has left before -1, in samples: first all the way round, then to either side.
     let phase_to_critical = |chain: &SampledLoop, angle: f64| {
