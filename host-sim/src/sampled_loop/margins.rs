@@ -5,18 +5,21 @@
 //! axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held command
 //! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left.
 //!
-//! The response is followed on a logarithmic grid with [`POINTS`] points; a loop that crosses an axis twice between
-//! neighbours, so a near-tangency within 10 % of frequency, is not seen to.
+//! The response is followed along a grid of frequencies; where it crosses an axis twice between neighbours, a near-tangency
+//! within 10 % of frequency, that is not seen.
 
 use super::chain::SampledLoop;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
-/// Points of the frequency grid.
-const POINTS: usize = 120;
+/// The lowest frequency looked at, radians per sample: below the slowest position loop one would fly.
+const LOWEST: f64 = 3e-5;
 
-/// The lowest frequency looked at, as a part of the Nyquist frequency: below the slowest position loop one would fly.
-const LOWEST: f64 = 1e-5;
+/// The highest one. At pi itself the response is real, so the sign of its imaginary part there would be rounding's.
+const HIGHEST: f64 = PI * (1.0 - 1e-4);
+
+/// Greatest ratio of neighbouring frequencies less one.
+const SPACING: f64 = 0.1;
 
 /// The margins of a stable loop, in samples and radians per sample.
 #[derive(Debug, Clone, Copy)]
@@ -33,14 +36,13 @@ pub(super) struct SampleMargins {
 
 /// The margins of `chain`, which is stable with its commands `delay` samples late.
 pub(super) fn margins(chain: &SampledLoop, delay: f64) -> SampleMargins {
-    let sweep = Sweep::of(chain);
-    let unit_gain = sweep.crossings(gain);
+    let sweep = Sweep::of(chain, delay);
     let (gain_down, gain_up) = sweep.critical_gains();
     SampleMargins {
         gain_up,
         gain_down,
-        delay: delay_margin(chain, delay, &unit_gain),
-        crossover: unit_gain.last().copied().unwrap_or(PI),
+        delay: delay_margin(chain, delay),
+        crossover: sweep.crossings(gain).last().copied().unwrap_or(PI),
     }
 }
 
@@ -49,53 +51,64 @@ fn gain(response: Complex<f64>) -> f64 {
     response.norm_sqr().ln()
 }
 
-/// The least further delay, in samples, at which the response passes through -1; `unit_gain` are its frequencies now.
-fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: &[f64]) -> f64 {
-    /// Each step leaves a small part of the phase before it; this is far more than they need.
+/// The least further delay, in samples, at which the response passes through -1.
+///
+/// Zero, so no margin to rely on, if the gain is one nowhere on the grid: a loop slower than [`LOWEST`].
+fn delay_margin(chain: &SampledLoop, delay: f64) -> f64 {
+    /// Brackets are found in a few steps.
     const STEPS: usize = 40;
     /// Of a sample.
-    const RESOLUTION: f64 = 1e-8;
+    const RESOLUTION: f64 = 1e-9;
 
-    // What each frequency has left before -1, in samples: first all the way round, then to either side.
-    let phase_to_critical = |chain: &SampledLoop, angle: f64| {
-        let response = chain.response(angle);
-        (-response.im).atan2(-response.re)
-    };
-    let mut extra = unit_gain
-        .iter()
-        .map(|angle| phase_to_critical(chain, *angle).rem_euclid(TAU) / angle)
-        .fold(f64::INFINITY, f64::min);
-    for _ in 0..STEPS {
+    // Samples of delay that each frequency of unit gain still takes before -1, were the gain to stay.
+    let left_at = |extra: f64| {
         let delayed = chain.with_delay(delay + extra);
-        let left = Sweep::of(&delayed)
-            .crossings(gain)
-            .into_iter()
-            .map(|angle| phase_to_critical(&delayed, angle) / angle)
-            .min_by(|a, b| a.abs().total_cmp(&b.abs()))
-            .unwrap_or(0.0);
-        extra = (extra + left).max(0.0);
-        if left.abs() < RESOLUTION {
+        // The gain does not turn with the delay, so the grid need not be any finer for it.
+        let unit_gain = Sweep::of(&delayed, 0.0).crossings(gain);
+        unit_gain.into_iter().map(move |angle| {
+            let response = delayed.response(angle);
+            ((-response.im).atan2(-response.re), angle)
+        })
+    };
+    // From the start that may be all the way round; near the end, to either side.
+    let first = left_at(0.0).map(|(phase, angle)| phase.rem_euclid(TAU) / angle).fold(f64::INFINITY, f64::min);
+    if first.is_infinite() {
+        return 0.0;
+    }
+    let nearest = |extra: f64| {
+        let left = left_at(extra).map(|(phase, angle)| phase / angle).min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        left.filter(|left| left.abs() > RESOLUTION).unwrap_or(0.0)
+    };
+    let mut low = (0.0, first);
+    let mut high = (first, nearest(first));
+    for _ in 0..STEPS {
+        if high.1 <= 0.0 {
             break;
         }
+        low = high;
+        let further = high.0 + 2.0 * high.1;
+        high = (further, nearest(further));
     }
-    extra
+    if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
-/// The response along the frequency grid.
+/// The response along a grid of frequencies, rising.
 struct Sweep<'a> {
     chain: &'a SampledLoop,
-    points: [(f64, Complex<f64>); POINTS],
+    points: Vec<(f64, Complex<f64>)>,
 }
 
 impl<'a> Sweep<'a> {
-    fn of(chain: &'a SampledLoop) -> Self {
-        let ratio = LOWEST.powf(1.0 / (POINTS - 1) as f64);
-        let mut angle = PI;
-        let mut points = [(0.0, Complex::new(0.0, 0.0)); POINTS];
-        for point in points.iter_mut().rev() {
-            *point = (angle, chain.response(angle));
-            angle *= ratio;
+    /// Fine enough to follow a response that `delay` samples turn.
+    fn of(chain: &'a SampledLoop, delay: f64) -> Self {
+        let step = PI / (8.0 * (delay + 1.0));
+        let mut points = Vec::with_capacity(160);
+        let mut angle = LOWEST;
+        while angle < HIGHEST {
+            points.push((angle, chain.response(angle)));
+            angle += step.min(SPACING * angle);
         }
+        points.push((HIGHEST, chain.response(HIGHEST)));
         Self { chain, points }
     }
 
@@ -114,7 +127,7 @@ impl<'a> Sweep<'a> {
 
     /// The factors on the gain nearest to one, below and above, that put the response through -1.
     fn critical_gains(&self) -> (f64, f64) {
-        // At the Nyquist frequency the response is real: there the curve ends on the axis without crossing it.
+        // At the Nyquist frequency the curve ends on the axis without crossing it.
         let end = core::iter::once(PI);
         self.crossings(|response| response.im)
             .into_iter()
