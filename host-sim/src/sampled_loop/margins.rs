@@ -28,7 +28,7 @@ pub(super) struct SampleMargins {
     pub gain_up: f64,
     /// Greatest factor below one at which stability is lost; zero if none.
     pub gain_down: f64,
-    /// Least further delay at which stability is lost.
+    /// Least further delay at which stability is lost. Zero for a loop slower than [`LOWEST`], which is not looked at.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one.
     pub crossover: f64,
@@ -36,14 +36,13 @@ pub(super) struct SampleMargins {
 
 /// The margins of `chain`, which is stable with its commands `delay` samples late.
 pub(super) fn margins(chain: &SampledLoop, delay: f64) -> SampleMargins {
-    let sweep = Sweep::of(chain, delay);
+    let sweep = Sweep::of(chain, LOWEST, delay);
     let (gain_down, gain_up) = sweep.critical_gains();
-    SampleMargins {
-        gain_up,
-        gain_down,
-        delay: delay_margin(chain, delay),
-        crossover: sweep.crossings(gain).last().copied().unwrap_or(PI),
-    }
+    let unit_gain = sweep.crossings(gain);
+    let (Some(lowest), Some(crossover)) = (unit_gain.first(), unit_gain.last()) else {
+        return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
+    };
+    SampleMargins { gain_up, gain_down, delay: delay_margin(chain, delay, *lowest), crossover: *crossover }
 }
 
 /// Positive where the loop amplifies.
@@ -51,30 +50,27 @@ fn gain(response: Complex<f64>) -> f64 {
     response.norm_sqr().ln()
 }
 
-/// The least further delay, in samples, at which the response passes through -1.
-///
-/// Zero, so no margin to rely on, if the gain is one nowhere on the grid: a loop slower than [`LOWEST`].
-fn delay_margin(chain: &SampledLoop, delay: f64) -> f64 {
+/// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
+/// `unit_gain` and nowhere below.
+fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
     /// Brackets are found in a few steps.
     const STEPS: usize = 40;
     /// Of a sample.
-    const RESOLUTION: f64 = 1e-9;
+    const RESOLUTION: f64 = 1e-8;
+    // How a fraction of a sample is held changes the gain at high frequencies only: nothing crosses far below.
+    let lowest = 0.5 * unit_gain;
 
     // Samples of delay that each frequency of unit gain still takes before -1, were the gain to stay.
     let left_at = |extra: f64| {
         let delayed = chain.with_delay(delay + extra);
         // The gain does not turn with the delay, so the grid need not be any finer for it.
-        let unit_gain = Sweep::of(&delayed, 0.0).crossings(gain);
-        unit_gain.into_iter().map(move |angle| {
+        Sweep::of(&delayed, lowest, 0.0).crossings(gain).into_iter().map(move |angle| {
             let response = delayed.response(angle);
             ((-response.im).atan2(-response.re), angle)
         })
     };
     // From the start that may be all the way round; near the end, to either side.
     let first = left_at(0.0).map(|(phase, angle)| phase.rem_euclid(TAU) / angle).fold(f64::INFINITY, f64::min);
-    if first.is_infinite() {
-        return 0.0;
-    }
     let nearest = |extra: f64| {
         let left = left_at(extra).map(|(phase, angle)| phase / angle).min_by(|a, b| a.abs().total_cmp(&b.abs()));
         left.filter(|left| left.abs() > RESOLUTION).unwrap_or(0.0)
@@ -99,11 +95,11 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Fine enough to follow a response that `delay` samples turn.
-    fn of(chain: &'a SampledLoop, delay: f64) -> Self {
+    /// From `lowest` up, fine enough to follow a response that `delay` samples turn.
+    fn of(chain: &'a SampledLoop, lowest: f64, delay: f64) -> Self {
         let step = PI / (8.0 * (delay + 1.0));
         let mut points = Vec::with_capacity(160);
-        let mut angle = LOWEST;
+        let mut angle = lowest;
         while angle < HIGHEST {
             points.push((angle, chain.response(angle)));
             angle += step.min(SPACING * angle);
