@@ -27,9 +27,10 @@ pub(super) struct LagResponse {
 impl LagResponse {
     /// Over a stretch of `duration` > 0, with `lag` >= 0 in the same unit of time.
     pub fn over(duration: f64, lag: f64) -> Self {
-        let mut response = Self { free: [0.0; _], forced: INVERSE_FACTORIAL_OF_CHAIN };
-        if lag > 0.0 {
-            let x = duration / lag;
+        // Without lag the input is integrated as it stands: 1/m!.
+        let mut response = Self { free: [0.0; _], forced: core::array::from_fn(|m| INVERSE_FACTORIAL[m]) };
+        let x = duration / lag;
+        if x.is_finite() {
             let phi = phi(x);
             for (m, (free, forced)) in response.free.iter_mut().zip(&mut response.forced).enumerate() {
                 *free = phi[m];
@@ -45,9 +46,6 @@ impl LagResponse {
         response
     }
 }
-
-/// Without lag the forced response is t^m / m!.
-const INVERSE_FACTORIAL_OF_CHAIN: [f64; INTEGRATORS + 1] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
 
 /// phi_0 to phi_(INTEGRATORS + 1) at x > 0, linked by phi_m = 1/m! - x phi_(m+1).
 fn phi(x: f64) -> [f64; INTEGRATORS + 2] {
@@ -114,10 +112,13 @@ mod tests {
 
     #[test]
     fn no_lag_is_the_limit_of_a_small_one() {
-        let (none, small) = (LagResponse::over(1.0, 0.0), LagResponse::over(1.0, 1e-12));
-        for m in 0..=INTEGRATORS {
-            assert!((none.free[m] - small.free[m]).abs() < 2e-12);
-            assert!((none.forced[m] - small.forced[m]).abs() < 2e-12);
+        let none = LagResponse::over(1.0, 0.0);
+        for lag in [1e-12, 1e-300, 1e-320] {
+            let small = LagResponse::over(1.0, lag);
+            for m in 0..=INTEGRATORS {
+                assert!((none.free[m] - small.free[m]).abs() < 2e-12, "{lag:e}");
+                assert!((none.forced[m] - small.forced[m]).abs() < 2e-12, "{lag:e}");
+            }
         }
     }
 }
