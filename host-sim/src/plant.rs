@@ -82,6 +82,12 @@ impl Clipping {
     pub fn any(self) -> bool {
         self.thrust || self.torque
     }
+
+    /// What either cut.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { thrust: self.thrust || other.thrust, torque: self.torque || other.torque }
+    }
 }
 
 /// The simulated motion left the finite numbers; nothing after it means anything.
@@ -154,11 +160,19 @@ impl Plant {
         for _ in 0..steps {
             self.step(specific_thrust, &torque_share);
         }
-        if self.state.is_finite() {
-            Ok(Clipping { thrust: thrust != commanded.0, torque: torque != commanded.1 })
-        } else {
-            Err(Diverged)
-        }
+        self.check()?;
+        Ok(Clipping { thrust: thrust != commanded.0, torque: torque != commanded.1 })
+    }
+
+    /// One integration step under thrust, N, and torque, N m, as they are.
+    pub fn act(&mut self, thrust: f64, torque: &Vector3<f64>) {
+        self.step(thrust * self.inverse_mass, &torque.component_mul(&self.inverse_inertia));
+    }
+
+    /// # Errors
+    /// [`Diverged`] if the state is not finite.
+    pub fn check(&self) -> Result<(), Diverged> {
+        if self.state.is_finite() { Ok(()) } else { Err(Diverged) }
     }
 
     /// One Runge-Kutta step under the specific thrust T/m (m/s^2) and J^-1 tau (rad/s^2).
