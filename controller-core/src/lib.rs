@@ -2,6 +2,7 @@
 #![no_std]
 #![deny(unsafe_code)]
 
+pub mod allocation;
 pub mod attitude;
 pub mod attitude_reference;
 pub mod certificate;

@@ -1,0 +1,208 @@
+//! The wrenches that rotors within their ranges can deliver, as half-spaces worked out once.
+//!
+//! The image of a box under B is a zonotope Z = { sum_i b_i f_i : low_i <= f_i <= high_i }. Between its two faces with
+//! normal a it is as wide as the support function says:
+//!
+//! ```text
+//! sum_i min(a.b_i low_i, a.b_i high_i) <= a.w <= sum_i max(a.b_i low_i, a.b_i high_i)
+//! ```
+//!
+//! and every face of a zonotope in four dimensions holds three independent columns b_i, b_j, b_k. So the normals to all
+//! triples of columns describe Z completely: at most 56 slabs for eight rotors. Z with one wrench component left open
+//! (a prism) has the normals to all pairs of columns and that component's axis.
+//!
+//! The mixer moves a wrench along a line and needs to know how far it may go. With a slab's normal scaled to a.d = 1,
+//!
+//! ```text
+//! w - s d in Z   =>   a.w - high <= s <= a.w - low,
+//! ```
+//!
+//! two multiply-adds per slab and no division: [`Slabs::range`]. The image of Z in the roll-pitch plane is a polygon
+//! with two edges per rotor; [`Polygon::nearest`] projects onto it.
+//!
+//! Normals are worked out in f64 with the wrench scaled as in [`Rotors`]; a tick works in f32. Where d nearly runs along a
+//! face, a.d is small and rounding in a.w grows to a large error in s, which could cut off what is attainable. So each
+//! slab is widened by that rounding: ranges err to the outside, by [`ROUNDING`] of the polytope's size across the face,
+//! and the mixer's last clip takes that back.
+
+use super::collected;
+use super::geometry::{ROTORS_MAX, Rotors};
+use crate::math;
+use heapless::Vec;
+use nalgebra::{Vector2, Vector3, Vector4};
+
+/// What evaluating a.w in f32 may lose, relative to the largest |a|.|w| in the polytope: four products, four sums, and
+/// the rounding of w and a themselves.
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+
+/// A face whose normal is this close to a right angle to the line does not bound movement along it: [`ROUNDING`] hides it.
+const PARALLEL: f64 = 1e-7;
+
+/// A column of B with its rotor's range, the wrench scaled.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Generator {
+    column: Vector4<f64>,
+    low: f64,
+    high: f64,
+}
+
+/// The generators of some of the rotors, in the order given.
+pub(super) fn generators<'a>(rotors: &Rotors, chosen: impl Iterator<Item = &'a usize>) -> Vec<Generator, ROTORS_MAX> {
+    let one = |index: &usize| {
+        let rotor = rotors.get(*index)?;
+        let column = rotors.effectiveness().get(*index)?.component_mul(rotors.scale());
+        Some(Generator { column, low: f64::from(rotor.thrust_min), high: f64::from(rotor.thrust_max) })
+    };
+    collected(chosen.filter_map(one))
+}
+
+/// low <= normal . w <= high, with normal . d = 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Slab {
+    normal: Vector4<f32>,
+    low: f32,
+    high: f32,
+}
+
+/// How far a wrench may move along one direction d without leaving a zonotope of at most N slabs.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Slabs<const N: usize>(Vec<Slab, N>);
+
+impl<const N: usize> Slabs<N> {
+    /// The zonotope of `generators`, open along `open` if given; `direction` is d, in the wrench's own units.
+    pub(super) fn new(
+        rotors: &Rotors,
+        generators: &[Generator],
+        open: Option<Vector4<f64>>,
+        direction: Vector4<f64>,
+    ) -> Self {
+        let direction = direction.component_mul(rotors.scale());
+        let size: Vector4<f64> = generators.iter().map(|generator| generator.column.abs() * generator.high).sum();
+        let mut slabs = Vec::new();
+        let mut add = |a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>| {
+            let normal = normal(a, b, c);
+            let along = normal.dot(&direction);
+            let limit = PARALLEL * math::sqrt_f64(normal.norm_squared() * direction.norm_squared());
+            // Dependent triples have no normal to speak of; the faces they lie in come from other triples.
+            if along.abs() > limit {
+                let normal = normal / along;
+                let (low, high) = extent(generators, &normal);
+                let slack = ROUNDING * normal.abs().dot(&size);
+                let normal = normal.component_mul(rotors.scale()).map(|x| x as f32);
+                // N counts every triple there is.
+                let _ = slabs.push(Slab { normal, low: (low - slack) as f32, high: (high + slack) as f32 });
+            }
+        };
+        for (i, a) in generators.iter().enumerate() {
+            for (j, b) in generators.iter().enumerate().skip(i + 1) {
+                match &open {
+                    Some(axis) => add(&a.column, &b.column, axis),
+                    None => generators.iter().skip(j + 1).for_each(|c| add(&a.column, &b.column, &c.column)),
+                }
+            }
+        }
+        Self(slabs)
+    }
+
+    /// The least and greatest s with `wrench` - s d in the zonotope. If there is none, least exceeds greatest.
+    pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
+        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
+            let at = slab.normal.dot(wrench);
+            (least.max(at - slab.high), greatest.min(at - slab.low))
+        })
+    }
+}
+
+/// The vector normal to three others in four dimensions: the cross product's bigger sister.
+fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
+    let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
+    Vector4::new(
+        minor(|v| Vector3::new(v.y, v.z, v.w)),
+        -minor(|v| Vector3::new(v.x, v.z, v.w)),
+        minor(|v| Vector3::new(v.x, v.y, v.w)),
+        -minor(|v| Vector3::new(v.x, v.y, v.z)),
+    )
+}
+
+/// The zonotope's least and greatest component along `normal`.
+fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
+    generators.iter().fold((0.0, 0.0), |(low, high), generator| {
+        let at = normal.dot(&generator.column);
+        let (one, other) = (at * generator.low, at * generator.high);
+        (low + one.min(other), high + one.max(other))
+    })
+}
+
+/// An edge of a convex polygon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Edge {
+    start: Vector2<f32>,
+    along: Vector2<f32>,
+    /// `along` over its squared length.
+    per_length: Vector2<f32>,
+    /// Unit normal, away from the polygon.
+    outward: Vector2<f32>,
+}
+
+impl Edge {
+    fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
+        let part = (point - self.start).dot(&self.per_length).max(0.0).min(1.0);
+        self.start + self.along * part
+    }
+}
+
+/// The roll and pitch torques that can be had, N m, whatever the thrust and yaw.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Polygon(Vec<Edge, { 2 * ROTORS_MAX }>);
+
+impl Polygon {
+    pub(super) fn new(rotors: &Rotors) -> Self {
+        let arms = || rotors.effectiveness().iter().map(|column| Vector2::new(column.y, column.z));
+        let mut edges = Vec::new();
+        for arm in arms() {
+            let length = math::sqrt_f64(arm.norm_squared());
+            if length > 0.0 {
+                let normal = Vector2::new(arm.y, -arm.x) / length;
+                for outward in [normal, -normal] {
+                    // Counter-clockwise, the polygon on the left.
+                    let forward = Vector2::new(-outward.y, outward.x);
+                    let mut start = Vector2::zeros();
+                    let mut along = Vector2::zeros();
+                    for (rotor, other) in rotors.iter().zip(arms()) {
+                        let (low, high) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
+                        let side = outward.dot(&other);
+                        // Rotors on one line with the centre share an edge; the rounding of their places does not count.
+                        let parallel = side.abs() <= 1e-12 * length;
+                        let rises = if parallel { forward.dot(&other) < 0.0 } else { side > 0.0 };
+                        start += other * if rises { high } else { low };
+                        if parallel {
+                            along += forward * (forward.dot(&other).abs() * (high - low));
+                        }
+                    }
+                    let single = |v: Vector2<f64>| v.map(|x| x as f32);
+                    // Two edges for each rotor is what there is room for.
+                    let _ = edges.push(Edge {
+                        start: single(start),
+                        along: single(along),
+                        per_length: single(along / along.norm_squared()),
+                        outward: single(outward),
+                    });
+                }
+            }
+        }
+        Self(edges)
+    }
+
+    /// The point itself if it lies in the polygon, else the nearest one of the polygon's edges.
+    pub(super) fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
+        if self.0.iter().all(|edge| edge.outward.dot(&(point - edge.start)) <= 0.0) {
+            return *point;
+        }
+        // |c - p|^2 < |b - p|^2 written as (b - c).(2 p - b - c) < 0: right for near and for far points in f32.
+        let closer = |best: Vector2<f32>, candidate: Vector2<f32>| {
+            let nearer = (best - candidate).dot(&(2.0 * point - best - candidate)) < 0.0;
+            if nearer { candidate } else { best }
+        };
+        self.0.iter().map(|edge| edge.nearest(point)).reduce(closer).unwrap_or_default()
+    }
+}
