@@ -19,11 +19,12 @@ pub mod attainable;
 pub mod curve;
 pub mod geometry;
 pub mod mixer;
-
+pub mod support;
 
 pub use curve::{Battery, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
 pub use mixer::{Allocation, Mixer};
+pub use support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
 
 use heapless::Vec;
 
