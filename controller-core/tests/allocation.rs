@@ -36,7 +36,7 @@ fn rotor(x: f32, y: f32, spin: Spin, thrust: [f32; 2]) -> Rotor {
 }
 
 fn spin(index: usize) -> Spin {
-    if index % 2 == 0 { Spin::Clockwise } else { Spin::CounterClockwise }
+    if index.is_multiple_of(2) { Spin::Clockwise } else { Spin::CounterClockwise }
 }
 
 /// `count` rotors on a circle, spins alternating, the first at `phase` of the spacing.
@@ -239,7 +239,7 @@ fn extremes<const K: usize>(rotors: &Rotors, rows: [usize; K], fixed: [f64; K], 
             }
             let sum = delivered(rotors, thrusts.iter().copied());
             let missing = SVector::<f64, K>::from_fn(|row, _| fixed[row] - sum[rows[row]]);
-            for (index, thrust) in free.iter().zip((&inverse * missing).iter()) {
+            for (index, thrust) in free.iter().zip((inverse * missing).iter()) {
                 thrusts[*index] = *thrust;
             }
             let fits = |(thrust, limit): (&f64, &(f64, f64))| *thrust > limit.0 - 1e-5 && *thrust < limit.1 + 1e-5;
