@@ -7,6 +7,9 @@ use nalgebra::{SMatrix, SVector, Vector2, Vector3, Vector4};
 /// Rounding of a single-precision tick, relative to the size of the numbers it works on.
 const ROUNDING: f64 = 1e-6;
 
+/// Eight roundings of half an epsilon, magnified by the slope of a face, at most 30.
+const FACE_ROUNDING: f64 = 30.0 * 4.0 * f32::EPSILON as f64;
+
 /// A fixed sequence of numbers in [0, 1).
 struct Random(u64);
 
@@ -33,7 +36,7 @@ fn rotor(x: f32, y: f32, spin: Spin, thrust: [f32; 2]) -> Rotor {
 }
 
 fn spin(index: usize) -> Spin {
-    if index % 2 == 0 { Spin::Clockwise } else { Spin::CounterClockwise }
+    if index.is_multiple_of(2) { Spin::Clockwise } else { Spin::CounterClockwise }
 }
 
 /// `count` rotors on a circle, spins alternating, the first at `phase` of the spacing.
@@ -110,64 +113,108 @@ fn roll_pitch_error(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     Vector2::new(a.y - b.y, a.z - b.z).norm()
 }
 
+/// Thrusts within the rotors' ranges, each at one of its limits with the given probability.
+fn within_ranges(rotors: &Rotors, at_limit: f64, random: &mut Random) -> Vec<f64> {
+    let mut pick = |r: &Rotor| {
+        let part = random.next();
+        let part = if random.next() < at_limit { part.round() } else { 0.001 + 0.998 * part };
+        f64::from(r.thrust_min) + part * f64::from(r.thrust_max - r.thrust_min)
+    };
+    rotors.iter().map(&mut pick).collect()
+}
+
+/// The error of the mixer's thrusts, relative to [`size`], after checking that they are in range and honestly reported.
+fn error(rotors: &Rotors, mixer: &Mixer, asked: &Vector4<f64>) -> Vector4<f64> {
+    let given = mixer.allocate(&wrench(asked)).unwrap();
+    for (thrust, r) in given.thrusts.iter().zip(rotors.iter()) {
+        assert!(*thrust >= r.thrust_min && *thrust <= r.thrust_max);
+    }
+    let achieved = delivered(rotors, given.thrusts.iter().map(|f| f64::from(*f)));
+    assert!((vector(&given.achieved) - achieved).component_div(&size(rotors)).amax() < ROUNDING);
+    (achieved - asked).component_div(&size(rotors)).abs()
+}
+
+/// How much worse than clipping each rotor the mixer is in the roll-pitch plane, relative to [`size`].
+fn excess_over_clipping(rotors: &Rotors, mixer: &Mixer, asked: &Vector4<f64>) -> f64 {
+    let clip =
+        |(row, r): (&Vector4<f64>, &Rotor)| row.dot(asked).clamp(f64::from(r.thrust_min), f64::from(r.thrust_max));
+    let clipped = delivered(rotors, rotors.pseudo_inverse().iter().zip(rotors.iter()).map(clip));
+    let given = mixer.allocate(&wrench(asked)).unwrap();
+    let achieved = delivered(rotors, given.thrusts.iter().map(|f| f64::from(*f)));
+    (roll_pitch_error(&achieved, asked) - roll_pitch_error(&clipped, asked)) / size(rotors).yz().norm()
+}
+
 #[test]
 fn a_wrench_inside_the_polytope_is_delivered_exactly() {
     for (name, rotors) in vehicles() {
-        let (mixer, size, mut random) = (Mixer::new(&rotors), size(&rotors), Random(1));
-        let (mut worst, mut beyond_pseudo_inverse) = (0.0_f64, 0);
-        for _ in 0..100_000 {
-            // Some rotors at their limits: the wrench may lie on any face.
-            let at_limits = random.next();
-            let thrusts: Vec<f64> = rotors
-                .iter()
-                .map(|r| {
-                    let part = random.next();
-                    let part = if random.next() < at_limits { part.round() } else { 0.001 + 0.998 * part };
-                    f64::from(r.thrust_min) + part * f64::from(r.thrust_max - r.thrust_min)
-                })
-                .collect();
-            let asked = delivered(&rotors, thrusts.iter().copied());
-            let given = mixer.allocate(&wrench(&asked)).unwrap();
-            for (thrust, r) in given.thrusts.iter().zip(rotors.iter()) {
-                assert!(*thrust >= r.thrust_min && *thrust <= r.thrust_max);
-            }
-            let inside = |row: &Vector4<f64>, r: &Rotor| {
+        let (mixer, mut random) = (Mixer::new(&rotors), Random(1));
+        let (mut inside, mut on_faces, mut beyond_pseudo_inverse) = (Vector4::zeros(), Vector4::zeros(), 0);
+        for _ in 0..50_000 {
+            let asked = delivered(&rotors, within_ranges(&rotors, 0.0, &mut random));
+            inside = inside.sup(&error(&rotors, &mixer, &asked));
+            assert!(mixer.allocate(&wrench(&asked)).unwrap().is_exact());
+            let fits = |(row, r): (&Vector4<f64>, &Rotor)| {
                 let thrust = row.dot(&asked);
                 thrust >= f64::from(r.thrust_min) && thrust <= f64::from(r.thrust_max)
             };
-            let rows = rotors.pseudo_inverse().iter().zip(rotors.iter());
-            beyond_pseudo_inverse += usize::from(!rows.clone().all(|(row, r)| inside(row, r)));
-            let error = delivered(&rotors, given.thrusts.iter().map(|f| f64::from(*f))) - asked;
-            worst = worst.max(error.component_div(&size).amax());
-            assert!((vector(&given.achieved) - asked - error).component_div(&size).amax() < ROUNDING);
+            beyond_pseudo_inverse += usize::from(!rotors.pseudo_inverse().iter().zip(rotors.iter()).all(fits));
+            let at_limit = random.next();
+            let asked = delivered(&rotors, within_ranges(&rotors, at_limit, &mut random));
+            on_faces = on_faces.sup(&error(&rotors, &mixer, &asked));
         }
-        println!("{name}: worst error {worst:.1e} of the range, {beyond_pseudo_inverse} beyond the pseudo-inverse");
-        assert!(worst < ROUNDING, "{name}: {worst:e}");
-        assert!(rotors.len() == 4 || beyond_pseudo_inverse > 1000, "{name}: {beyond_pseudo_inverse}");
+        let (most, on_faces) = (inside.max(), on_faces.data.0[0]);
+        println!("{name}: inside {most:.1e}, on faces {on_faces:?}; beyond B+ {beyond_pseudo_inverse} of 50000");
+        assert!(most < ROUNDING, "{name}: {inside}");
+        // On a face, roll and pitch stay exact; thrust and yaw pay for rounding, magnified by up to 30 (see `attainable`).
+        assert!(on_faces[1] < ROUNDING && on_faces[2] < ROUNDING, "{name}: {on_faces:?}");
+        assert!(on_faces[0] < FACE_ROUNDING && on_faces[3] < FACE_ROUNDING, "{name}: {on_faces:?}");
+        assert_eq!(beyond_pseudo_inverse > 1000, rotors.len() > 4, "{name}: {beyond_pseudo_inverse}");
     }
 }
 
 #[test]
 fn in_roll_and_pitch_it_is_never_worse_than_clipping_each_rotor() {
     for (name, rotors) in vehicles() {
-        let (mixer, size, mut random) = (Mixer::new(&rotors), size(&rotors), Random(2));
+        let (mixer, mut random) = (Mixer::new(&rotors), Random(2));
         let (mut worst, mut better) = (f64::NEG_INFINITY, 0);
         for _ in 0..100_000 {
-            let asked = anywhere(&rotors, &mut random);
-            let given = mixer.allocate(&wrench(&asked)).unwrap();
-            let clip = |(row, r): (&Vector4<f64>, &Rotor)| {
-                row.dot(&asked).clamp(f64::from(r.thrust_min), f64::from(r.thrust_max))
-            };
-            let clipped = delivered(&rotors, rotors.pseudo_inverse().iter().zip(rotors.iter()).map(clip));
-            let achieved = delivered(&rotors, given.thrusts.iter().map(|f| f64::from(*f)));
-            let excess = roll_pitch_error(&achieved, &asked) - roll_pitch_error(&clipped, &asked);
-            worst = worst.max(excess / size.yz().norm());
-            better += usize::from(excess < -1e-3 * size.yz().norm());
+            let excess = excess_over_clipping(&rotors, &mixer, &anywhere(&rotors, &mut random));
+            worst = worst.max(excess);
+            better += usize::from(excess < -1e-3);
         }
         println!("{name}: worst excess {worst:.1e} of the range, clearly better {better} times in 100000");
         assert!(worst < ROUNDING, "{name}: {worst:e}");
         assert!(better > 10_000);
     }
+}
+
+#[test]
+fn vehicles_that_nobody_would_build_are_served_as_well() {
+    let mut random = Random(5);
+    let (mut served, mut inside, mut excess) = (0, 0.0_f64, f64::NEG_INFINITY);
+    while served < 1000 {
+        let mut one = || Rotor {
+            drag_coefficient: random.within(2e-8, 4e-7) as f32,
+            ..rotor(
+                random.within(-0.3, 0.3) as f32,
+                random.within(-0.3, 0.3) as f32,
+                spin(usize::from(random.next() < 0.5)),
+                [random.within(0.0, 1.0) as f32, random.within(1.5, 8.0) as f32],
+            )
+        };
+        let list: Vec<Rotor> = (0..4 + served % 5).map(|_| one()).collect();
+        let Ok(rotors) = Rotors::new(&list) else { continue };
+        served += 1;
+        let mixer = Mixer::new(&rotors);
+        for _ in 0..200 {
+            let asked = delivered(&rotors, within_ranges(&rotors, 0.0, &mut random));
+            inside = inside.max(error(&rotors, &mixer, &asked).max());
+            excess = excess.max(excess_over_clipping(&rotors, &mixer, &anywhere(&rotors, &mut random)));
+        }
+    }
+    println!("{served} random vehicles: inside {inside:.1e}, worst excess {excess:.1e}");
+    // Some are close to not spanning the wrench: there rounding counts up to 1 / INDEPENDENCE times.
+    assert!(inside < 100.0 * f64::from(f32::EPSILON) && excess < ROUNDING, "{inside:e} {excess:e}");
 }
 
 /// All ways to choose `count` of `from` items, as bit masks.
@@ -178,8 +225,7 @@ fn choices(from: usize, count: usize) -> impl Iterator<Item = u32> {
 /// The least and greatest component `objective` of the wrench when its components `rows` are `fixed`: a linear program, solved by visiting every vertex.
 fn extremes<const K: usize>(rotors: &Rotors, rows: [usize; K], fixed: [f64; K], objective: usize) -> (f64, f64) {
     let n = rotors.len();
-    let limits: Vec<(f64, f64)> =
-        rotors.iter().map(|r| (f64::from(r.thrust_min), f64::from(r.thrust_max))).collect();
+    let limits: Vec<(f64, f64)> = rotors.iter().map(|r| (f64::from(r.thrust_min), f64::from(r.thrust_max))).collect();
     let mut found = (f64::INFINITY, f64::NEG_INFINITY);
     for basis in choices(n, K) {
         let free: Vec<usize> = (0..n).filter(|i| basis >> i & 1 == 1).collect();
@@ -193,7 +239,7 @@ fn extremes<const K: usize>(rotors: &Rotors, rows: [usize; K], fixed: [f64; K], 
             }
             let sum = delivered(rotors, thrusts.iter().copied());
             let missing = SVector::<f64, K>::from_fn(|row, _| fixed[row] - sum[rows[row]]);
-            for (index, thrust) in free.iter().zip((&inverse * missing).iter()) {
+            for (index, thrust) in free.iter().zip((inverse * missing).iter()) {
                 thrusts[*index] = *thrust;
             }
             let fits = |(thrust, limit): (&f64, &(f64, f64))| *thrust > limit.0 - 1e-5 && *thrust < limit.1 + 1e-5;
@@ -260,16 +306,17 @@ fn yaw_is_given_up_first_then_thrust_and_roll_and_pitch_last() {
 fn a_small_change_of_the_wrench_is_a_small_change_of_the_thrusts() {
     for (name, rotors) in vehicles() {
         let (mixer, size, mut random) = (Mixer::new(&rotors), size(&rotors), Random(4));
-        let mut steepest = 0.0_f64;
+        let (mut steepest, step) = (0.0_f64, 1e-4);
         for _ in 0..20_000 {
             let asked = anywhere(&rotors, &mut random);
-            let moved = asked + size.map(|size| 1e-3 * random.within(-1.0, 1.0) * size);
+            let moved = asked + size.map(|size| step * random.within(-1.0, 1.0) * size);
             let (a, b) = (mixer.allocate(&wrench(&asked)).unwrap(), mixer.allocate(&wrench(&moved)).unwrap());
             let change = a.thrusts.iter().zip(&b.thrusts).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
-            steepest = steepest.max(change / (1e-3 * size.x));
+            steepest = steepest.max(change / (step * size.x));
         }
         println!("{name}: thrusts change at most {steepest:.1} times as much as the wrench");
-        assert!(steepest < 20.0, "{name}: {steepest}");
+        // A jump by 0.5 % of the greatest thrust would show as 50. Five rotors have a narrow face with a slope of 28.
+        assert!(steepest < 50.0, "{name}: {steepest}");
     }
 }
 

@@ -231,9 +231,15 @@ impl Mixer {
     }
 }
 
+<<<<<<< HEAD
 /// `value` moved into a range; the middle of a range that rounding has turned inside out.
 fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
     if least <= greatest { value.max(least).min(greatest) } else { 0.5 * (least + greatest) }
+=======
+/// `value` moved into a range.
+fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
+    value.max(least).min(greatest)
+>>>>>>> allocation
 }
 
 /// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns.
