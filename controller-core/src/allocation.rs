@@ -19,19 +19,12 @@ pub mod attainable;
 pub mod curve;
 pub mod geometry;
 pub mod mixer;
-<<<<<<< HEAD
-
-=======
 pub mod support;
->>>>>>> allocation
 
 pub use curve::{Battery, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
 pub use mixer::{Allocation, Mixer};
-<<<<<<< HEAD
-=======
 pub use support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
->>>>>>> allocation
 
 use heapless::Vec;
 

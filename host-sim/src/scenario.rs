@@ -39,7 +39,17 @@ pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// What a scenario file may hold at its top level.
 const SECTIONS: [&str; 12] = [
-    "name", "duration", "vehicle", "limits", "gains", "control", "plant", "rotors", "sampling", "initial", "reference",
+    "name",
+    "duration",
+    "vehicle",
+    "limits",
+    "gains",
+    "control",
+    "plant",
+    "rotors",
+    "sampling",
+    "initial",
+    "reference",
     "reference_bounds",
 ];
 

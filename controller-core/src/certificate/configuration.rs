@@ -97,6 +97,15 @@ impl Configuration {
     }
 }
 
+/// Why a configuration is not certified.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refused {
+    /// Its certificate does not hold; look there for the inequality that fails.
+    Fails(Certificate),
+    /// A bound is beyond double precision.
+    Undefined(ParameterError),
+}
+
 /// A configuration whose certificate holds. There is no other way to make one than to certify it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certified {
@@ -108,10 +117,10 @@ impl Certified {
     /// Certifies `configuration`.
     ///
     /// # Errors
-    /// The certificate, if it does not hold: it says which inequality fails and by how much.
-    pub fn new(configuration: Configuration) -> Result<Self, Certificate> {
-        let certificate = Certificate::new(&configuration);
-        if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(certificate) }
+    /// [`Refused`] says which inequality fails and by how much.
+    pub fn new(configuration: Configuration) -> Result<Self, Refused> {
+        let certificate = Certificate::new(&configuration).map_err(Refused::Undefined)?;
+        if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(Refused::Fails(certificate)) }
     }
 
     /// What was certified.
