@@ -8,7 +8,10 @@
 //! instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points lie a
 //! hundred times further out than its curve does.
 //!
-//! What it cannot do: choose the times, or keep the path from overshooting between points. About 11 kB in memory.
+//! What it cannot do: choose the times, wait (two equal points in a row are passed, not stopped at), or keep the path
+//! from overshooting between points. Legs of very different duration overshoot most, because bending a long one costs
+//! little: 20 s between two equal points, with legs of 3 m in 5 s before and after, swing out by 11 m. About 10 kB in
+//! memory.
 
 use super::segment::{Anchor, Segment, Suprema};
 use super::spline::{self, Derivatives, REST, Span};
