@@ -1,10 +1,10 @@
 //! Polynomials through given points, smooth to snap.
 //!
 //! At rest before the first point and after the last; through the others without stopping, on the path of degree 9 that
-//! minimises the squared fifth derivative ([`super::spline`]). A heading belongs to every point; between two points it
+//! minimises the squared fifth derivative (`reference::spline`). A heading belongs to every point; between two points it
 //! turns the shorter way round, an exact half turn counter-clockwise, as smoothly as the position moves.
 //!
-//! World frame; m, s, rad. Bounds come from the polynomials' convex hulls ([`super::bernstein`]), so they hold at every
+//! World frame; m, s, rad. Bounds come from the polynomials' convex hulls (`reference::bernstein`), so they hold at every
 //! instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points lie a
 //! hundred times further out than its curve does.
 //!
