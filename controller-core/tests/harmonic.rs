@@ -10,6 +10,8 @@ use support::{Random, bounds, demands, derivatives, psi, slope, turn};
 
 const THIRTY_DAYS_US: u64 = 30 * 24 * 3600 * 1_000_000;
 
+/// The contract's scenario file, digit for digit.
+#[expect(clippy::approx_constant, reason = "the file's own numbers are what is flown")]
 fn paper() -> HarmonicParameters {
     HarmonicParameters {
         center: [-3.0, 1.0, 4.5],
