@@ -71,12 +71,6 @@ pub fn tanh(x: f32) -> f32 {
     (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
 }
 
-/// Square root in double precision, correctly rounded, for configuration time.
-#[must_use]
-pub fn sqrt_f64(x: f64) -> f64 {
-    libm::sqrt(x)
-}
-
 /// e^x, for configuration time (not used in a tick).
 #[must_use]
 pub fn exp(x: f64) -> f64 {
