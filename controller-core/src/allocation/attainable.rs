@@ -21,11 +21,6 @@
 //! with two edges per rotor; [`Polygon::nearest`] projects onto it.
 //!
 //! Normals are worked out in f64 with the wrench scaled as in [`Rotors`]; a tick works in f32. Where d nearly runs along a
-<<<<<<< HEAD
-//! face, a.d is small and rounding in a.w grows to a large error in s, which could cut off what is attainable. So each
-//! slab is widened by that rounding: ranges err to the outside, by [`ROUNDING`] of the polytope's size across the face,
-//! and the mixer's last clip takes that back.
-=======
 //! face, a.d is small, and the rounding of a.w becomes a large error in s. Three rules keep that from mattering:
 //!
 //! - a *steep* slab (|a.d| < [`STEEP`] |a||d|) is widened by that rounding, so that it never cuts off what is attainable;
@@ -33,22 +28,10 @@
 //! - a slab with |a.d| below [`PARALLEL`] is left out.
 //!
 //! So a range errs by rounding across every face, whatever the face's slope; the mixer's last clip takes that back.
->>>>>>> allocation
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotors};
 use crate::math;
-<<<<<<< HEAD
-use heapless::Vec;
-use nalgebra::{Vector2, Vector3, Vector4};
-
-/// What evaluating a.w in f32 may lose, relative to the largest |a|.|w| in the polytope: four products, four sums, and
-/// the rounding of w and a themselves.
-const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-
-/// A face whose normal is this close to a right angle to the line does not bound movement along it: [`ROUNDING`] hides it.
-const PARALLEL: f64 = 1e-7;
-=======
 use core::cell::Cell;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -62,7 +45,6 @@ const STEEP: f64 = 1.0 / 30.0;
 
 /// The cosine below which a face does not bound movement along d: its widening hides the polytope.
 const PARALLEL: f64 = 1e-6;
->>>>>>> allocation
 
 /// A column of B with its rotor's range, the wrench scaled.
 #[derive(Debug, Clone, Copy)]
@@ -104,21 +86,6 @@ impl<const N: usize> Slabs<N> {
     ) -> Self {
         let direction = direction.component_mul(rotors.scale());
         let size: Vector4<f64> = generators.iter().map(|generator| generator.column.abs() * generator.high).sum();
-<<<<<<< HEAD
-        let mut slabs = Vec::new();
-        let mut add = |a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>| {
-            let normal = normal(a, b, c);
-            let along = normal.dot(&direction);
-            let limit = PARALLEL * math::sqrt_f64(normal.norm_squared() * direction.norm_squared());
-            // Dependent triples have no normal to speak of; the faces they lie in come from other triples.
-            if along.abs() > limit {
-                let normal = normal / along;
-                let (low, high) = extent(generators, &normal);
-                let slack = ROUNDING * normal.abs().dot(&size);
-                let normal = normal.component_mul(rotors.scale()).map(|x| x as f32);
-                // N counts every triple there is.
-                let _ = slabs.push(Slab { normal, low: (low - slack) as f32, high: (high + slack) as f32 });
-=======
         let mut slabs: Vec<(f64, Slab), N> = Vec::new();
         let mut add = |a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>| {
             let normal = normal(a, b, c);
@@ -133,7 +100,6 @@ impl<const N: usize> Slabs<N> {
                 // N counts every triple there is.
                 let slab = Slab { normal, low: (low - slack) as f32, high: (high + slack) as f32 };
                 let _ = slabs.push((cosine, slab));
->>>>>>> allocation
             }
         };
         for (i, a) in generators.iter().enumerate() {
@@ -144,16 +110,6 @@ impl<const N: usize> Slabs<N> {
                 }
             }
         }
-<<<<<<< HEAD
-        Self(slabs)
-    }
-
-    /// The least and greatest s with `wrench` - s d in the zonotope. If there is none, least exceeds greatest.
-    pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
-        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
-            let at = slab.normal.dot(wrench);
-            (least.max(at - slab.high), greatest.min(at - slab.low))
-=======
         // Gentlest first.
         for _ in 0..N {
             for pair in Cell::from_mut(slabs.as_mut_slice()).as_slice_of_cells().windows(2) {
@@ -164,7 +120,7 @@ impl<const N: usize> Slabs<N> {
                 }
             }
         }
-        Self(collected(slabs.into_iter().map(|(_, slab)| slab)))
+        Self(collected(slabs.iter().map(|(_, slab)| *slab)))
     }
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if there is none, nearly so.
@@ -173,13 +129,12 @@ impl<const N: usize> Slabs<N> {
             let at = slab.normal.dot(wrench);
             let into = |s: f32| s.max(least).min(greatest);
             (into(at - slab.high), into(at - slab.low))
->>>>>>> allocation
         })
     }
 }
 
 /// The vector normal to three others in four dimensions: the cross product's bigger sister.
-fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
+pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
     let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
     Vector4::new(
         minor(|v| Vector3::new(v.y, v.z, v.w)),
@@ -211,11 +166,7 @@ struct Edge {
 
 impl Edge {
     fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
-<<<<<<< HEAD
-        let part = (point - self.start).dot(&self.per_length).max(0.0).min(1.0);
-=======
         let part = (point - self.start).dot(&self.per_length).clamp(0.0, 1.0);
->>>>>>> allocation
         self.start + self.along * part
     }
 }

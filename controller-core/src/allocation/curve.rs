@@ -56,15 +56,9 @@ impl ThrustCurve {
     /// Thrusts out of reach give the nearest command; a NaN stops the rotor.
     #[must_use]
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
-<<<<<<< HEAD
-        let fraction = (thrust / self.thrust_max).max(0.0).min(1.0);
-        let root = math::sqrt(self.linear * self.linear + 4.0 * (1.0 - self.linear) * fraction);
-        // Nothing asked for: without this, a = 0 divides zero by zero.
-=======
         let fraction = (thrust / self.thrust_max).clamp(0.0, 1.0);
         let root = math::sqrt(self.linear * self.linear + 4.0 * (1.0 - self.linear) * fraction);
         // False for nothing asked for, where a = 0 divides zero by zero, and for a NaN.
->>>>>>> allocation
         if fraction > 0.0 { (2.0 * fraction / (self.linear + root) * ratio).min(1.0) } else { 0.0 }
     }
 
@@ -99,11 +93,7 @@ impl Battery {
     pub fn ratio(&self, voltage: f32, age: u64) -> f32 {
         // Also false for a NaN.
         let plausible = voltage > PLAUSIBLE * self.nominal && voltage * PLAUSIBLE < self.nominal;
-<<<<<<< HEAD
-        if plausible && age < STALE_AFTER { (self.nominal / voltage).max(RATIO_MIN).min(RATIO_MAX) } else { 1.0 }
-=======
         if plausible && age < STALE_AFTER { (self.nominal / voltage).clamp(RATIO_MIN, RATIO_MAX) } else { 1.0 }
->>>>>>> allocation
     }
 }
 

@@ -256,17 +256,7 @@ mod tests {
     use super::*;
 
     fn hummingbird() -> QuadX {
-<<<<<<< HEAD
-        QuadX {
-            arm: 0.17,
-            thrust_coefficient: 5.57e-6,
-            drag_coefficient: 1.36e-7,
-            speed_min: 0.0,
-            speed_max: 1500.0,
-        }
-=======
         QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 }
->>>>>>> allocation
     }
 
     fn refused(change: impl Fn(&mut [Rotor])) -> ParameterError {
@@ -320,14 +310,10 @@ mod tests {
         let case = |field, reason| ParameterError { field, reason };
         assert_eq!(refused(|r| r[2].position.x = f32::NAN), case("rotors.position[2]", Reason::NotFinite));
         assert_eq!(refused(|r| r[2].position.z = 1e3), case("rotors.position[2]", Reason::NotBelow(100.0)));
-<<<<<<< HEAD
-        assert_eq!(refused(|r| r[0].thrust_coefficient = 0.0), case("rotors.thrust_coefficient[0]", Reason::NotPositive));
-=======
         assert_eq!(
             refused(|r| r[0].thrust_coefficient = 0.0),
             case("rotors.thrust_coefficient[0]", Reason::NotPositive)
         );
->>>>>>> allocation
         assert_eq!(refused(|r| r[3].drag_coefficient = -1.0), case("rotors.drag_coefficient[3]", Reason::NotPositive));
         assert_eq!(refused(|r| r[1].thrust_min = -0.1), case("rotors.thrust_min[1]", Reason::Negative));
         assert_eq!(refused(|r| r[1].thrust_max = f32::INFINITY), case("rotors.thrust_max[1]", Reason::NotFinite));
