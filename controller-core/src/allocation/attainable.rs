@@ -120,7 +120,7 @@ impl<const N: usize> Slabs<N> {
                 }
             }
         }
-        Self(collected(slabs.into_iter().map(|(_, slab)| slab)))
+        Self(collected(slabs.iter().map(|(_, slab)| *slab)))
     }
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if there is none, nearly so.
@@ -134,7 +134,7 @@ impl<const N: usize> Slabs<N> {
 }
 
 /// The vector normal to three others in four dimensions: the cross product's bigger sister.
-fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
+pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
     let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
     Vector4::new(
         minor(|v| Vector3::new(v.y, v.z, v.w)),

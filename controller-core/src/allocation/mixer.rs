@@ -3,7 +3,7 @@
 //! For w = (T, tau) and rotors f_min <= f <= f_max with w = B f (see [`super`]):
 //!
 //! 1. f = B+ w. If every rotor is within its range, done: nearly every tick ends here.
-//! 2. Otherwise three projections, each onto exactly what the one before leaves (see [`super::attainable`]):
+//! 2. Otherwise three projections, each onto exactly what the one before leaves (see `attainable.rs`):
 //!    - (tau_x, tau_y) to the nearest point of the roll-pitch polygon;
 //!    - T to the range it has at that roll and pitch, yaw being free;
 //!    - tau_z to the range it has at that roll, pitch and thrust.
@@ -22,13 +22,13 @@
 //!
 //! It does not know the rotors' lag, nor what they delivered last tick.
 
-use super::attainable::{Polygon, Slabs, generators};
+use super::attainable::{Polygon, Slabs, generators, normal};
 use super::collected;
 use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
 use crate::error::InputError;
 use crate::state::{STATE_RANGE, Wrench, check_vector};
 use heapless::Vec;
-use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
+use nalgebra::{Vector2, Vector3, Vector4};
 
 /// Pairs of eight rotors.
 const PAIRS: usize = 28;
@@ -121,11 +121,10 @@ impl Mixer {
             }
         };
         let actuators = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse()).map(actuator);
-        let (carrying, inverse) = carriers(rotors);
-        let row = |(rotor, row): (&usize, Vector4<f64>)| Carrier { rotor: *rotor, row: single(&row) };
-        let rows = inverse.row_iter().map(|row| row.transpose().component_mul(rotors.scale()));
-        let spare = (0..rotors.len()).filter(|index| !carrying.contains(index));
-        let order: Vec<usize, ROTORS_MAX> = collected(spare.chain(carrying.iter().copied()));
+        let carriers = carriers(rotors);
+        let carrying = || carriers.iter().map(|carrier| carrier.rotor);
+        let spare = (0..rotors.len()).filter(|index| !carrying().any(|carrier| carrier == *index));
+        let order: Vec<usize, ROTORS_MAX> = collected(spare.chain(carrying()));
         let mut spares = Vec::new();
         for (place, rotor) in order.iter().enumerate().take(rotors.len().saturating_sub(ROTORS_MIN)) {
             if let Some(column) = rotors.effectiveness().get(*rotor) {
@@ -142,7 +141,7 @@ impl Mixer {
             thrust: Slabs::new(rotors, &all, Some(Vector4::w()), -Vector4::x()),
             yaw: Slabs::new(rotors, &all, None, -Vector4::w()),
             spares,
-            carriers: collected(carrying.iter().zip(rows).map(row)),
+            carriers,
         }
     }
 
@@ -207,7 +206,7 @@ impl Mixer {
         self.clip(&mut thrusts);
         // Rounding so far is of the size of the wrench asked for; what remains is of the size of the error.
         let missing = wrench - self.sum(&thrusts);
-        for (thrust, correction) in thrusts.iter_mut().zip(self.preferred(&missing)) {
+        for (thrust, correction) in thrusts.iter_mut().zip(&self.preferred(&missing)) {
             *thrust += correction;
         }
         self.clip(&mut thrusts);
@@ -236,28 +235,30 @@ fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
     value.max(least).min(greatest)
 }
 
-/// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns.
+/// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.
 ///
 /// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
 /// handing its thrust over to them never magnifies an error.
-fn carriers(rotors: &Rotors) -> (Vec<usize, ROTORS_MIN>, Matrix4<f64>) {
-    let mut best = (Vec::new(), Matrix4::identity(), 0.0);
+fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
+    let (mut best, mut largest) = (Vec::new(), 0.0);
     for choice in 0_u32..1 << rotors.len() {
-        if choice.count_ones() != 4 {
-            continue;
-        }
-        let chosen = collected((0..rotors.len()).filter(|index| choice >> index & 1 == 1));
-        let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| choice >> index & 1 == 1);
-        let mut matrix = Matrix4::zeros();
-        for (mut place, (_, column)) in matrix.column_iter_mut().zip(columns) {
-            place.copy_from(&column.component_mul(rotors.scale()));
-        }
-        let volume = matrix.determinant().abs();
-        if volume > best.2
-            && let Some(inverse) = matrix.try_inverse()
-        {
-            best = (chosen, inverse, volume);
+        let chosen = |index: &usize| choice >> index & 1 == 1;
+        let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| chosen(index));
+        let columns: Vec<Vector4<f64>, ROTORS_MAX> =
+            collected(columns.map(|(_, column)| column.component_mul(rotors.scale())));
+        if let [a, b, c, d] = columns.as_slice() {
+            let volume = normal(b, c, d).dot(a).abs();
+            if volume > largest {
+                // The inverse's row for one column is normal to the other three.
+                let rows = [(a, normal(b, c, d)), (b, normal(a, c, d)), (c, normal(a, b, d)), (d, normal(a, b, c))];
+                let row = |(column, normal): &(&Vector4<f64>, Vector4<f64>)| {
+                    (normal / normal.dot(column)).component_mul(rotors.scale()).map(|x| x as f32)
+                };
+                let indices = (0..rotors.len()).filter(chosen);
+                best = collected(indices.zip(rows.iter().map(row)).map(|(rotor, row)| Carrier { rotor, row }));
+                largest = volume;
+            }
         }
     }
-    (best.0, best.1)
+    best
 }
