@@ -10,12 +10,12 @@
 //! body z. The wrenches they can deliver, the *polytope*, are the image of a box.
 //!
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
-//! - [`attainable`]: the polytope as half-spaces, arranged for the three questions the mixer asks;
+//! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks;
 //! - [`mixer`]: wrench to rotor thrusts, giving up yaw first, then thrust, roll and pitch last;
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
 //! - [`support`]: which thrusts a whole set of wrenches can ask of each rotor: the certificate's last link.
 
-pub mod attainable;
+mod attainable;
 pub mod curve;
 pub mod geometry;
 pub mod mixer;
