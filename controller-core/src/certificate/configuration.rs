@@ -98,6 +98,7 @@ impl Configuration {
 }
 
 /// Why a configuration is not certified.
+#[allow(clippy::large_enum_variant)] // without an allocator there is nowhere else to put the certificate
 #[derive(Debug, Clone, PartialEq)]
 pub enum Refused {
     /// Its certificate does not hold; look there for the inequality that fails.
@@ -118,6 +119,7 @@ impl Certified {
     ///
     /// # Errors
     /// [`Refused`] says which inequality fails and by how much.
+    #[allow(clippy::result_large_err)] // as above, and it happens once, on the ground
     pub fn new(configuration: Configuration) -> Result<Self, Refused> {
         let certificate = Certificate::new(&configuration).map_err(Refused::Undefined)?;
         if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(Refused::Fails(certificate)) }

@@ -70,7 +70,9 @@ pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorRe
 
 fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
     let mut reports = Vec::new();
-    for ((demand, row), (least, greatest)) in demands(rotors, commands).into_iter().zip(rotors.pseudo_inverse()).zip(NAMES) {
+    for ((demand, row), (least, greatest)) in
+        demands(rotors, commands).into_iter().zip(rotors.pseudo_inverse()).zip(NAMES)
+    {
         let share = row.x * hover;
         let report = RotorReport {
             demand,
