@@ -124,6 +124,12 @@ impl Scenario {
         Ok(Self { name, timing, configuration, rotors, delay_steps, initial, reference, trajectory })
     }
 
+    /// From a tick to the moment its wrench acts, s.
+    #[must_use]
+    pub fn delay(&self) -> f64 {
+        self.delay_steps as f64 * self.timing.step()
+    }
+
     /// Whether `other` is the same flight, whatever its name.
     #[must_use]
     pub fn flies_like(&self, other: &Self) -> bool {
