@@ -48,9 +48,10 @@ fn verdict(scenario: &Scenario, certificate: &Certificate) -> String {
     let tightest = certificate.tightest().map_or(String::new(), |tightest| {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
-    let projection = scenario.configuration.thrust_floor().map_or(String::new(), |floor| {
-        format!("thrust projection on, floor {} N\n", short(f64::from(floor)))
-    });
+    let projection = scenario
+        .configuration
+        .thrust_floor()
+        .map_or(String::new(), |floor| format!("thrust projection on, floor {} N\n", short(f64::from(floor))));
     format!(
         "{}: {decision}\nas printed: {}\nsharp: {}\n{tightest}{projection}",
         scenario.name,

@@ -51,7 +51,8 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
-        let cases = [(0.0, "0"), (10.0, "10"), (1.234_56, "1.235"), (1234.56, "1235"), (1.5e-5, "1.50e-5"), (0.5, "0.5")];
+        let cases =
+            [(0.0, "0"), (10.0, "10"), (1.234_56, "1.235"), (1234.56, "1235"), (1.5e-5, "1.50e-5"), (0.5, "0.5")];
         for (value, text) in cases {
             assert_eq!(short(value), text);
         }

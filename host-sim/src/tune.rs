@@ -57,7 +57,7 @@ pub struct Effort {
 }
 
 /// What the search found.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Tuned {
     /// The scenario with the gains found.
     pub scenario: Scenario,

@@ -88,8 +88,7 @@ impl Judge {
         let configuration = &self.scenario.configuration;
         let [k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, floor] = point.map(|x| x.exp() as f32);
         let GainParameters { delta, alpha, .. } = **configuration.gains();
-        let parameters =
-            GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
+        let parameters = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
         let gains = Gains::new(parameters, configuration.vehicle()).ok()?;
         let configuration = configuration.with_gains(gains).ok()?;
         let configuration = if self.requirements.projection {
@@ -164,7 +163,11 @@ impl Judge {
             .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
             .max(flown.clipped as f64);
         if beyond > 0.0 {
-            return Err((0, beyond, "the file's flight: errors beyond those asked for, or a clipped command".to_owned()));
+            return Err((
+                0,
+                beyond,
+                "the file's flight: errors beyond those asked for, or a clipped command".to_owned(),
+            ));
         }
         Ok(())
     }
