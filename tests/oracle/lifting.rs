@@ -50,12 +50,8 @@ pub fn mrp(q: &Vector4<f64>) -> Vector3<f64> {
 /// Q(R), both unit quaternions of a rotation matrix, by Shepperd's method.
 pub fn lifts(r: &Matrix3<f64>) -> [Vector4<f64>; 2] {
     let trace = r.trace();
-    let squares = [
-        1.0 + trace,
-        1.0 + 2.0 * r[(0, 0)] - trace,
-        1.0 + 2.0 * r[(1, 1)] - trace,
-        1.0 + 2.0 * r[(2, 2)] - trace,
-    ];
+    let squares =
+        [1.0 + trace, 1.0 + 2.0 * r[(0, 0)] - trace, 1.0 + 2.0 * r[(1, 1)] - trace, 1.0 + 2.0 * r[(2, 2)] - trace];
     let largest = (0..4).fold(0, |best, i| if squares[i] > squares[best] { i } else { best });
     let (x, y, z) = (r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
     let (xy, xz, yz) = (r[(0, 1)] + r[(1, 0)], r[(0, 2)] + r[(2, 0)], r[(1, 2)] + r[(2, 1)]);
