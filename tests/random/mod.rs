@@ -111,10 +111,16 @@ pub fn attitude(rng: &mut ChaCha8Rng) -> Quaternion<f32> {
     }
 }
 
+/// A heading anywhere on the circle, at rest.
+pub fn heading_at_rest(rng: &mut ChaCha8Rng) -> Heading {
+    let (sin, cos) = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI).sin_cos();
+    Heading::new(Vector2::new(cos, sin), 0.0, 0.0).unwrap()
+}
+
 /// A heading anywhere on the circle, turning at up to 8 rad/s and 30 rad/s^2.
 pub fn heading(rng: &mut ChaCha8Rng) -> Heading {
-    let (sin, cos) = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI).sin_cos();
-    Heading::new(Vector2::new(cos, sin), rng.random_range(-8.0..8.0), rng.random_range(-30.0..30.0)).unwrap()
+    let direction = heading_at_rest(rng).direction();
+    Heading::new(direction, rng.random_range(-8.0..8.0), rng.random_range(-30.0..30.0)).unwrap()
 }
 
 /// A reference in a generous Omega_r: K_a12 = 6 m/s^2, K_a3 = 0.8 (g - M_p), jerk to 20 m/s^3, snap to 60 m/s^4.
