@@ -10,20 +10,14 @@ use controller_core::controller::Controller;
 use controller_core::heading::Heading;
 use controller_core::mrp;
 use controller_core::reference::Reference;
-use nalgebra::{Matrix3, Quaternion, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 use oracle::lifting;
+use oracle::rounding::{ULP, vector4};
 use rand::RngExt;
-
-/// One rounding of single precision, relative.
-const ULP: f64 = 1.0 / 16_777_216.0;
 
 /// The greatest distance between entries.
 fn apart(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     (a - b).amax()
-}
-
-fn vector4(q: &Quaternion<f32>) -> Vector4<f64> {
-    Vector4::new(q.w.into(), q.i.into(), q.j.into(), q.k.into())
 }
 
 /// Rotation entries are sums of at most six products below two, each with a rounding or two: 16 roundings at most. The
@@ -75,7 +69,7 @@ fn parameters_move_as_their_kinematics_say() {
         let omega: Vector3<f64> = random::vector(&mut rng, 20.0).cast();
         // theta along R' = R [omega]x, by turning the rotation matrix and lifting it again on the same branch.
         let turned = |e: f64| {
-            let turn = nalgebra::Rotation3::new(omega * e).into_inner();
+            let turn = Rotation3::new(omega * e).into_inner();
             lifting::mrp(&lifting::nearest(&q, &(lifting::rotation(&q) * turn)))
         };
         // Second-order differences: truncation (omega e)^2 (1 + theta^2)^2 ~ 1e-7, relative to the derivative.

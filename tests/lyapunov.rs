@@ -18,7 +18,7 @@
 //!
 //!   [beta_theta y |sigma_omega| + k_omega min(d^2 / gamma_theta, alpha_theta d)] / (2 y |s_omega|).
 //!
-//! Table I with Y = 20 rad/s and |omega_d| <= 10 rad/s: a > 0.44 b, where the paper's two conditions ask for 0.10 b.
+//! Table I with Y = 20 rad/s and |omega_d| <= 10 rad/s: a > 0.122 b, where the paper's two conditions ask for 0.099 b.
 //! Across jumps, sigma_omega taken componentwise reaches sqrt(3) M*: a > sqrt(3) b M* alpha_theta / (gamma_theta delta
 //! (2 + delta)), 0.022 b. `Weights::sufficient` takes the greatest of all and 1 % more.
 
@@ -390,19 +390,21 @@ fn v_2_falls_across_jumps() {
     }
 }
 
+/// Below this, in m^2/s^3 or J, single precision rather than the law decides which way a Lyapunov function goes.
+const FLOOR: f64 = 1e-9;
+
 #[test]
 fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
-    const TICKS: u32 = 100;
     let vehicle = random::paper_vehicle();
     let gains = random::paper_gains(&vehicle);
     let law = Law::new(&vehicle, &gains);
     let mut rng = random::generator(73);
     let (mut rises, mut samples) = (0_u32, 0_u32);
-    for _ in 0..1_000 {
+    for _ in 0..400 {
         let mut x = random_translation(&mut rng, &law, 30.0);
         let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
-        for _ in 0..TICKS {
-            let before = x.v_1(&law);
+        let mut before = x.v_1(&law);
+        while before > FLOOR {
             let feedback = x.tick(&mut controller);
             // Midpoint steps of the error dynamics with the thrust where it should be; 20 of them in a tick.
             let h = PERIOD / 20.0;
@@ -410,37 +412,55 @@ fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
                 let along = |h: f64, k: [Vector3<f64>; 4]| Translation(std::array::from_fn(|i| x.0[i] + h * k[i]));
                 x = along(h, along(h / 2.0, x.flow(&law, feedback)).flow(&law, feedback));
             }
-            rises += u32::from(x.v_1(&law) > before);
+            let now = x.v_1(&law);
+            rises += u32::from(now > before);
             samples += 1;
+            before = now;
         }
     }
-    println!("held inputs: V_1 rises in {rises} of {samples} samples");
-    assert!(rises < samples / 100);
+    println!("inputs held at 100 Hz, thrust along u: V_1 rises in {rises} of {samples} samples");
+    assert!(rises < samples / 1000);
 }
 
 #[test]
 fn v_2_seldom_rises_with_inputs_held_at_100_hz() {
-    const TICKS: u32 = 100;
+    const TICKS: u32 = 600;
     let vehicle = random::paper_vehicle();
     let gains = random::paper_gains(&vehicle);
     let law = Law::new(&vehicle, &gains);
     let weights = Weights::sufficient(&law);
     let mut rng = random::generator(74);
-    let (mut rises, mut samples) = (0_u32, 0_u32);
-    for _ in 0..1_000 {
+    // Violent samples, rises of V_1 and of V_2 there: first from rest at the reference, then from far and fast.
+    let mut counts = [[0_u32; 3]; 2];
+    for number in 0..1_000 {
+        let [samples, rises_1, rises_2] = &mut counts[number % 2];
         let mut body = Body::resting(Vector3::zeros(), random::attitude(&mut rng).cast().normalize());
         body.angular_velocity = random_rate_error(&mut rng);
+        if number % 2 == 1 {
+            body.position = random::vector(&mut rng, 20.0).cast();
+            body.velocity = random::vector(&mut rng, 10.0).cast();
+        }
         let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
-        let mut before = f64::INFINITY;
+        let (mut v_1, mut v_2, mut violent) = (f64::INFINITY, f64::INFINITY, true);
         for _ in 0..TICKS {
-            let (wrench, diagnostics) = controller.step(&body.state(), &hover()).unwrap();
-            let now = weights.v_2(&law, diagnostics.mrp.cast(), diagnostics.angular_velocity_error.cast());
-            rises += u32::from(now > before);
-            samples += 1;
-            before = now;
+            let (wrench, d) = controller.step(&body.state(), &hover()).unwrap();
+            let errors = [d.position_error, d.velocity_error, d.filtered, d.intermediate];
+            let now = Translation(errors.map(|v| v.cast())).v_1(&law);
+            *samples += u32::from(violent);
+            *rises_1 += u32::from(violent && now > v_1);
+            v_1 = now;
+            let now = weights.v_2(&law, d.mrp.cast(), d.angular_velocity_error.cast());
+            *rises_2 += u32::from(violent && now > v_2);
+            v_2 = now;
+            violent = d.mrp.norm() > 0.05 || d.angular_velocity_error.norm() > 0.5;
             body.advance(&vehicle, &wrench, PERIOD, 5);
         }
     }
-    println!("held inputs: V_2 rises in {rises} of {samples} samples");
-    assert!(rises < samples / 100);
+    for (from, [samples, rises_1, rises_2]) in ["rest at the reference", "far and fast"].iter().zip(counts) {
+        println!(
+            "inputs held at 100 Hz, whole loop from any attitude and spin, {from}: V_2 rises in {rises_2} of {samples} \
+             violent samples, V_1 (which the attitude error drives) in {rises_1}"
+        );
+        assert!(rises_2 < samples / 500);
+    }
 }

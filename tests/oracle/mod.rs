@@ -12,6 +12,7 @@
 
 pub mod desired;
 pub mod lifting;
+pub mod rounding;
 
 use controller_core::{gains::Gains, vehicle::Vehicle};
 use desired::Command;
