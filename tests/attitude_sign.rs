@@ -11,7 +11,7 @@ fn output_and_memory_do_not_depend_on_the_sign_of_the_quaternion() {
     for number in 0..200 {
         let vehicle = random::vehicle(&mut rng);
         let gains = random::gains(&mut rng, &vehicle);
-        let mut one = Controller::new(vehicle, gains, 0.01).unwrap();
+        let mut one = Controller::uncertified(vehicle, gains, None, 0.01).unwrap();
         let mut other = one.clone();
         let mut reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);

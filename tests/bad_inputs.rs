@@ -77,7 +77,7 @@ fn a_bad_input_names_its_field_and_leaves_no_trace() {
     for _ in 0..200 {
         let vehicle = random::vehicle(&mut rng);
         let gains = random::gains(&mut rng, &vehicle);
-        let mut disturbed = Controller::new(vehicle, gains, 0.01).unwrap();
+        let mut disturbed = Controller::uncertified(vehicle, gains, None, 0.01).unwrap();
         let mut spared = disturbed.clone();
         let mut reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);

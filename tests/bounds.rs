@@ -46,7 +46,7 @@ fn filter_states_stay_in_their_box_to_the_last_bit() {
     for number in 0..300 {
         let vehicle = random::vehicle(&mut rng);
         let gains = random::gains(&mut rng, &vehicle);
-        let mut controller = Controller::new(vehicle, gains, period(&mut rng)).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, period(&mut rng)).unwrap();
         let filter = FilterState {
             filtered: random::in_box(&mut rng, gains.m_p),
             intermediate: random::in_box(&mut rng, gains.m_p),
@@ -115,10 +115,13 @@ fn thrust_stays_in_theorem_1s_interval_at_any_finite_state() {
             attitude: random::attitude(&mut rng),
             angular_velocity: any_magnitude(&mut rng),
         };
-        let mut controller = Controller::new(vehicle, gains, 0.01).unwrap();
+        let thrust_floor = random::thrust_floor(&mut rng, &vehicle, &gains);
+        let mut controller = Controller::uncertified(vehicle, gains, thrust_floor, 0.01).unwrap();
         controller.restore(Memory { filter, lift: None });
         let (wrench, _) = controller.step(&state, &reference).unwrap();
         let (least, most) = thrust_interval(&vehicle, &gains, &reference);
+        // The projection trades the lower bound for its floor.
+        let least = thrust_floor.map_or(least, f64::from);
         // u is a sum of three terms and T a rounded norm of it: four roundings of the largest magnitude.
         let rounding = 4.0 / 16_777_216.0 * most;
         let thrust = f64::from(wrench.thrust);
@@ -147,7 +150,7 @@ fn a_state_beyond_the_greatest_magnitude_is_a_typed_error() {
             _ => (&mut state.angular_velocity, "state.angular_velocity"),
         };
         vector[axis] = sign * beyond;
-        let mut controller = Controller::new(vehicle, gains, 0.01).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, 0.01).unwrap();
         assert_eq!(controller.step(&state, &reference).unwrap_err(), InputError::OutOfRange { field });
     }
 }

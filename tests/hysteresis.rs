@@ -36,7 +36,7 @@ fn changes_of_sign(delta: f32) -> Vec<u32> {
         // R_d is the identity at the start: the attitude is the attitude error.
         let half_turn = Quaternion::from_imag(random::direction(&mut rng).cast::<f64>().normalize());
         let mut body = Body::resting(Vector3::zeros(), half_turn);
-        let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
         let mut changes = 0;
         for _ in 0..TICKS {
             let noise = UnitQuaternion::from_scaled_axis(normal(&mut rng) * 1.0_f64.to_radians());

@@ -27,6 +27,7 @@ struct Case {
     law: Law,
     vehicle: Vehicle,
     gains: Gains,
+    thrust_floor: Option<f32>,
     state: State,
     reference: Reference,
     memory: Memory,
@@ -34,7 +35,8 @@ struct Case {
 
 /// A random tick; in one of four the attitude error is within 0.1 rad of a half turn, often extremely near.
 fn random_case(rng: &mut ChaCha8Rng, vehicle: Vehicle, gains: Gains) -> Case {
-    let law = Law::new(&vehicle, &gains);
+    let thrust_floor = random::thrust_floor(rng, &vehicle, &gains);
+    let law = Law { thrust_floor: thrust_floor.map(f64::from), ..Law::new(&vehicle, &gains) };
     let reference = random::reference(rng, &vehicle, &gains);
     let mut state = random::state_around(rng, &reference);
     let filter = FilterState { filtered: random::in_box(rng, gains.m_p), intermediate: random::in_box(rng, gains.m_p) };
@@ -49,7 +51,7 @@ fn random_case(rng: &mut ChaCha8Rng, vehicle: Vehicle, gains: Gains) -> Case {
     let lift = rng
         .random_bool(0.5)
         .then(|| Lift { memory: random::attitude(rng), sign: if rng.random_bool(0.5) { 1.0 } else { -1.0 } });
-    Case { law, vehicle, gains, state, reference, memory: Memory { filter, lift } }
+    Case { law, vehicle, gains, thrust_floor, state, reference, memory: Memory { filter, lift } }
 }
 
 /// How far core and oracle are apart in thrust, omega_d, omega_d' and torque: in SI units, and over the tolerance.
@@ -67,7 +69,7 @@ impl Distance {
 /// The distance, or a description of what disagrees.
 fn compare(case: &Case) -> Result<Distance, String> {
     let law = &case.law;
-    let mut controller = Controller::new(case.vehicle, case.gains, 0.01).unwrap();
+    let mut controller = Controller::uncertified(case.vehicle, case.gains, case.thrust_floor, 0.01).unwrap();
     controller.restore(case.memory);
     let (wrench, diagnostics) = controller.step(&case.state, &case.reference).map_err(|e| e.to_string())?;
     let s = situation(&case.state, &case.reference, &case.memory.filter);
@@ -143,7 +145,7 @@ fn memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks() {
         let gains = if table_i { random::paper_gains(&vehicle) } else { random::gains(&mut rng, &vehicle) };
         let law = Law::new(&vehicle, &gains);
         let mut plain = oracle::Controller::new(law, PERIOD.into());
-        let mut core = Controller::new(vehicle, gains, PERIOD).unwrap();
+        let mut core = Controller::uncertified(vehicle, gains, None, PERIOD).unwrap();
         let reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);
         let slowest = -(-law.k_f.min(law.k_s) * plain.period).exp_m1();

@@ -145,7 +145,8 @@ fn desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight() {
     for _ in 0..10 {
         let start = random::vector(&mut rng, 6.0).cast();
         let mut body = Body::resting(start, random::attitude(&mut rng).cast().normalize());
-        let mut controller = Controller::new(vehicle, random::paper_gains(&vehicle), TICK as f32).unwrap();
+        let mut controller =
+            Controller::uncertified(vehicle, random::paper_gains(&vehicle), None, TICK as f32).unwrap();
         let offset = rng.random_range(0.0..10.0);
         let samples: Vec<Sample> = (0..40_000)
             .map(|tick| {

@@ -178,7 +178,7 @@ impl Rotating {
     pub fn tick(&self, vehicle: Vehicle, gains: Gains) -> (Vector3<f64>, Vector3<f64>) {
         let q = self.lifted.cast::<f32>();
         let lift = Some(Lift { memory: Quaternion::new(q[0], q[1], q[2], q[3]), sign: 1.0 });
-        let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
         controller.restore(Memory { filter: self.filter, lift });
         let (wrench, diagnostics) = controller.step(&self.state, &self.reference).unwrap();
         (wrench.torque.cast(), diagnostics.mrp.cast())

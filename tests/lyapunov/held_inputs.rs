@@ -22,7 +22,7 @@ fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
     let (mut rises, mut samples) = (0_u32, 0_u32);
     for _ in 0..400 {
         let mut x = random_translation(&mut rng, &law, 30.0);
-        let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
         let mut before = x.v_1(&law);
         while before > FLOOR {
             let feedback = x.tick(&mut controller);
@@ -60,7 +60,7 @@ fn v_2_seldom_rises_with_inputs_held_at_100_hz() {
             body.position = random::vector(&mut rng, 20.0).cast();
             body.velocity = random::vector(&mut rng, 10.0).cast();
         }
-        let mut controller = Controller::new(vehicle, gains, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
         let (mut v_1, mut v_2, mut violent) = (f64::INFINITY, f64::INFINITY, true);
         for _ in 0..TICKS {
             let (wrench, d) = controller.step(&body.state(), &hover()).unwrap();

@@ -36,6 +36,8 @@ pub struct Law {
     pub m_omega: f64,
     pub delta: f64,
     pub alpha: f64,
+    /// The floor of the thrust projection where that is on, N; the paper has none.
+    pub thrust_floor: Option<f64>,
 }
 
 /// What the law looks at, at one instant. Errors rather than absolute positions: only those enter the law.
@@ -96,6 +98,7 @@ impl Law {
             m_omega: gains.m_omega.into(),
             delta: gains.delta.into(),
             alpha: gains.alpha.into(),
+            thrust_floor: None,
         }
     }
 
@@ -128,8 +131,13 @@ impl Law {
         let translation = self.translation(s);
         let (desired, omega_d, omega_d_dot) = translation.command.differentiate();
         let error = desired.transpose() * s.rotation;
+        let u = translation.command.u;
+        let thrust = match self.thrust_floor {
+            None => self.mass * u.norm(),
+            Some(floor) => (self.mass * u.dot(&s.rotation.column(2))).max(floor),
+        };
         Evaluation {
-            thrust: self.mass * translation.command.u.norm(),
+            thrust,
             rate_error: s.angular_velocity - error.transpose() * omega_d,
             translation,
             desired,

@@ -123,9 +123,20 @@ pub fn heading(rng: &mut ChaCha8Rng) -> Heading {
     Heading::new(direction, rng.random_range(-8.0..8.0), rng.random_range(-30.0..30.0)).unwrap()
 }
 
+/// K_a3 of the references below.
+fn greatest_vertical_acceleration(vehicle: &Vehicle, gains: &Gains) -> f32 {
+    0.8 * (vehicle.gravity - gains.m_p)
+}
+
+/// The floor of the thrust projection, on in one case of four: anywhere up to m (g - M_p - K_a3).
+pub fn thrust_floor(rng: &mut ChaCha8Rng, vehicle: &Vehicle, gains: &Gains) -> Option<f32> {
+    let greatest = vehicle.mass * (vehicle.gravity - gains.m_p - greatest_vertical_acceleration(vehicle, gains));
+    rng.random_bool(0.25).then(|| greatest * rng.random_range(0.01..1.0))
+}
+
 /// A reference in a generous Omega_r: K_a12 = 6 m/s^2, K_a3 = 0.8 (g - M_p), jerk to 20 m/s^3, snap to 60 m/s^4.
 pub fn reference(rng: &mut ChaCha8Rng, vehicle: &Vehicle, gains: &Gains) -> Reference {
-    let vertical = 0.8 * (vehicle.gravity - gains.m_p);
+    let vertical = greatest_vertical_acceleration(vehicle, gains);
     let (sin, cos) = rng.random_range(0.0..std::f32::consts::TAU).sin_cos();
     let horizontal = rng.random_range(0.0..6.0_f32);
     let far = log_uniform(rng, 0.1, 1e3);
