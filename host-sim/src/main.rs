@@ -226,7 +226,7 @@ impl TuneArguments {
             ("--position-error", self.position_error),
             ("--mrp-error", self.mrp_error),
         ];
-        if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0)) {
+        if let Some((name, value)) = positive.into_iter().find(|(_, value)| value.is_nan() || *value <= 0.0) {
             return Err(format!("{name}: must be greater than zero, found {value}"));
         }
         if !(0.0..1.0).contains(&self.margin) {
