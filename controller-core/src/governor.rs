@@ -207,7 +207,7 @@ impl Governor {
         let bridge = if bridge::is_steady(&start) {
             None
         } else {
-            let found = Bridge::search(&start, &self.bounds, self.period);
+            let found = Bridge::search(&start, &self.bounds, self.period, self.windows.first());
             Some(found.ok_or(GovernorError::NoWayOn { field: "initial.acceleration, jerk, snap" })?)
         };
         self.turning.start(&from.heading)?;
@@ -260,10 +260,11 @@ impl Governor {
         self.turn = TurnGoal::Stop;
     }
 
-    /// Whether the reference is at rest and stays there until told otherwise.
+    /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.bridge.is_none() && self.smoother.at_rest() && self.turning.at_rest()
+        let commanded = self.pursue() != Vector3::zeros();
+        self.bridge.is_none() && !commanded && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
@@ -426,7 +427,6 @@ pub(crate) mod tests {
             let mut governor = governor();
             governor.accept(&go_to(target, 0.0, 0.0)).unwrap();
             let (time, last) = run(&mut governor);
-            println!("{target} m in {time} s");
             assert_eq!(last.position, Vector3::new(target, 0.0, 0.0));
             assert!(time < most, "{target} m took {time} s");
         }
@@ -440,7 +440,6 @@ pub(crate) mod tests {
             governor.accept(&setpoint).unwrap();
             assert!((0..30).map(|_| governor.tick().heading.rate() * side).last().unwrap() > 0.1);
             let (time, last) = run(&mut governor);
-            println!("{angle} rad in {time} s");
             let (sin, cos) = f64::from(angle).sin_cos();
             let miss = last.heading.direction() - Vector2::new(cos as f32, sin as f32);
             // Rounding of the components and of an angle of 250 rad (the target's own, in f32, is exact).
@@ -523,7 +522,6 @@ pub(crate) mod tests {
         assert!((first.acceleration - start.acceleration).norm() < 0.02 && (first.snap - start.snap).norm() < 1.0);
         assert!((first.heading.acceleration() + 0.5).abs() < 0.05);
         let (time, _) = run(&mut governor);
-        println!("stopped in {time} s");
         assert!(time < 12.0);
     }
 

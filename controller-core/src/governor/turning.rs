@@ -159,6 +159,11 @@ impl Turning {
             }
             return;
         }
+        self.push(self.command(goal));
+    }
+
+    /// The commanded acceleration towards `goal`, units per tick squared.
+    fn command(&self, goal: &TurnGoal) -> i64 {
         let wanted = match *goal {
             TurnGoal::Stop => 0,
             TurnGoal::Rate { rate } => rate,
@@ -166,7 +171,7 @@ impl Turning {
         };
         let strongest = if self.rate.abs() > self.fastest { self.strongest_above } else { self.strongest };
         let wanted = wanted.clamp(-self.fastest, self.fastest);
-        self.push(wanted.saturating_sub(self.rate).clamp(-strongest, strongest));
+        wanted.saturating_sub(self.rate).clamp(-strongest, strongest)
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
@@ -195,14 +200,10 @@ impl Turning {
         self.trail += self.rate * self.length as i64 - self.first;
     }
 
-    /// Whether nothing turns any more and nothing will unless commanded.
-    pub fn at_rest(&self) -> bool {
-        self.bridge.is_none() && self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0
-    }
-
-    /// The commanded phase, units.
-    pub fn commanded(&self) -> i64 {
-        self.commanded
+    /// Whether nothing turns and `goal` asks for nothing else.
+    pub fn at_rest(&self, goal: &TurnGoal) -> bool {
+        let still = self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0;
+        self.bridge.is_none() && still && self.command(goal) == 0
     }
 
     /// By how many ticks a steady turn comes out late.

@@ -103,6 +103,12 @@ impl Windows {
         Ok(Self { lengths, horizontal: whole(horizontal), vertical: whole(vertical), per_metre })
     }
 
+    /// T_1 in ticks: how long a full reversal of acceleration takes.
+    pub fn first(&self) -> usize {
+        let [first, _, _] = self.lengths;
+        first
+    }
+
     /// The product of the lengths: what sums are divided by to become averages.
     pub fn product(&self) -> i64 {
         self.lengths.iter().map(|&length| length as i64).product()
