@@ -117,6 +117,19 @@ impl Case {
         }
     }
 
+    /// Where a governor is that was sent about at random for a while.
+    fn interrupted(&self, random: &mut Random, mut governor: Governor) -> Reference {
+        let mut last = governor.tick();
+        for _ in 0..1 + random.below(3) {
+            let motion = Motion::Velocity(random.vector(5.0));
+            governor.accept(&Setpoint { motion, turn: Turn::Rate(random.between(-2.0, 2.0)) }).unwrap();
+            for _ in 0..random.below(100) {
+                last = governor.tick();
+            }
+        }
+        last
+    }
+
     /// A moment of an ellipse in space, somewhere up to its bounds, with a heading that turns and swings.
     fn orbiting(&self, random: &mut Random) -> Reference {
         let b = &self.bounds;
@@ -272,12 +285,15 @@ impl Adversary {
     }
 }
 
-/// How near to its bounds the streams of a thread came, as shares, and how they fared.
+/// How near to its bounds the streams of a thread came (as shares, take-overs apart), and how they fared.
 #[derive(Clone, Copy, Default)]
 struct Tally {
     ticks: u64,
-    taken_over: u64,
-    refused: u64,
+    /// Starts in motion: on orbits, and where another governor was.
+    orbiting: u64,
+    interrupted: u64,
+    /// Of these, what was refused.
+    refused: [u64; 2],
     nearest: [f64; 6],
     longest: f32,
 }
@@ -285,8 +301,11 @@ struct Tally {
 impl Tally {
     fn merged(mut self, other: &Self) -> Self {
         self.ticks += other.ticks;
-        self.taken_over += other.taken_over;
-        self.refused += other.refused;
+        self.orbiting += other.orbiting;
+        self.interrupted += other.interrupted;
+        for (refused, theirs) in self.refused.iter_mut().zip(other.refused) {
+            *refused += theirs;
+        }
         self.longest = self.longest.max(other.longest);
         for (nearest, theirs) in self.nearest.iter_mut().zip(other.nearest) {
             *nearest = nearest.max(theirs);
@@ -326,7 +345,9 @@ impl Witness<'_> {
         ];
         for (share, nearest) in shares.iter().zip(&mut tally.nearest) {
             assert!(*share <= 1.0, "outside by {shares:?}: {next:?}");
-            *nearest = nearest.max(*share);
+            if self.crossing == 0 {
+                *nearest = nearest.max(*share);
+            }
         }
     }
 
@@ -408,20 +429,17 @@ fn fly(seed: u64, tally: &mut Tally) {
     let adversary = Adversary::draw(&mut random, &case);
     let resting = case.resting(&mut random);
     let mut start = resting;
-    let kind = random.below(3);
-    if kind > 0 && !matches!(adversary, Adversary::Constant) {
-        start = case.orbiting(&mut random);
-    }
-    let mut governor = match Governor::new(case.bounds, case.limits, case.period, &start) {
-        Ok(governor) => governor,
-        Err(_) => {
-            // Allowed, but it must be rare: the caller counts.
-            tally.refused += 1;
+    let mut governor = Governor::new(case.bounds, case.limits, case.period, &resting).unwrap();
+    if !matches!(adversary, Adversary::Constant) && random.below(3) > 0 {
+        let interrupted = random.below(2) == 0;
+        start = if interrupted { case.interrupted(&mut random, governor.clone()) } else { case.orbiting(&mut random) };
+        *(if interrupted { &mut tally.interrupted } else { &mut tally.orbiting }) += 1;
+        if governor.restart(&start).is_err() {
+            // Allowed, but it must be rare: counted.
+            tally.refused[usize::from(interrupted)] += 1;
             start = resting;
-            Governor::new(case.bounds, case.limits, case.period, &start).unwrap()
         }
-    };
-    tally.taken_over += u64::from(start != resting);
+    }
     // The longest take-over lasts three and a half windows.
     let crossing = if start == resting { 0 } else { 4 * case.windows()[0] + 2 };
     let mut witness = Witness { case: &case, last: start, crossing };
@@ -495,7 +513,8 @@ fn a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive() {
             .collect();
         workers.into_iter().map(|worker| worker.join().unwrap()).fold(Tally::default(), |all, one| all.merged(&one))
     });
-    println!("{} ticks; {} starts in motion, {} refused", tally.ticks, tally.taken_over, tally.refused);
+    let Tally { ticks, orbiting, interrupted, refused, .. } = tally;
+    println!("{ticks} ticks; {orbiting} starts on orbits, {interrupted} mid-way; {refused:?} refused");
     println!("nearest to the bounds (shares): {:.4?}; longest arrival {:.1} s", tally.nearest, tally.longest);
     // Adversaries that stay far inside prove nothing.
     assert!(tally.nearest.iter().all(|nearest| *nearest > 0.99), "{:?}", tally.nearest);
