@@ -25,8 +25,8 @@ const DURATIONS: [f32; 11] = [0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.85, 1.2, 1.7, 2
 /// Points looked at within each duration before a candidate is checked tick by tick.
 const GLANCES: u32 = 8;
 
-/// Room left for the rounding of polynomials in single precision.
-const ROOM: f32 = 1e-5;
+/// Room left for the rounding of norms in single precision; what is checked is what will be emitted, to the bit.
+const ROOM: f32 = 1e-6;
 
 /// Coefficients, from degree 0 to 7, of the second integrals of phi_0, phi_1, phi_2 on [0, 1].
 const FADES: [[f32; 8]; 3] = [
@@ -72,13 +72,13 @@ impl Bridge {
         self.durations.iter().copied().max().unwrap_or(0)
     }
 
-    /// Whether every tick of it is inside: a glance first, since most candidates are far outside.
+    /// Whether every tick after the start is inside: a glance first, since most candidates are far outside.
     fn is_inside(&self, bounds: &ReferenceBounds) -> bool {
         let glances = self
             .durations
             .iter()
-            .flat_map(|&duration| (0..=GLANCES).map(move |glance| duration as f32 * glance as f32 / GLANCES as f32));
-        glances.chain((0..=self.duration()).map(|tick| tick as f32)).all(|ticks| {
+            .flat_map(|&duration| (1..=GLANCES).map(move |glance| duration as f32 * glance as f32 / GLANCES as f32));
+        glances.chain((1..=self.duration()).map(|tick| tick as f32)).all(|ticks| {
             let knot = self.knot(ticks);
             let room = 1.0 - ROOM;
             knot.acceleration.xy().norm_squared() <= square(bounds.horizontal_acceleration * room)
@@ -160,7 +160,7 @@ impl TurnBridge {
         (1..=longest)
             .rev()
             .map(|duration| Self { rate, acceleration, duration, period })
-            .find(|bridge| (0..=bridge.duration).all(|tick| bridge.is_inside(tick, bounds)))
+            .find(|bridge| (1..=bridge.duration).all(|tick| bridge.is_inside(tick, bounds)))
     }
 
     fn is_inside(&self, tick: u32, bounds: &ReferenceBounds) -> bool {

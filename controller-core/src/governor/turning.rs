@@ -137,6 +137,9 @@ impl Turning {
 
     /// Starts the average as if it had always turned at `rate` (rad/s) and is at `phase` now.
     fn settle(&mut self, phase: i64, rate: f32) {
+        // A rate exactly at its bound could be rounded across it, seven times by 6e-8 until it is emitted.
+        let most = self.bounds.heading_rate * (1.0 - 4.5e-7);
+        let rate = rate.clamp(-most, most);
         let length = self.length as i64;
         self.history = [0; TURN_HISTORY];
         self.rate = (rate * self.period * PER_RADIAN) as i64;
