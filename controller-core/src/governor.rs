@@ -7,6 +7,7 @@
 //! ```
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
+//! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `smoother`: the averages in integers, and the quintic spline that makes the output one smooth function of time;
 //! - `turning`: the same for the heading;
@@ -19,12 +20,14 @@
 //! averages. Arrival from states in motion is shown by campaign.
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
-//! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag only as far as it moves with constant
-//! acceleration; what changes within a second or two comes out smoothed. A start that accelerates is first brought to a
+//! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and accelerating
+//! as it does, within the bounds; what changes within a second or two comes out smoothed, and a circle too tight for the
+//! averages comes out smaller. A start that accelerates is first brought to a
 //! steady velocity (`bridge`); setpoints take effect then.
 
 mod braking;
 mod bridge;
+mod lead;
 mod pursuit;
 mod setpoint;
 mod smoother;
@@ -37,6 +40,7 @@ use crate::error::{InputError, ParameterError, Reason, require, require_positive
 use crate::reference::{Reference, ReferenceBounds};
 use bridge::Bridge;
 use core::fmt;
+use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use smoother::{Knot, Smoother};
@@ -133,6 +137,7 @@ pub struct Governor {
     timeout: u32,
     windows: Windows,
     pursuit: Pursuit,
+    lead: Lead,
     smoother: Smoother,
     turning: Turning,
     bridge: Option<(Bridge, u32)>,
@@ -174,6 +179,11 @@ impl Governor {
             timeout: windows::ticks(limits.timeout, period) as u32,
             windows,
             pursuit: Pursuit::new(&windows, limits.horizontal_speed, limits.vertical_speed, period),
+            lead: Lead {
+                delay: windows.delay() * period,
+                variance: windows.variance() * period * period,
+                acceleration: windows.horizontal / (windows.per_metre * period * period),
+            },
             smoother: Smoother::new(&windows, period),
             turning: Turning::new(&bounds, &limits, period)?,
             bridge: None,
@@ -313,27 +323,25 @@ impl Governor {
             Goal::Stop => self.pursuit.towards_velocity(still, u),
             Goal::Velocity(_) if self.goal_age > self.timeout => self.pursuit.towards_velocity(still, u),
             Goal::Velocity(velocity) => self.pursuit.towards_velocity(velocity, u),
-            Goal::Position(target) => self.pursuit.towards_position(target - x, still, u),
+            Goal::Position(target) => self.pursuit.towards_position(target - x, u),
             Goal::Moving { position, .. } if self.goal_age > self.timeout => {
-                self.pursuit.towards_position(position - x, still, u)
+                self.pursuit.towards_position(position - x, u)
             }
             Goal::Moving { position, velocity, acceleration } => {
                 let (ahead, feed) = self.ahead(&velocity, &acceleration);
-                self.pursuit.towards_position(position + ahead - x, feed, u)
+                let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
+                self.pursuit.towards_moving(position + ahead - x, feed, &acceleration, u)
             }
         }
     }
 
     /// Where the command must be for the averages to come out on a moving point, relative to where that was last seen,
     /// and how fast it must move, units a tick.
-    ///
-    /// Averages with mean delay d and variance sigma^2 turn q(t) into q - d q' + (d^2 + sigma^2) q''/2 for constant q'';
-    /// q(t) = p(t) + d p' + (d^2 - sigma^2) p''/2 makes that p(t).
     fn ahead(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>) -> (Vector3<i64>, Vector3<i64>) {
-        let lead = (self.goal_age as f32 - 1.0 + self.windows.delay()) * self.period;
-        let spread = self.windows.variance() * self.period * self.period;
-        let ahead = velocity * lead + acceleration * (0.5 * (lead * lead - spread));
-        (self.length(&ahead), self.length(&((velocity + acceleration * lead) * self.period)))
+        // The command at hand is where it was a tick ago.
+        let age = (self.goal_age as f32 - 1.0) * self.period;
+        let (ahead, feed) = self.lead.of(velocity, acceleration, age);
+        (self.length(&ahead), self.length(&(feed * self.period)))
     }
 
     /// The heading's goal of this tick.

@@ -64,20 +64,20 @@ impl Adversary {
             _ => Turn::Rate(random.between(-3.0, 3.0)),
         };
         let setpoint = match self {
-            Self::Jumps if tick % often == 0 => Setpoint { motion: anywhere(random), turn: turn(random) },
+            Self::Jumps if tick.is_multiple_of(often) => Setpoint { motion: anywhere(random), turn: turn(random) },
             Self::Resonance { first, second } => {
                 // The signs that make snap's second difference greatest: windows' blocks alternate.
-                let positive = (tick / second.max(1) + tick / first.max(1)) % 2 == 0;
+                let positive = (tick / second.max(1) + tick / first.max(1)).is_multiple_of(2);
                 Setpoint { motion: Motion::Velocity(sided(positive) * 100.0), turn: Turn::Rate(side(positive) * 9.0) }
             }
             Self::Reversals { ticks } => {
-                let positive = (tick / ticks) % 2 == 0;
+                let positive = (tick / ticks).is_multiple_of(2);
                 Setpoint { motion: Motion::Velocity(sided(positive) * 100.0), turn: Turn::Rate(side(positive) * 9.0) }
             }
-            Self::Far if tick % (often * 10) == 0 => {
+            Self::Far if tick.is_multiple_of(often * 10) => {
                 Setpoint { motion: Motion::Position(random.vector(1e6)), turn: turn(random) }
             }
-            Self::Tiny if tick % often == 0 => {
+            Self::Tiny if tick.is_multiple_of(often) => {
                 let size = random.sized(1e-6, 1e-2);
                 let angle = now.heading.direction().y.atan2(now.heading.direction().x) + random.between(-size, size);
                 let motion = Motion::Position(now.position + random.vector(size));
@@ -94,7 +94,7 @@ impl Adversary {
                 assert!(refused.is_err());
                 return;
             }
-            Self::Moving { kind } if tick % often == 0 => {
+            Self::Moving { kind } if tick.is_multiple_of(often) => {
                 let (rate, time) = (TAU * 0.25, tick as f32 * period);
                 let (sin, cos) = (rate * time).sin_cos();
                 let (position, velocity) = (Vector3::new(cos, sin, 1.0), Vector3::new(-sin, cos, 0.0) * rate);
@@ -115,7 +115,7 @@ impl Adversary {
                 };
                 Setpoint { motion, turn: Turn::Angle { angle: rate * time, rate } }
             }
-            Self::Antipodes if tick % often == 0 => {
+            Self::Antipodes if tick.is_multiple_of(often) => {
                 let here = now.heading.direction().y.atan2(now.heading.direction().x);
                 let angle = here + PI + random.between(-0.01, 0.01);
                 let rate = [0.0, 100.0, -100.0, 1e6][random.below(4) as usize];

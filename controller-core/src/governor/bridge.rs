@@ -181,10 +181,8 @@ impl TurnBridge {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::super::tests::{Random, TYPICAL};
     use super::*;
-    use std::println;
 
     fn state(acceleration: [f32; 3], jerk: [f32; 3], snap: [f32; 3]) -> Knot {
         Knot {

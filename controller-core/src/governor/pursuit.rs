@@ -63,21 +63,37 @@ impl Pursuit {
         self.accelerations.limited(self.speeds.limited(wanted) - u).map(|component| component as i32)
     }
 
-    /// The acceleration of one tick towards a target `error` away that moves with `feed`.
-    pub fn towards_position(&self, error: Vector3<i64>, feed: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
-        self.towards_velocity(feed.zip_map(&self.approach(error), i64::saturating_add), u)
+    /// The acceleration of one tick towards a resting target `error` away.
+    pub fn towards_position(&self, error: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
+        self.towards_velocity(self.approach(error, BRAKING_SHARE), u)
     }
 
-    /// The greatest velocity along `error` from which braking ends on the target.
-    fn approach(&self, error: Vector3<i64>) -> Vector3<i64> {
+    /// The acceleration of one tick towards a target `error` away that moves with `feed` and accelerates with
+    /// `acceleration` (units per tick squared). Braking is planned with what following it leaves.
+    pub fn towards_moving(
+        &self,
+        error: Vector3<i64>,
+        feed: Vector3<i64>,
+        acceleration: &Vector3<f32>,
+        u: &Vector3<i64>,
+    ) -> Vector3<i32> {
+        let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
+        self.towards_velocity(feed.zip_map(&self.approach(error, share), i64::saturating_add), u)
+    }
+
+    /// The greatest velocity along `error` from which braking, with a share of the acceleration, ends on the target.
+    fn approach(&self, error: Vector3<i64>, share: f32) -> Vector3<i64> {
         let single = error.map(|component| component as f32);
-        let distance = self.accelerations.measure(&single) / BRAKING_SHARE;
+        let distance = self.accelerations.measure(&single) / share;
         if distance <= 1.0 {
             return error;
         }
         (single * (approach_speed(distance) / distance)).map(|component| component as i64)
     }
 }
+
+/// The share of the acceleration with which targets are closed in on that take all of it.
+const LEAST_SHARE: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {
@@ -101,7 +117,7 @@ mod tests {
             let (length, mut last) = (target.map(|c: i64| c as f64).norm(), 0.0);
             let mut ticks = 0;
             while x != target || u != Vector3::zeros() {
-                u += pursuit.towards_position(target - x, Vector3::zeros(), &u).map(i64::from);
+                u += pursuit.towards_position(target - x, &u).map(i64::from);
                 x += u;
                 let single = x.map(|c: i64| c as f64);
                 let along = single.dot(&target.map(|c| c as f64)) / length;
@@ -123,7 +139,7 @@ mod tests {
             let sizes = [10.0_f32.powf(18.0 * random.unit()), 10.0_f32.powf(9.0 * random.unit())];
             let error = Vector3::from_fn(|_, _| (random.signed() * sizes[0]) as i64);
             let u = Vector3::from_fn(|_, _| (random.signed() * sizes[1]) as i64);
-            let command = pursuit.towards_position(error, Vector3::zeros(), &u).map(f64::from);
+            let command = pursuit.towards_position(error, &u).map(f64::from);
             assert!(command.xy().norm() <= f64::from(windows.horizontal) * (1.0 + 4e-7));
             assert!(command.z.abs() <= f64::from(windows.vertical) * (1.0 + 4e-7));
         }
@@ -145,7 +161,7 @@ mod tests {
                 while x != target || u != still {
                     stopped |= u == still;
                     u += if stopped {
-                        pursuit.towards_position(target - x, still, &u)
+                        pursuit.towards_position(target - x, &u)
                     } else {
                         pursuit.towards_velocity(still, &u)
                     }
@@ -157,7 +173,7 @@ mod tests {
             };
             let (mut x, mut u, mut ticks) = (still, start, 0);
             while x != target || u != still {
-                u += pursuit.towards_position(target - x, still, &u).map(i64::from);
+                u += pursuit.towards_position(target - x, &u).map(i64::from);
                 x += u;
                 ticks += 1;
                 assert!(ticks < 100_000, "{target} not reached from {start}");

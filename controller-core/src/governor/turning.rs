@@ -139,7 +139,7 @@ impl Turning {
     fn settle(&mut self, phase: i64, rate: f32) {
         // A rate exactly at its bound could be rounded across it, seven times by 6e-8 until it is emitted.
         let most = self.bounds.heading_rate * (1.0 - 4.5e-7);
-        let rate = rate.clamp(-most, most);
+        let rate = rate.min(most).max(-most);
         let length = self.length as i64;
         self.history = [0; TURN_HISTORY];
         self.rate = (rate * self.period * PER_RADIAN) as i64;
@@ -173,8 +173,9 @@ impl Turning {
             TurnGoal::Angle { phase, rate } => rate.saturating_add(self.approach(phase)),
         };
         let strongest = if self.rate.abs() > self.fastest { self.strongest_above } else { self.strongest };
-        let wanted = wanted.clamp(-self.fastest, self.fastest);
-        wanted.saturating_sub(self.rate).clamp(-strongest, strongest)
+        let wanted = wanted.min(self.fastest).max(-self.fastest);
+        // Not `clamp`, which may panic.
+        wanted.saturating_sub(self.rate).min(strongest).max(-strongest)
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
