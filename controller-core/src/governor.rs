@@ -13,7 +13,7 @@
 //! - `turning`: the same for the heading;
 //! - `bridge`: how a reference already accelerating is taken over.
 //!
-//! What holds by construction: every bound, at every instant, whatever is sent (NaN included, which is refused);
+//! What holds by construction: every bound, at every instant (on a bridge: every tick), whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
 //! psi'' likewise; from rest, a constant position is reached along the straight segment without overshoot, exactly (the
 //! averages of a monotone approach are monotone), and a stop is a straight braking of the command followed by the

@@ -214,8 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_billion_ticks_of_noise_leave_no_trace() {
-        // A million here: integers either drift at once or never.
+    fn a_million_ticks_of_noise_leave_no_trace() {
         let windows = windows();
         let mut smoother = Smoother::new(&windows, 0.01);
         smoother.start(Vector3::zeros(), Vector3::zeros());
