@@ -90,6 +90,9 @@ struct TuneArguments {
     /// Greatest norm of its modified Rodrigues parameters there
     #[arg(long, default_value_t = 1e-4)]
     mrp_error: f64,
+    /// How long a recovery from upside down may take, s; its last quarter must be still
+    #[arg(long, default_value_t = 20.0)]
+    recovery: f64,
     /// Keep the paper's thrust T = m |u|: no thrust projection
     #[arg(long)]
     no_projection: bool,
@@ -191,7 +194,11 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         Ok(tuned) => tuned,
         Err(closest) => {
             let what = closest.failed.clone().unwrap_or_default();
-            eprintln!("error: {}: no gains meet the requirements; the closest fail in: {what}", scenario.name);
+            let lost = short(closest.height_lost);
+            eprintln!(
+                "error: {}: no gains meet the requirements; the closest fail in: {what} (height lost {lost} m)",
+                scenario.name
+            );
             return Ok(ExitCode::from(CLAIMS_FAIL));
         }
     };
@@ -225,6 +232,7 @@ impl TuneArguments {
             ("--delay-margin", self.delay_margin),
             ("--position-error", self.position_error),
             ("--mrp-error", self.mrp_error),
+            ("--recovery", self.recovery),
         ];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| value.is_nan() || *value <= 0.0) {
             return Err(format!("{name}: must be greater than zero, found {value}"));
@@ -244,6 +252,7 @@ impl TuneArguments {
             delay_margin: 1e-3 * self.delay_margin,
             position_error: self.position_error,
             mrp_error: self.mrp_error,
+            recovery: self.recovery,
             projection: !self.no_projection,
         })
     }

@@ -43,6 +43,8 @@ pub struct Requirements {
     pub position_error: f64,
     /// Greatest norm of its modified Rodrigues parameters there.
     pub mrp_error: f64,
+    /// How long a recovery from upside down may take, s; its last quarter must be still.
+    pub recovery: f64,
     /// Whether the thrust projection may be used.
     pub projection: bool,
 }

@@ -29,8 +29,6 @@ pub const DIMENSIONS: usize = 10;
 /// A point of it.
 pub type Point = [f64; DIMENSIONS];
 
-/// How long a recovery may take, s; its last quarter must be still.
-const RECOVERY: f64 = 20.0;
 /// Greatest position error in the last quarter of a recovery, m.
 const STILL_POSITION: f64 = 0.01;
 /// Greatest norm of the modified Rodrigues parameters there.
@@ -71,7 +69,7 @@ impl Judge {
     /// A judge for the vehicle, rotors, timing and reference of `scenario`.
     #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
-        Self { recovery: recovery(scenario), scenario: scenario.clone(), requirements }
+        Self { recovery: recovery(scenario, requirements.recovery), scenario: scenario.clone(), requirements }
     }
 
     /// The file's own gains as a point: where the search starts.
@@ -173,13 +171,13 @@ impl Judge {
     }
 }
 
-/// The recovery that height is measured in: roll -179 degrees, at rest, hovering where it starts.
+/// The recovery that height is measured in: roll -179 degrees, at rest, hovering where it starts, for `duration` s.
 #[must_use]
-pub fn recovery(scenario: &Scenario) -> Scenario {
+pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
     let rest = Vector3::zeros();
     let attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, 0.0);
     let initial = BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest };
-    let timing = Timing { ticks: (RECOVERY / scenario.timing.period()) as u64, ..scenario.timing };
+    let timing = Timing { ticks: (duration / scenario.timing.period()) as u64, ..scenario.timing };
     let mut recovery = Scenario { name: "recovery".to_owned(), initial, timing, ..scenario.clone() };
     if let Ok(hover) = Hover::new(Vector3::zeros(), Heading::FORWARD) {
         recovery.trajectory = Arc::new(hover);
