@@ -2,8 +2,8 @@
 //!
 //! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also dashed.
 
+use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
-use plotters::coord::{Shift, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -32,12 +32,14 @@ pub enum Scale {
 
 /// A line through the samples.
 pub struct Curve {
-    /// Its name in the legend.
+    /// Its name in the legend; none, no entry.
     pub label: String,
     /// Its colour.
     pub color: RGBColor,
     /// Dashed: something asked for rather than flown.
     pub dashed: bool,
+    /// Pixels; a curve that others may cover is wider, so that its rim shows.
+    pub width: u32,
     /// (s, the panel's unit).
     pub points: Vec<(f64, f64)>,
 }
@@ -90,7 +92,7 @@ impl Panel {
         const SAMPLE: i32 = 26;
         const CHARACTER: i32 = 8;
         let mut x = 16;
-        for curve in &self.curves {
+        for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
             draw_dashes(area, x, x + SAMPLE, 43, curve)?;
             x += SAMPLE + 6;
             area.draw(&Text::new(curve.label.as_str(), (x, 35), ("sans-serif", 14).into_font().color(&INK)))?;
@@ -130,29 +132,46 @@ impl Panel {
             .x_desc("time [s]")
             .y_desc(self.quantity)
             .draw()?;
-        for bound in &self.bounds {
+        for (index, bound) in self.bounds.iter().enumerate() {
             let line = [(0.0, bound.value), (end, bound.value)];
             chart.draw_series(DashedLineSeries::new(line, 7, 5, bound.color.stroke_width(1)))?;
-            let below = self.bounds.iter().any(|other| other.value > bound.value) && bound.value < 0.0;
-            let anchor = Pos::new(HPos::Right, if below { VPos::Top } else { VPos::Bottom });
-            let style = ("sans-serif", 12).into_font().color(&bound.color).pos(anchor);
-            let text = EmptyElement::at((end, bound.value))
-                + Text::new(bound.label.clone(), (-6, if below { 3 } else { -3 }), style);
+            let (side, gap) = if bound.value < 0.0 { (VPos::Top, 3) } else { (VPos::Bottom, -3) };
+            let style = ("sans-serif", 12).into_font().color(&bound.color).pos(Pos::new(HPos::Right, side));
+            let left = 6 + LABEL_WIDTH * self.crowd(index) as i32;
+            let text = EmptyElement::at((end, bound.value)) + Text::new(bound.label.clone(), (-left, gap), style);
             chart.plotting_area().draw(&text)?;
         }
         for curve in &self.curves {
-            let points = thinned(&curve.points, end);
+            let style = curve.color.stroke_width(curve.width);
+            let mut points = thinned(&curve.points, end);
+            if self.scale == Scale::Log {
+                points.iter_mut().for_each(|point| point.1 = point.1.max(LEAST_ON_LOG));
+            }
             if curve.dashed {
-                chart.draw_series(DashedLineSeries::new(points, 6, 4, curve.color.stroke_width(2)))?;
+                chart.draw_series(DashedLineSeries::new(points, 6, 4, style))?;
             } else {
-                chart.draw_series(LineSeries::new(points, curve.color.stroke_width(2)))?;
+                chart.draw_series(LineSeries::new(points, style))?;
             }
         }
         Ok(())
     }
 
+    /// How many bounds before this one lie so close that their labels would touch.
+    fn crowd(&self, index: usize) -> usize {
+        let (low, high) = self.vertical_range();
+        let value = self.bounds.get(index).map_or(0.0, |bound| bound.value);
+        let close = |other: &&Bound| (other.value - value).abs() < 0.06 * (high - low) && self.scale == Scale::Linear;
+        self.bounds.iter().take(index).filter(close).count()
+    }
+
+    /// The end of the time axis: one sample after the last, so that a flight of 40 s ends at 40.
     fn end(&self) -> f64 {
-        self.curves.iter().filter_map(|curve| curve.points.last()).fold(1e-3, |end, point| end.max(point.0))
+        let end_of = |curve: &Curve| match curve.points.as_slice() {
+            [.., before, last] => 2.0 * last.0 - before.0,
+            [only] => only.0,
+            [] => 0.0,
+        };
+        self.curves.iter().map(end_of).fold(1e-3, f64::max)
     }
 
     /// What holds all curves and bounds, with room for the bounds' labels.
@@ -176,8 +195,10 @@ impl Panel {
     }
 }
 
-/// Below this a number on a logarithmic axis is as good as zero.
-const LEAST_ON_LOG: f64 = 1e-8;
+/// Below this an error on a logarithmic axis is single precision's noise, and drawn as this.
+const LEAST_ON_LOG: f64 = 1e-7;
+/// Room for the label of a bound, pixels.
+const LABEL_WIDTH: i32 = 124;
 
 /// A horizontal sample of the curve's line in a legend.
 fn draw_dashes<DB: DrawingBackend>(
@@ -187,7 +208,7 @@ fn draw_dashes<DB: DrawingBackend>(
     y: i32,
     curve: &Curve,
 ) -> DrawingResult<DB> {
-    let style = curve.color.stroke_width(2);
+    let style = curve.color.stroke_width(curve.width);
     let dash = if curve.dashed { 6 } else { to - from };
     let mut x = from;
     while x < to {
@@ -239,9 +260,6 @@ fn format_decade(value: f64) -> String {
         .collect();
     format!("10{raised}")
 }
-
-/// The horizontal axis' type, for readers of signatures.
-pub type TimeAxis = RangedCoordf64;
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,6 @@
 //! A picture of the path in space: what was flown, what was asked for, and how the vehicle stood along the way.
 //!
-//! Parallel projection from above the corner of the first octant's neighbour; the same scale along every axis. The floor's
+//! Parallel projection, the same scale along every axis. The floor's
 //! squares and the path's shadow on it give the depth. The vehicle is drawn larger than life.
 
 use super::panel::{BLUE, DrawingResult, INK, VERMILION};
@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (1000, 760);
 /// Margins around the projected path, pixels: left, top, right, bottom.
 const MARGINS: [f64; 4] = [40.0, 70.0, 40.0, 40.0];
 /// Direction of sight: degrees from world x, and above the horizon.
-const SIGHT: (f64, f64) = (-52.0, 22.0);
+const SIGHT: (f64, f64) = (150.0, 24.0);
 const FLOOR: RGBColor = RGBColor(222, 222, 222);
 const SHADOW: RGBColor = RGBColor(178, 178, 178);
 
@@ -44,9 +44,9 @@ pub fn picture(samples: &[Sample]) -> Result<String, PlotError> {
         view.draw_floor(root)?;
         let shadow = |sample: &Sample| Vector3::new(sample.position.x, sample.position.y, view.floor);
         root.draw(&view.line(samples.iter().map(shadow), SHADOW.stroke_width(2)))?;
-        view.draw_dashed(root, samples)?;
-        root.draw(&view.line(samples.iter().map(|sample| sample.position), BLUE.stroke_width(2)))?;
-        for sample in poses(samples, 3.2 * view.arm) {
+        root.draw(&view.line(samples.iter().map(|sample| sample.position), BLUE.stroke_width(4)))?;
+        view.draw_reference(root, samples)?;
+        for sample in poses(samples, 4.0 * view.arm) {
             view.draw_vehicle(root, sample)?;
         }
         view.draw_legend(root, samples)
@@ -85,7 +85,7 @@ impl View {
         let high = (((greatest.x / square).ceil() as i32) + 1, ((greatest.y / square).ceil() as i32) + 1);
         let floor = (least.z / square).floor() * square;
         let mut view =
-            Self { right, up, scale: 1.0, origin: (0.0, 0.0), square, floor, low, high, arm: 0.028 * extent };
+            Self { right, up, scale: 1.0, origin: (0.0, 0.0), square, floor, low, high, arm: 0.032 * extent };
         view.fit(greatest.z);
         view
     }
@@ -143,29 +143,34 @@ impl View {
         Ok(())
     }
 
-    /// The reference, dashed by leaving out every other stretch of pixels.
-    fn draw_dashed<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, samples: &[Sample]) -> DrawingResult<DB> {
-        const DASH: f64 = 7.0;
-        let (mut run, mut length, mut last) = (Vec::new(), 0.0, None);
-        for sample in samples {
-            let pixel = self.pixel(&sample.desired_position);
-            if let Some((x, y)) = last {
-                length += f64::from(pixel.0 - x).hypot(f64::from(pixel.1 - y));
-            }
-            last = Some(pixel);
-            if length % (2.0 * DASH) < DASH {
-                run.push(pixel);
-            } else if run.len() > 1 {
-                root.draw(&PathElement::new(std::mem::take(&mut run), INK.stroke_width(2)))?;
-            } else {
-                run.clear();
-            }
-            // Once around is enough: further rounds would fill the gaps.
-            if length > 1.0 && sample.time > 0.0 && length > 6.0 * f64::from(SIZE.0) {
+    /// The reference, dashed by leaving out every other stretch of pixels; once around, for further rounds would fill
+    /// the gaps.
+    fn draw_reference<DB: DrawingBackend>(
+        &self,
+        root: &DrawingArea<DB, Shift>,
+        samples: &[Sample],
+    ) -> DrawingResult<DB> {
+        const DASH: f64 = 6.0;
+        const NEAR: f64 = 4.0;
+        let distance = |a: (i32, i32), b: (i32, i32)| f64::from(a.0 - b.0).hypot(f64::from(a.1 - b.1));
+        let mut pixels: Vec<(i32, i32)> = samples.iter().map(|sample| self.pixel(&sample.desired_position)).collect();
+        pixels.dedup();
+        let Some(first) = pixels.first().copied() else { return Ok(()) };
+        let (mut run, mut length, mut last, mut away) = (Vec::new(), 0.0, first, false);
+        for pixel in pixels {
+            length += distance(pixel, last);
+            last = pixel;
+            away |= distance(pixel, first) > 4.0 * NEAR;
+            if away && distance(pixel, first) < NEAR {
                 break;
             }
+            if length % (2.0 * DASH) < DASH {
+                run.push(pixel);
+            } else if !run.is_empty() {
+                root.draw(&PathElement::new(std::mem::take(&mut run), INK.stroke_width(2)))?;
+            }
         }
-        Ok(())
+        root.draw(&PathElement::new(run, INK.stroke_width(2)))
     }
 
     /// Two crossed arms with rotors, and the thrust axis.
