@@ -221,8 +221,9 @@ fn within(what: &str, flown: (f64, f64), required: (f64, f64), rounding: f64) ->
     Claim { claim: what.into(), required: interval(required), flown: interval(flown), holds: Some(holds) }
 }
 
-/// Four significant digits.
-fn short(value: f64) -> String {
+/// Four significant digits, for people.
+#[must_use]
+pub fn short(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && magnitude < 1e6 {
         format!("{value:.0}")

@@ -13,6 +13,8 @@ use record::Sample;
 
 /// Width and height of a figure, pixels.
 const SIZE: (u32, u32) = (1240, 860);
+/// The drawing library counts in whole pixels: drawn so many times larger and shown smaller, curves are smooth.
+const FINE: i32 = 8;
 /// What the transient's figure shows of a flight, s.
 const FIRST_SECONDS: f64 = 5.0;
 
@@ -84,10 +86,17 @@ where
     F: FnOnce(&DrawingArea<SVGBackend, plotters::coord::Shift>) -> panel::DrawingResult<SVGBackend<'a>>,
 {
     let mut svg = String::new();
+    let fine = (size.0 * FINE as u32, size.1 * FINE as u32);
     {
-        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, fine).into_drawing_area();
         let drawn = root.fill(&WHITE).and_then(|()| fill(&root)).and_then(|()| root.present());
         drawn.map_err(|error| PlotError(error.to_string()))?;
     }
-    Ok(svg)
+    let (drawn, shown) = (extent(fine), extent(size));
+    Ok(svg.replacen(&drawn, &shown, 1))
+}
+
+/// The attributes of an SVG that say how large it is shown.
+fn extent((width, height): (u32, u32)) -> String {
+    format!("width=\"{width}\" height=\"{height}\"")
 }

@@ -3,7 +3,7 @@
 use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
 use super::record::Sample;
 use crate::claims::{
-    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, theorem_1_thrust,
+    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, short, theorem_1_thrust,
 };
 use crate::scenario::Scenario;
 use plotters::style::RGBColor;
@@ -80,9 +80,9 @@ pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
         scale: Scale::Linear,
         curves: vec![curve(samples, "T", BLUE, |s| s.thrust)],
         bounds: vec![
-            bound(least, format!("{name}: {least:.2} N")),
-            bound(greatest, format!("{name}: {greatest:.2} N")),
-            bound(limit, format!("limit: {limit:.2} N")),
+            bound(least, format!("{name}: {} N", short(least))),
+            bound(greatest, format!("{name}: {} N", short(greatest))),
+            bound(limit, format!("limit: {} N", short(limit))),
         ],
     }
 }
@@ -111,8 +111,8 @@ fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
     let named = if equal { [("limit", INK); 3] } else { [("roll", AXES[0]), ("pitch", AXES[1]), ("yaw", AXES[2])] };
     let both = |(value, (name, color)): (f64, (&str, RGBColor))| {
         [
-            Bound { value, label: format!("{name} {value:.3}"), color },
-            Bound { value: -value, label: format!("{name} −{value:.3}"), color },
+            Bound { value, label: format!("{name} {}", short(value)), color },
+            Bound { value: -value, label: format!("{name} −{}", short(value)), color },
         ]
     };
     values.into_iter().zip(named).take(if equal { 1 } else { 3 }).flat_map(both).collect()
@@ -168,7 +168,7 @@ fn curve(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f
 
 /// A curve that shows beneath its reference once the two agree.
 fn flown(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f64) -> Curve {
-    Curve { width: 4, ..curve(samples, label, color, get) }
+    Curve { width: 3, ..curve(samples, label, color, get) }
 }
 
 fn desired(samples: &[Sample], label: &str, get: fn(&Sample) -> f64) -> Curve {
