@@ -8,7 +8,7 @@
 //! Thrust T and torque tau act as commanded, clipped to the vehicle's limits, and are held between control ticks. The
 //! classical fourth-order Runge-Kutta method advances the state. The equations form a cascade (omega' needs omega only;
 //! q' needs q and omega; v' needs q; p' needs v), so a step runs the four stages of each level before the next level
-//! and folds the factors and the position's stages together: the same method, a fraction of the work.
+//! and folds the factors and the position's stages together: the same method, half the work.
 //!
 //! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall.
 
@@ -164,6 +164,8 @@ impl Plant {
     }
 }
 
+const THIRD: f64 = 1.0 / 3.0;
+
 /// The equations of motion under one held command, scaled for one step h.
 ///
 /// With the body rate as r = h omega / 4, half a step of q' is q (0, r) and half a step of r' is
@@ -205,25 +207,24 @@ impl Motion {
         q: &Quaternion<f64>,
         r: &Vector3<f64>,
     ) -> (Vector3<f64>, Vector3<f64>, Quaternion<f64>, Vector3<f64>) {
-        // Stages of the rate, each a half step's change.
-        let r_change_1 = self.rate_change(r);
-        let r_2 = r + r_change_1;
-        let r_change_2 = self.rate_change(&r_2);
-        let r_3 = r + r_change_2;
-        let r_change_3 = self.rate_change(&r_3);
-        let r_4 = r + (r_change_3 + r_change_3);
-        let r_change_4 = self.rate_change(&r_4);
-        let r_middle = r_change_2 + r_change_3;
+        // The stages r_2 to r_4; with e_4 the last half step, the weighted mean of all four changes is
+        // (r_2 + 2 r_3 + r_4 - r + e_4) / 3 added up from the stages themselves.
+        let (gyroscopic, torque) = (&self.gyroscopic, &self.torque);
+        let pushed = r + torque;
+        let r_2 = pushed + gyroscopic.component_mul(&products(r));
+        let r_3 = pushed + gyroscopic.component_mul(&products(&r_2));
+        let half_step_3 = torque + gyroscopic.component_mul(&products(&r_3));
+        let r_4 = r + (half_step_3 + half_step_3);
+        let half_step_4 = torque + gyroscopic.component_mul(&products(&r_4));
+        let r_next = ((r_2 + r_3) + (r_3 + r_4) - r + half_step_4) * THIRD;
 
-        let q_change_1 = turned(q, r);
-        let q_2 = q + q_change_1;
-        let q_change_2 = turned(&q_2, &r_2);
-        let q_3 = q + q_change_2;
-        let q_change_3 = turned(&q_3, &r_3);
-        let q_4 = q + (q_change_3 + q_change_3);
-        let q_change_4 = turned(&q_4, &r_4);
-        let q_middle = q_change_2 + q_change_3;
-        let q_next = q + (q_change_1 + q_middle + q_middle + q_change_4) * (1.0 / 3.0);
+        let q_2 = turned(q, q, r);
+        let q_3 = turned(q, &q_2, &r_2);
+        let q_4 = turned(q, &q_3, &(r_3 + r_3));
+        let sum = (q_2 + q_3) + (q_3 + q_4) - q;
+        // One Newton step towards unit length; taken from the length before the step, so that nothing waits for it.
+        let to_unit = 1.5 - 0.5 * q.norm_squared();
+        let q_next = turned(&sum, &q_4, &r_4) * (to_unit * THIRD);
 
         // The weights of v' = a are 1, 2, 2, 1 sixths; those of p, whose stages are v + h a / 2 and so on, 1, 1, 1, 0.
         let middle = lean(&q_2) + lean(&q_3);
@@ -232,27 +233,26 @@ impl Motion {
         (
             p + v * self.step + p_lean * self.position.0 + Vector3::z() * self.position.1,
             v + v_lean * self.velocity.0 + Vector3::z() * self.velocity.1,
-            // One Newton step of 1/|q|: the length is off by far less than the root of the rounding error.
-            q_next * (1.5 - 0.5 * q_next.norm_squared()),
-            r + (r_change_1 + r_middle + r_middle + r_change_4) * (1.0 / 3.0),
+            q_next,
+            r_next,
         )
-    }
-
-    /// Half a step of J omega' = (J omega) x omega + tau.
-    #[inline(always)]
-    fn rate_change(&self, r: &Vector3<f64>) -> Vector3<f64> {
-        self.gyroscopic.component_mul(&Vector3::new(r.y * r.z, r.z * r.x, r.x * r.y)) + self.torque
     }
 }
 
-/// Half a step of q' = q (0, omega) / 2: the product q (0, r).
+/// What the gyroscopic term multiplies.
 #[inline(always)]
-fn turned(q: &Quaternion<f64>, r: &Vector3<f64>) -> Quaternion<f64> {
+fn products(r: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(r.y * r.z, r.z * r.x, r.x * r.y)
+}
+
+/// `from` after half a step of q' = q (0, omega) / 2: from + q (0, r).
+#[inline(always)]
+fn turned(from: &Quaternion<f64>, q: &Quaternion<f64>, r: &Vector3<f64>) -> Quaternion<f64> {
     Quaternion::new(
-        -(q.i * r.x + q.j * r.y + q.k * r.z),
-        q.w * r.x + q.j * r.z - q.k * r.y,
-        q.w * r.y + q.k * r.x - q.i * r.z,
-        q.w * r.z + q.i * r.y - q.j * r.x,
+        (from.w - q.i * r.x) - (q.j * r.y + q.k * r.z),
+        (from.i + q.w * r.x) + (q.j * r.z - q.k * r.y),
+        (from.j + q.w * r.y) + (q.k * r.x - q.i * r.z),
+        (from.k + q.w * r.z) + (q.i * r.y - q.j * r.x),
     )
 }
 
