@@ -66,15 +66,9 @@ pub fn tanh(x: f32) -> f32 {
     let y = 0.5 * x.clamp(-SATURATION, SATURATION);
     let y2 = y * y;
     // Coefficients over 135135, so that the squares stay near one.
-    let a = y * (1.0 + y2 * (0.128_205_13 + y2 * (0.002_797_202_8 + y2 * 7.400_007e-6)));
+    let a = y * (1.0 + y2 * (0.128_205_13 + y2 * (0.002_797_203 + y2 * 7.400_007e-6)));
     let q = 1.0 + y2 * (0.461_538_46 + y2 * (0.023_310_024 + y2 * 2.072_002e-4));
     (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
-}
-
-/// Square root in double precision, correctly rounded, for configuration time.
-#[must_use]
-pub fn sqrt_f64(x: f64) -> f64 {
-    libm::sqrt(x)
 }
 
 /// e^x, for configuration time (not used in a tick).
@@ -87,6 +81,12 @@ pub fn exp(x: f64) -> f64 {
 #[must_use]
 pub fn ln_1p(x: f64) -> f64 {
     libm::log1p(x)
+}
+
+/// Square root in double precision, for configuration time.
+#[must_use]
+pub fn sqrt_f64(x: f64) -> f64 {
+    libm::sqrt(x)
 }
 
 /// sqrt(x^2 + y^2) without overflow, for configuration time.

@@ -3,8 +3,10 @@
 //! At each tick the law sees the plant's state rounded to single precision and the reference of that instant; its wrench is
 //! held until the next tick. Time is integer microseconds.
 
-use crate::plant::{BodyState, Clipping, Diverged, Plant};
+use crate::actuators::{ActuationError, Actuators};
+use crate::plant::{BodyState, Clipping, Plant};
 use crate::scenario::Scenario;
+use controller_core::allocation::mixer::Thrusts;
 use controller_core::controller::{Controller, Diagnostics};
 use controller_core::error::{InputError, ParameterError};
 use controller_core::reference::{Reference, Trajectory};
@@ -16,6 +18,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Flight {
     plant: Plant,
+    actuators: Actuators,
     controller: Controller,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
@@ -24,7 +27,7 @@ pub struct Flight {
 }
 
 /// What happened at one control tick.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Tick {
     /// Time since the start, us.
     pub time_us: u64,
@@ -36,8 +39,10 @@ pub struct Tick {
     pub wrench: Wrench,
     /// What the law went through.
     pub diagnostics: Diagnostics,
-    /// What the plant cut.
+    /// What the limits or the rotors cut.
     pub clipping: Clipping,
+    /// Thrust commanded of each rotor, N; empty without rotors.
+    pub rotor_thrusts: Thrusts,
 }
 
 /// A flight that could not go on.
@@ -54,8 +59,8 @@ pub struct FlightError {
 pub enum Cause {
     /// The law refused its input.
     Law(InputError),
-    /// The simulated motion is no longer finite.
-    Plant(Diverged),
+    /// The wrench could not be applied, or the motion is no longer finite.
+    Actuation(ActuationError),
 }
 
 impl fmt::Display for FlightError {
@@ -63,7 +68,7 @@ impl fmt::Display for FlightError {
         write!(f, "at {} s: ", self.time_us as f64 / 1e6)?;
         match &self.cause {
             Cause::Law(error) => write!(f, "the law refused its input: {error}"),
-            Cause::Plant(error) => write!(f, "{error}"),
+            Cause::Actuation(error) => write!(f, "{error}"),
         }
     }
 }
@@ -87,7 +92,10 @@ impl Flight {
     /// As [`controller`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         let (timing, configuration) = (&scenario.timing, &scenario.configuration);
+        let vehicle = configuration.vehicle();
+        let hover = vehicle.mass * vehicle.gravity;
         Ok(Self {
+            actuators: Actuators::new(scenario.rotors.as_ref(), scenario.delay_steps, hover, timing.step()),
             plant: Plant::new(configuration.vehicle(), configuration.limits(), timing.step(), scenario.initial),
             controller: controller(scenario)?,
             trajectory: Arc::clone(&scenario.trajectory),
@@ -108,8 +116,11 @@ impl Flight {
         let reference = self.trajectory.at(time_us);
         let (wrench, diagnostics) =
             self.controller.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
-        let clipping = self.plant.hold(&wrench, self.steps_per_tick).map_err(|error| fail(Cause::Plant(error)))?;
+        let (clipping, rotor_thrusts) = self
+            .actuators
+            .hold(&mut self.plant, &wrench, self.steps_per_tick)
+            .map_err(|error| fail(Cause::Actuation(error)))?;
         self.tick += 1;
-        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipping })
+        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipping, rotor_thrusts })
     }
 }

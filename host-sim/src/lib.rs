@@ -3,12 +3,15 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
+//! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
 //! | [`scenario`] | files to validated types |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`claims`] | what was claimed against what was flown |
 //! | [`log`], [`plots`] | log.csv and the figures |
+//! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
 //! | [`fly`], [`law`] | the two commands |
 
+pub mod actuators;
 pub mod claims;
 pub mod flight;
 pub mod fly;
@@ -17,4 +20,5 @@ pub mod log;
 pub mod plant;
 pub mod plots;
 pub mod progress;
+pub mod sampled_loop;
 pub mod scenario;

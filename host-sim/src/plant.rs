@@ -82,6 +82,12 @@ impl Clipping {
     pub fn any(self) -> bool {
         self.thrust || self.torque
     }
+
+    /// What either cut.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { thrust: self.thrust || other.thrust, torque: self.torque || other.torque }
+    }
 }
 
 /// The simulated motion left the finite numbers; nothing after it means anything.
@@ -149,18 +155,30 @@ impl Plant {
         let commanded = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
         let thrust = commanded.0.clamp(0.0, self.thrust_max);
         let torque = commanded.1.zip_map(&self.torque_max, |value, limit| value.clamp(-limit, limit));
-        let motion = Motion::new(self, thrust, &torque);
+        self.advance(thrust, &torque, steps);
+        self.check()?;
+        Ok(Clipping { thrust: thrust != commanded.0, torque: torque != commanded.1 })
+    }
+
+    /// One integration step under thrust, N, and torque, N m, as they are.
+    pub fn act(&mut self, thrust: f64, torque: &Vector3<f64>) {
+        self.advance(thrust, torque, 1);
+    }
+
+    /// # Errors
+    /// [`Diverged`] if the state is not finite.
+    pub fn check(&self) -> Result<(), Diverged> {
+        if self.state.is_finite() { Ok(()) } else { Err(Diverged) }
+    }
+
+    fn advance(&mut self, thrust: f64, torque: &Vector3<f64>, steps: u32) {
+        let motion = Motion::new(self, thrust, torque);
         let BodyState { mut position, mut velocity, mut attitude, angular_velocity } = self.state;
         let mut rate = angular_velocity * (0.25 * self.step);
         for _ in 0..steps {
             (position, velocity, attitude, rate) = motion.step(&position, &velocity, &attitude, &rate);
         }
         self.state = BodyState { position, velocity, attitude, angular_velocity: rate * (4.0 / self.step) };
-        if self.state.is_finite() {
-            Ok(Clipping { thrust: thrust != commanded.0, torque: torque != commanded.1 })
-        } else {
-            Err(Diverged)
-        }
     }
 }
 

@@ -5,17 +5,23 @@
 //! | `name`, `duration`, `[vehicle]`, `[limits]`, `[gains]`, `[reference]` | an error |
 //! | `[control]` | `rate` 100 Hz; no `thrust_floor`: the paper's thrust |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
+//! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
+//! | `[sampling]` | no delay |
+//! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
 //! Each section has a module; one that comes later adds a module, its name to [`SECTIONS`] and a field to [`Scenario`].
 //! Numbers are read in double precision and rounded once, where the law's types take them.
 
+pub mod actuation;
+pub mod bounds;
 pub mod initial;
 pub mod reference;
 pub mod section;
 pub mod timing;
 pub mod vehicle;
 
+use crate::actuators::RotorSetup;
 use crate::plant::BodyState;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
@@ -32,8 +38,20 @@ use toml::Table;
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// What a scenario file may hold at its top level.
-const SECTIONS: [&str; 9] =
-    ["name", "duration", "vehicle", "limits", "gains", "control", "plant", "initial", "reference"];
+const SECTIONS: [&str; 12] = [
+    "name",
+    "duration",
+    "vehicle",
+    "limits",
+    "gains",
+    "control",
+    "plant",
+    "rotors",
+    "sampling",
+    "initial",
+    "reference",
+    "reference_bounds",
+];
 
 /// A flight that can be flown.
 #[derive(Clone)]
@@ -44,6 +62,10 @@ pub struct Scenario {
     pub timing: Timing,
     /// Vehicle, limits, gains, the reference's bounds, thrust floor: what a certificate would be about.
     pub configuration: Configuration,
+    /// Its rotors and their lag; none: thrust and torque act directly.
+    pub rotors: Option<RotorSetup>,
+    /// From a tick to the moment its wrench acts, plant steps.
+    pub delay_steps: u64,
     /// Where it starts.
     pub initial: BodyState,
     /// What it is asked to do, as the file says it.
@@ -89,10 +111,17 @@ impl Scenario {
         let timing = Timing::read(root)?;
         let reference = ReferenceKind::read(root)?;
         let trajectory = reference.build().map_err(|error| refused(root, &error))?;
-        let configuration = vehicle::read_configuration(root, &trajectory.bounds())?;
+        let bounds = bounds::read_bounds(root, &trajectory.bounds())?;
+        let rotors = actuation::read_rotors(root)?;
+        let delay_steps = actuation::read_delay(root, &timing)?;
+        let configuration = vehicle::read_configuration(root, &bounds)?;
+        let configuration = match &rotors {
+            None => configuration,
+            Some(setup) => configuration.with_rotors(setup.rotors.clone()).map_err(|error| refused(root, &error))?,
+        };
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
-        Ok(Self { name, timing, configuration, initial, reference, trajectory })
+        Ok(Self { name, timing, configuration, rotors, delay_steps, initial, reference, trajectory })
     }
 
     /// Whether `other` is the same flight, whatever its name.
@@ -100,6 +129,8 @@ impl Scenario {
     pub fn flies_like(&self, other: &Self) -> bool {
         self.timing == other.timing
             && self.configuration == other.configuration
+            && self.rotors == other.rotors
+            && self.delay_steps == other.delay_steps
             && self.initial == other.initial
             && self.reference == other.reference
     }

@@ -151,20 +151,21 @@ impl<'a> Section<'a> {
     /// # Errors
     /// If they are missing, not three, or one of them is refused as in [`Self::number`].
     pub fn vector(&self, key: &str) -> Result<Vector3<f64>, FieldError> {
-        const WANTED: &str = "a list of three numbers";
-        let elements = match self.require(key, WANTED)? {
-            Value::Array(elements) => elements,
-            other => return Err(self.mismatch(key, WANTED, other)),
-        };
-        if elements.len() != 3 {
-            return Err(FieldError::new(self.path_of(key), format!("must be {WANTED}, found {}", elements.len())));
+        vector_at(&self.path_of(key), self.require(key, THREE_NUMBERS)?)
+    }
+
+    /// The elements of a list that must be there, each with its path.
+    ///
+    /// # Errors
+    /// If it is missing or no list; `wanted` says of what.
+    pub fn elements(&self, key: &str, wanted: &str) -> Result<Vec<(String, &'a Value)>, FieldError> {
+        match self.require(key, wanted)? {
+            Value::Array(elements) => {
+                let path = self.path_of(key);
+                Ok(elements.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect())
+            }
+            other => Err(self.mismatch(key, wanted, other)),
         }
-        let mut vector = Vector3::zeros();
-        for (index, (component, value)) in vector.iter_mut().zip(elements).enumerate() {
-            *component =
-                finite(value).map_err(|problem| FieldError::new(format!("{}[{index}]", self.path_of(key)), problem))?;
-        }
-        Ok(vector)
     }
 
     /// Three finite numbers, or `default` if they are left out.
@@ -190,6 +191,27 @@ fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
         Some((key, index)) => table.get(key)?.get(index.parse::<usize>().ok()?),
         None => table.get(key),
     }
+}
+
+/// What a vector must be.
+const THREE_NUMBERS: &str = "a list of three numbers";
+
+/// Three finite numbers at `path`.
+///
+/// # Errors
+/// Names the element that is refused, or `path` if there are not three.
+pub fn vector_at(path: &str, value: &Value) -> Result<Vector3<f64>, FieldError> {
+    let Value::Array(elements) = value else {
+        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", value.type_str())));
+    };
+    if elements.len() != 3 {
+        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", elements.len())));
+    }
+    let mut vector = Vector3::zeros();
+    for (index, (component, value)) in vector.iter_mut().zip(elements).enumerate() {
+        *component = finite(value).map_err(|problem| FieldError::new(format!("{path}[{index}]"), problem))?;
+    }
+    Ok(vector)
 }
 
 /// A number that single precision can hold, or what is wrong with it.
