@@ -19,9 +19,9 @@ pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
 /// Section VI: |torque| about each axis, N m.
 pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 /// Section VI: steady-state position error, m.
-const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
-const PUBLISHED_MRP_ERROR: f64 = 1e-4;
+pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// Relative rounding of the law's thrust: some ten operations in single precision.
 const ROUNDING: f64 = 1e-6;
 
