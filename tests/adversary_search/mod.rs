@@ -64,7 +64,7 @@ pub enum Domain {
 }
 
 /// The point of one axis' reachable set at `along` of its upper arc (0 to 1), scaled by `depth` in [-1, 1]: (u_f, u_s).
-fn reachable_point(k_f: f64, k_s: f64, level: f64, along: f64, depth: f64) -> (f64, f64) {
+pub fn reachable_point(k_f: f64, k_s: f64, level: f64, along: f64, depth: f64) -> (f64, f64) {
     let slow = k_f.min(k_s);
     let time = -(1.0 - along).ln() / slow;
     let (e_f, e_s) = ((-k_f * time).exp(), (-k_s * time).exp());
@@ -140,6 +140,11 @@ impl Situation {
         }
     }
 
+    /// u, u' and u''.
+    pub fn command_and_derivatives(&self) -> [Vector3<f32>; 3] {
+        [self.command, self.command_rate, self.command_acceleration]
+    }
+
     /// R_d, omega_d and omega_d'.
     pub fn desired(&self) -> AttitudeReference {
         let Self { command, command_rate, command_acceleration, reference, .. } = self;
@@ -179,8 +184,7 @@ impl Situation {
             position: z_1 - filtered / (k_s * k_f),
             velocity: Vector3::zeros(),
             attitude: desired.attitude * self.attitude_error,
-            angular_velocity: self.rate_error
-                + attitude::rotate_back(&self.attitude_error, &desired.angular_velocity),
+            angular_velocity: self.rate_error + attitude::rotate_back(&self.attitude_error, &desired.angular_velocity),
         };
         let lift = Lift { memory: self.attitude_error, sign: 1.0 };
         (Memory { filter: self.filter, lift: Some(lift) }, state)
