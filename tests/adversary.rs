@@ -36,7 +36,7 @@ fn promised(form: &Form) -> Found {
 
 /// Attacks every objective; fails if one goes beyond the sharp bound, or the sharp bound beyond the printed one.
 fn attack(configuration: &Configuration, domain: Domain, restarts: usize, seed: u64) -> Found {
-    let certificate = Certificate::new(configuration);
+    let certificate = Certificate::new(configuration).unwrap();
     let (sharp, printed) = (promised(&certificate.sharp), promised(&certificate.printed));
     let mut rng = random::generator(seed);
     let found = OBJECTIVES.map(|objective| worst(configuration, domain, objective, restarts, &mut rng).value);
@@ -53,7 +53,7 @@ fn with_table_1_the_adversary_is_strong_and_the_bound_stands() {
     let configuration = paper();
     let reachable = attack(&configuration, Domain::Reachable, 24, 1);
     let decoupled = attack(&configuration, Domain::Decoupled, 24, 2);
-    let Certificate { sharp, printed } = Certificate::new(&configuration);
+    let Certificate { sharp, printed } = Certificate::new(&configuration).unwrap();
     println!("Table I: {OBJECTIVES:?}");
     println!("reachable {reachable:.4?}");
     println!("decoupled {decoupled:.4?}");
@@ -78,7 +78,7 @@ fn the_bound_stands_with_300_random_configurations() {
         let configuration = around_table_1(&mut rng, if number % 4 < 2 { 2.0 } else { 8.0 });
         let domain = if number % 2 == 0 { Domain::Decoupled } else { Domain::Reachable };
         let found = attack(&configuration, domain, 3, 1000 + number);
-        let sharp = promised(&Certificate::new(&configuration).sharp);
+        let sharp = promised(&Certificate::new(&configuration).unwrap().sharp);
         for ((closest, found), sharp) in closest.iter_mut().zip(found).zip(sharp) {
             *closest = closest.max(found / sharp);
         }

@@ -84,7 +84,7 @@ impl Motion {
 /// A random configuration whose limits are what the certificate asks for, and next to nothing more.
 fn certified(rng: &mut ChaCha8Rng, spread: f32) -> Certified {
     let loose = around_table_1(rng, spread);
-    let Form { torque, inequalities, .. } = Certificate::new(&loose).sharp;
+    let Form { torque, inequalities, .. } = Certificate::new(&loose).unwrap().sharp;
     let thrust_max =
         inequalities.iter().filter(|i| i.name.contains("thrust for") || i.name.contains("greatest thrust"));
     let thrust_max = thrust_max.map(|inequality| inequality.required).fold(0.0, f64::max);
@@ -206,7 +206,7 @@ fn configurations_that_the_adversary_beats_do_leave_their_limits() {
         let axis = number % 3;
         let loose = around_table_1(&mut rng, 4.0);
         let found = worst(&loose, Domain::Reachable, Objective::Torque(axis), 3, &mut rng);
-        let mut torque_max = Certificate::new(&loose).sharp.torque * (1.0 + MARGIN);
+        let mut torque_max = Certificate::new(&loose).unwrap().sharp.torque * (1.0 + MARGIN);
         torque_max[axis] = found.value * f64::from(rng.random_range(0.8..0.99_f32));
         let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains(), *loose.bounds());
         let configuration = limited(vehicle, gains, bounds, f64::from(loose.limits().thrust_max), &torque_max);

@@ -5,8 +5,10 @@ mod random;
 
 use adversary_search::configurations::around_table_1;
 use adversary_search::{COORDINATES, Domain, Situation};
-use controller_core::certificate::reachable::half_l1_norm;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::reachable::{Reachable, half_l1_norm};
 use controller_core::mrp;
+use controller_core::reference::ReferenceBounds;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
 use random::ChaCha8Rng;
@@ -192,4 +194,103 @@ fn the_adversarys_reachable_set_is_the_one_the_filters_reach() {
             .sum();
         assert!((by_arc - integral).abs() < 2e-3 * integral, "{k_f} {k_s} {angle}: {by_arc} {integral}");
     }
+}
+
+/// How many of the derivation's gains are in use.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Gain {
+    ExactExpression,
+    MagnitudeGrowsWithTilt,
+    OneBudgetForTheRate,
+    OneBudgetForTheHeading,
+    CouplingByTheSineOfChi,
+    ShapeOfTheSnap,
+    PartsApart,
+}
+
+/// The derivation's bound on |omega_d'| with the gains up to `used`, at one (tilt, direction of w, split of u', psi').
+fn bound_at(reach: &Reachable, bounds: &ReferenceBounds, used: Gain, at: [f64; 4]) -> f64 {
+    let [tilt, direction, split, turning] = at;
+    let tan = tilt * reach.horizontal / reach.vertical_least;
+    let secant = tan.hypot(1.0);
+    let (sin, cos) = (tan / secant, 1.0 / secant);
+    let n = reach.vertical_least * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
+
+    let (along, across) = (reach.horizontal_snap * direction.cos(), reach.horizontal_snap * direction.sin());
+    let (w, w_perp) = if used >= Gain::ShapeOfTheSnap {
+        ((cos * along + sin * reach.vertical_snap).hypot(across), across)
+    } else {
+        (reach.horizontal_snap.hypot(reach.vertical_snap), reach.horizontal_snap)
+    };
+    let (p, r) = if used >= Gain::OneBudgetForTheRate {
+        (reach.jerk * split.cos() / n, reach.jerk * split.sin() / n)
+    } else {
+        (reach.jerk / n, reach.jerk / n)
+    };
+    let (fastest, second) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
+    let (psi_1, psi_2) = if used >= Gain::OneBudgetForTheHeading {
+        let psi_1 = turning * fastest.min(second.sqrt());
+        (psi_1, (second * second - psi_1.powi(4)).max(0.0).sqrt())
+    } else {
+        (fastest, second)
+    };
+    let by_sine = used >= Gain::CouplingByTheSineOfChi;
+    let w_mixed = if by_sine { 0.5 * (w + w_perp) } else { w } / n;
+    let p_mixed = if by_sine { 0.5 * (p + p.min(reach.horizontal_jerk / n)) } else { p };
+
+    let linear = (w / n, tan * w_mixed);
+    let quadratic = (
+        p * (2.0 * r).hypot(psi_1 * secant + tan * p_mixed),
+        psi_2 * secant
+            + 2.0 * tan * r * p_mixed
+            + (psi_1 * tan).powi(2)
+            + 2.0 * psi_1 * p * sin * secant * secant
+            + 0.5 * p * p * (1.0 + 2.0 * tan * tan),
+    );
+    if used >= Gain::PartsApart {
+        (linear.0 + quadratic.0).hypot(linear.1 + quadratic.1)
+    } else {
+        linear.0.hypot(linear.1) + quadratic.0.hypot(quadratic.1)
+    }
+}
+
+#[test]
+fn every_step_of_the_derivation_gains() {
+    const GRID: u32 = 24;
+    let configuration = adversary_search::configurations::paper();
+    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+    let gravity = f64::from(configuration.vehicle().gravity);
+    let [k_f, k_s, m_p] = [gains.k_f, gains.k_s, gains.m_p].map(f64::from);
+    let reach = Reachable::new(k_f, k_s, m_p, gravity, bounds);
+    let certificate = Certificate::new(&configuration).unwrap();
+    let printed = certificate.printed.rates.angular_acceleration;
+    let sharp = certificate.sharp.rates.angular_acceleration;
+
+    let mut before = printed;
+    println!("Lemma 1 as printed: {printed:.2}");
+    for (used, name) in [
+        (Gain::ExactExpression, "exact expression"),
+        (Gain::MagnitudeGrowsWithTilt, "n grows with the tilt"),
+        (Gain::OneBudgetForTheRate, "p and r share |u'|"),
+        (Gain::OneBudgetForTheHeading, "psi' and psi'' share K_nu''"),
+        (Gain::CouplingByTheSineOfChi, "[v] in place of |v|"),
+        (Gain::ShapeOfTheSnap, "the shape of u''"),
+        (Gain::PartsApart, "tilting and yawing apart"),
+    ] {
+        let share = |i: u32| f64::from(i) / f64::from(GRID);
+        let quarter = |i: u32| share(i) * std::f64::consts::FRAC_PI_2;
+        let mut greatest = 0.0_f64;
+        for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j))) {
+            for (k, l) in (0..=GRID).flat_map(|k| (0..=GRID).map(move |l| (k, l))) {
+                let at = [share(i), quarter(j), quarter(k), share(l)];
+                greatest = greatest.max(bound_at(&reach, bounds, used, at));
+            }
+        }
+        println!("{name}: {greatest:.2}");
+        assert!(greatest < before, "{name} gains nothing: {greatest} after {before}");
+        before = greatest;
+    }
+    println!("over cells, every quantity at its worst end: {sharp:.2}");
+    // What the cells cost: they bound the supremum that the grid samples, from the other side.
+    assert!(sharp >= before && sharp <= 1.02 * before, "{sharp} over cells, {before} on the grid");
 }

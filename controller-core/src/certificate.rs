@@ -21,13 +21,18 @@ pub mod configuration;
 pub mod inequality;
 pub mod printed;
 pub mod reachable;
+pub mod rotors;
 pub mod sharp;
 
+use crate::allocation::geometry::ROTORS_MAX;
+use crate::error::ParameterError;
 use crate::math;
 use configuration::Configuration;
+use heapless::Vec;
 use inequality::Inequality;
 use nalgebra::Vector3;
 use reachable::Reachable;
+use rotors::RotorReport;
 use sharp::DesiredRates;
 
 /// By how much, relative, bounds are raised to cover the single-precision arithmetic of the law. Its own relative error
@@ -73,12 +78,14 @@ impl Form {
 }
 
 /// The certificate of one configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// The paper's own bounds, x_f(0) = 0.
     pub printed: Form,
     /// The bounds of `docs/sharp-bound.md`; they decide.
     pub sharp: Form,
+    /// Every rotor under the sharp form's bounds; empty for a configuration without rotors.
+    pub rotors: Vec<RotorReport, ROTORS_MAX>,
 }
 
 /// Which of the two derivations a form follows.
@@ -90,15 +97,31 @@ enum Derivation {
 
 impl Certificate {
     /// Works out every inequality for `configuration`. The amount of work is fixed.
-    #[must_use]
-    pub fn new(configuration: &Configuration) -> Self {
-        Self { printed: form(configuration, Derivation::Printed), sharp: form(configuration, Derivation::Sharp) }
+    ///
+    /// # Errors
+    /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
+        let printed = form(configuration, Derivation::Printed);
+        let sharp = form(configuration, Derivation::Sharp);
+        let rotors = rotors::reports(configuration, &sharp)?;
+        Ok(Self { printed, sharp, rotors })
     }
 
-    /// Whether the configuration is certified: every inequality of the sharp form holds.
+    /// Everything that decides: the sharp form's inequalities, then two for each rotor.
+    pub fn inequalities(&self) -> impl Iterator<Item = &Inequality> {
+        self.sharp.inequalities.iter().chain(self.rotors.iter().flat_map(|rotor| [&rotor.least, &rotor.greatest]))
+    }
+
+    /// Whether the configuration is certified: everything that decides holds.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.sharp.holds()
+        self.inequalities().all(Inequality::holds)
+    }
+
+    /// The inequality with the least margin.
+    #[must_use]
+    pub fn tightest(&self) -> Option<Inequality> {
+        inequality::tightest(self.inequalities())
     }
 }
 
@@ -215,7 +238,7 @@ mod tests {
 
     #[test]
     fn table_1_is_refused_as_printed_and_in_yaw_only() {
-        let printed = Certificate::new(&paper()).printed;
+        let printed = Certificate::new(&paper()).unwrap().printed;
         assert!(!printed.holds());
         assert!((printed.torque - Vector3::new(0.379, 0.446, 0.664)).amax() < 1e-3, "{}", printed.torque);
         let failing = printed.inequalities.iter().filter(|inequality| !inequality.holds());
@@ -224,7 +247,7 @@ mod tests {
 
     #[test]
     fn table_1_is_certified_by_the_sharp_bound_within_the_published_figures() {
-        let sharp = Certificate::new(&paper()).sharp;
+        let sharp = Certificate::new(&paper()).unwrap().sharp;
         assert!(sharp.holds());
         let published = Vector3::new(0.29, 0.33, 0.48);
         assert!(sharp.torque.iter().zip(published.iter()).all(|(ours, theirs)| ours <= theirs), "{}", sharp.torque);
@@ -233,7 +256,7 @@ mod tests {
 
     #[test]
     fn theorem_1s_interval_is_the_published_one() {
-        let thrust = Certificate::new(&paper()).printed.thrust;
+        let thrust = Certificate::new(&paper()).unwrap().printed.thrust;
         assert!((thrust.least - 3.512).abs() < 1e-3 && (thrust.greatest - 6.188).abs() < 1e-3, "{thrust:?}");
     }
 }

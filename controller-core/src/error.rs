@@ -26,6 +26,8 @@ pub enum Reason {
     TooFew(usize),
     /// Too many elements, with the greatest number.
     TooMany(usize),
+    /// Not zero where only zero makes sense.
+    NotZero,
     /// Not in strictly increasing order.
     NotIncreasing,
     /// A heading direction that is not a unit vector, or a derivative not tangent to the circle.
@@ -50,6 +52,7 @@ impl fmt::Display for Reason {
             }
             Self::TooFew(least) => write!(f, "needs at least {least} elements"),
             Self::TooMany(most) => write!(f, "takes at most {most} elements"),
+            Self::NotZero => write!(f, "must be zero"),
             Self::NotIncreasing => write!(f, "must be strictly increasing"),
             Self::NotOnCircle => write!(f, "must be a unit vector with derivatives along the circle"),
             Self::DoesNotSpan => write!(f, "cannot produce thrust and all three torques independently"),

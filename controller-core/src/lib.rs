@@ -2,6 +2,7 @@
 #![no_std]
 #![deny(unsafe_code)]
 
+pub mod allocation;
 pub mod attitude;
 pub mod attitude_reference;
 pub mod certificate;
@@ -21,7 +22,7 @@ pub mod vehicle;
 /// What most users need in scope.
 pub mod prelude {
     pub use crate::certificate::Certificate;
-    pub use crate::certificate::configuration::{Certified, Configuration};
+    pub use crate::certificate::configuration::{Certified, Configuration, Refused};
     pub use crate::controller::{Controller, Diagnostics, Memory};
     pub use crate::error::{InputError, ParameterError};
     pub use crate::gains::{GainParameters, Gains};

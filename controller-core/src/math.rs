@@ -66,7 +66,7 @@ pub fn tanh(x: f32) -> f32 {
     let y = 0.5 * x.clamp(-SATURATION, SATURATION);
     let y2 = y * y;
     // Coefficients over 135135, so that the squares stay near one.
-    let a = y * (1.0 + y2 * (0.128_205_13 + y2 * (0.002_797_202_8 + y2 * 7.400_007e-6)));
+    let a = y * (1.0 + y2 * (0.128_205_13 + y2 * (0.002_797_203 + y2 * 7.400_007e-6)));
     let q = 1.0 + y2 * (0.461_538_46 + y2 * (0.023_310_024 + y2 * 2.072_002e-4));
     (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
 }

@@ -9,9 +9,12 @@
 //!
 //! Time is integer microseconds; see [`phase`] for why a month of uptime costs a periodic reference no precision.
 
+mod bernstein;
 pub mod harmonic;
 pub mod hover;
 pub mod phase;
+mod segment;
+mod spline;
 pub mod waypoints;
 
 use crate::error::{InputError, ParameterError, Reason, require, require_finite};
@@ -120,4 +123,10 @@ pub trait Trajectory {
 
     /// Bounds that hold at every instant, rounded outwards.
     fn bounds(&self) -> ReferenceBounds;
+}
+
+/// The least single-precision number not below `bound`, which is not negative.
+fn outwards(bound: f64) -> f32 {
+    let rounded = bound as f32;
+    if f64::from(rounded) < bound { rounded.next_up() } else { rounded }
 }

@@ -1,6 +1,7 @@
 //! A configuration, and the only kind that may fly: a certified one.
 
 use super::Certificate;
+use crate::allocation::Rotors;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::gains::Gains;
 use crate::reference::ReferenceBounds;
@@ -14,6 +15,7 @@ pub struct Configuration {
     gains: Gains,
     bounds: ReferenceBounds,
     thrust_floor: Option<f32>,
+    rotors: Option<Rotors>,
 }
 
 impl Configuration {
@@ -30,7 +32,7 @@ impl Configuration {
         let bounds = bounds.validated()?;
         let room = vehicle.gravity - bounds.vertical_acceleration;
         require(gains.m_p < room, "gains.m_p", Reason::NotBelow(room))?;
-        Ok(Self { vehicle, limits, gains, bounds, thrust_floor: None })
+        Ok(Self { vehicle, limits, gains, bounds, thrust_floor: None, rotors: None })
     }
 
     /// Turns on the thrust projection T = max(m u.R e3, floor), `floor` in N; see [`crate::projection`].
@@ -43,6 +45,19 @@ impl Configuration {
         let least = self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration);
         require(floor <= least, field, Reason::NotBelow(least))?;
         Ok(Self { thrust_floor: Some(floor), ..self })
+    }
+
+    /// Carries the certificate to the rotors.
+    ///
+    /// # Errors
+    /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it.
+    pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
+        let hover = self.vehicle.mass * self.vehicle.gravity;
+        let greatest: f32 = rotors.iter().map(|rotor| rotor.thrust_max).sum();
+        let least: f32 = rotors.iter().map(|rotor| rotor.thrust_min).sum();
+        require(greatest > hover, "rotors.speed", Reason::NotAbove(hover))?;
+        require(least < hover, "rotors.speed", Reason::NotBelow(hover))?;
+        Ok(Self { rotors: Some(rotors), ..self })
     }
 
     /// The vehicle.
@@ -74,6 +89,22 @@ impl Configuration {
     pub fn thrust_floor(&self) -> Option<f32> {
         self.thrust_floor
     }
+
+    /// The rotors, if the certificate is to reach them.
+    #[must_use]
+    pub fn rotors(&self) -> Option<&Rotors> {
+        self.rotors.as_ref()
+    }
+}
+
+/// Why a configuration is not certified.
+#[allow(clippy::large_enum_variant)] // without an allocator there is nowhere else to put the certificate
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refused {
+    /// Its certificate does not hold; look there for the inequality that fails.
+    Fails(Certificate),
+    /// A bound is beyond double precision.
+    Undefined(ParameterError),
 }
 
 /// A configuration whose certificate holds. There is no other way to make one than to certify it.
@@ -87,10 +118,11 @@ impl Certified {
     /// Certifies `configuration`.
     ///
     /// # Errors
-    /// The certificate, if it does not hold: it says which inequality fails and by how much.
-    pub fn new(configuration: Configuration) -> Result<Self, Certificate> {
-        let certificate = Certificate::new(&configuration);
-        if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(certificate) }
+    /// [`Refused`] says which inequality fails and by how much.
+    #[allow(clippy::result_large_err)] // as above, and it happens once, on the ground
+    pub fn new(configuration: Configuration) -> Result<Self, Refused> {
+        let certificate = Certificate::new(&configuration).map_err(Refused::Undefined)?;
+        if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(Refused::Fails(certificate)) }
     }
 
     /// What was certified.

@@ -1,0 +1,341 @@
+//! Rotors as they are mounted: validated, with the effectiveness matrix B and its minimum-norm inverse.
+//!
+//! Rotor i with thrust f_i acts on the body with
+//!
+//! ```text
+//! tau = p_i x (f_i e3) + s_i (k_m / k_eta) f_i e3 = (y_i, -x_i, s_i k_m / k_eta) f_i,   f_i = k_eta (speed)^2
+//! ```
+//!
+//! so column i of B is (1, y_i, -x_i, s_i k_m / k_eta): newtons and newton metres per newton. The height z_i is kept for
+//! other users; with all thrusts along body z it moves no torque. Drag of the air on the rotor turns the body *against*
+//! the rotor's own rotation: s_i = +1 for a rotor that turns clockwise seen from above.
+//!
+//! The pseudo-inverse B+ = B' (B B')^-1 gives the thrusts of least sum of squares; for four rotors it is the inverse. It
+//! is worked out in f64 from rows scaled to unit length, so that newtons and newton metres weigh the same.
+//!
+//! Tilted rotors, and rotors that push down, are beyond this module.
+
+use super::collected;
+use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
+use crate::math;
+use core::ops::Deref;
+use heapless::Vec;
+use nalgebra::{Matrix4, Vector3, Vector4};
+
+/// The fewest rotors that can span thrust and three torques.
+pub const ROTORS_MIN: usize = 4;
+
+/// The most rotors a vehicle may have.
+pub const ROTORS_MAX: usize = 8;
+
+/// The greatest distance of a rotor from the centre of mass along an axis, and the greatest k_m / k_eta, m.
+const LENGTH_MAX: f32 = 100.0;
+
+/// The greatest thrust of one rotor, N.
+const THRUST_MAX: f32 = 1e6;
+
+/// How far each row of B must stay from every combination of the other three: the least sine of the angle between them.
+///
+/// Below it, one wrench component can only be had with rotor thrusts 100 times those it would need alone.
+pub const INDEPENDENCE: f64 = 0.01;
+
+/// The eight names of a field that every rotor has.
+macro_rules! of_each_rotor {
+    ($name:literal) => {
+        [
+            concat!("rotors.", $name, "[0]"),
+            concat!("rotors.", $name, "[1]"),
+            concat!("rotors.", $name, "[2]"),
+            concat!("rotors.", $name, "[3]"),
+            concat!("rotors.", $name, "[4]"),
+            concat!("rotors.", $name, "[5]"),
+            concat!("rotors.", $name, "[6]"),
+            concat!("rotors.", $name, "[7]"),
+        ]
+    };
+}
+
+const POSITION: [&str; ROTORS_MAX] = of_each_rotor!("position");
+const THRUST_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("thrust_coefficient");
+const DRAG_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("drag_coefficient");
+const MINIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_min");
+const MAXIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_max");
+
+/// Which way a rotor turns, seen from above (from +z, looking down).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Spin {
+    /// Its drag turns the body counter-clockwise: positive yaw torque, s = +1.
+    Clockwise,
+    /// Its drag turns the body clockwise: negative yaw torque, s = -1.
+    CounterClockwise,
+}
+
+impl Spin {
+    /// The sign s of the drag torque on the body about +z.
+    #[must_use]
+    pub fn sign(self) -> f32 {
+        match self {
+            Self::Clockwise => 1.0,
+            Self::CounterClockwise => -1.0,
+        }
+    }
+}
+
+/// One rotor, its thrust along +body z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotor {
+    /// Hub position from the centre of mass, m, body frame.
+    pub position: Vector3<f32>,
+    /// Direction of rotation.
+    pub spin: Spin,
+    /// k_eta: thrust per squared speed, N/(rad/s)^2.
+    pub thrust_coefficient: f32,
+    /// k_m: drag torque per squared speed, N m/(rad/s)^2.
+    pub drag_coefficient: f32,
+    /// Least thrust while flying, N: that of the idle speed.
+    pub thrust_min: f32,
+    /// Greatest thrust, N.
+    pub thrust_max: f32,
+}
+
+impl Rotor {
+    /// Thrust, N, at a speed in rad/s.
+    #[must_use]
+    pub fn thrust_at(&self, speed: f32) -> f32 {
+        self.thrust_coefficient * speed * speed
+    }
+
+    /// Speed, rad/s, at a thrust in N (negative ones count as zero).
+    #[must_use]
+    pub fn speed_at(&self, thrust: f32) -> f32 {
+        math::sqrt(thrust.max(0.0) / self.thrust_coefficient)
+    }
+
+    /// The wrench (T, tau_x, tau_y, tau_z) of one newton of its thrust.
+    fn column(&self) -> Vector4<f64> {
+        let yaw = f64::from(self.spin.sign()) * f64::from(self.drag_coefficient) / f64::from(self.thrust_coefficient);
+        Vector4::new(1.0, f64::from(self.position.y), -f64::from(self.position.x), yaw)
+    }
+}
+
+/// A quadrotor with four equal rotors on the diagonals of a square; see [`Rotors::quad_x`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuadX {
+    /// From the centre of mass to each hub, m.
+    pub arm: f32,
+    /// k_eta, N/(rad/s)^2.
+    pub thrust_coefficient: f32,
+    /// k_m, N m/(rad/s)^2.
+    pub drag_coefficient: f32,
+    /// Least speed while flying, rad/s.
+    pub speed_min: f32,
+    /// Greatest speed, rad/s.
+    pub speed_max: f32,
+}
+
+/// Four to eight rotors that span the wrench. Reads like a slice of [`Rotor`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rotors {
+    rotors: Vec<Rotor, ROTORS_MAX>,
+    columns: Vec<Vector4<f64>, ROTORS_MAX>,
+    scale: Vector4<f64>,
+    inverse: Vec<Vector4<f64>, ROTORS_MAX>,
+}
+
+impl Rotors {
+    /// Checks every rotor, their number, and that together they produce thrust, roll, pitch and yaw independently.
+    ///
+    /// # Errors
+    /// Names the field, with the rotor's number from 0; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
+    /// combination of the others to within [`INDEPENDENCE`].
+    pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
+        require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
+        let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
+        let list = Vec::from_slice(rotors).map_err(|_| too_many)?;
+        for (rotor, field) in rotors.iter().zip(POSITION) {
+            for component in rotor.position.iter() {
+                require_finite(*component, field)?;
+                require(component.abs() < LENGTH_MAX, field, Reason::NotBelow(LENGTH_MAX))?;
+            }
+        }
+        for (rotor, field) in rotors.iter().zip(THRUST_COEFFICIENT) {
+            require_positive(rotor.thrust_coefficient, field)?;
+        }
+        for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT) {
+            require_positive(rotor.drag_coefficient, field)?;
+            let greatest = LENGTH_MAX * rotor.thrust_coefficient;
+            require(rotor.drag_coefficient < greatest, field, Reason::NotBelow(greatest))?;
+        }
+        for (rotor, field) in rotors.iter().zip(MAXIMUM) {
+            require_positive(rotor.thrust_max, field)?;
+            require(rotor.thrust_max < THRUST_MAX, field, Reason::NotBelow(THRUST_MAX))?;
+        }
+        for (rotor, field) in rotors.iter().zip(MINIMUM) {
+            require_finite(rotor.thrust_min, field)?;
+            require(rotor.thrust_min >= 0.0, field, Reason::Negative)?;
+            require(rotor.thrust_min < rotor.thrust_max, field, Reason::NotBelow(rotor.thrust_max))?;
+        }
+        Self::spanning(list).ok_or(ParameterError { field: "rotors", reason: Reason::DoesNotSpan })
+    }
+
+    /// Four equal rotors: 0 front left and 2 rear right turn clockwise, 1 rear left and 3 front right counter-clockwise.
+    ///
+    /// # Errors
+    /// As [`Rotors::new`]; a bad arm shows as the positions it makes, bad speeds as the thrusts.
+    pub fn quad_x(quad: QuadX) -> Result<Self, ParameterError> {
+        let side = quad.arm * core::f32::consts::FRAC_1_SQRT_2;
+        require_positive(quad.arm, "rotors.arm")?;
+        require_finite(quad.speed_max, "rotors.speed_max")?;
+        require_finite(quad.speed_min, "rotors.speed_min")?;
+        require(quad.speed_min >= 0.0, "rotors.speed_min", Reason::Negative)?;
+        let rotor = |x, y, spin| Rotor {
+            position: Vector3::new(x, y, 0.0),
+            spin,
+            thrust_coefficient: quad.thrust_coefficient,
+            drag_coefficient: quad.drag_coefficient,
+            thrust_min: quad.thrust_coefficient * quad.speed_min * quad.speed_min,
+            thrust_max: quad.thrust_coefficient * quad.speed_max * quad.speed_max,
+        };
+        Self::new(&[
+            rotor(side, side, Spin::Clockwise),
+            rotor(-side, side, Spin::CounterClockwise),
+            rotor(-side, -side, Spin::Clockwise),
+            rotor(side, -side, Spin::CounterClockwise),
+        ])
+    }
+
+    /// Column i of B: the wrench (T, tau_x, tau_y, tau_z) of one newton of rotor i.
+    #[must_use]
+    pub fn effectiveness(&self) -> &[Vector4<f64>] {
+        &self.columns
+    }
+
+    /// Row i of B+: the thrust of rotor i, N, per unit of (T, tau_x, tau_y, tau_z), least sum of squares.
+    #[must_use]
+    pub fn pseudo_inverse(&self) -> &[Vector4<f64>] {
+        &self.inverse
+    }
+
+    /// What each wrench component is multiplied by to make the rows of B unit vectors.
+    pub(super) fn scale(&self) -> &Vector4<f64> {
+        &self.scale
+    }
+
+    /// Works out B, its scaling and B+, if the rows of B are independent enough.
+    fn spanning(rotors: Vec<Rotor, ROTORS_MAX>) -> Option<Self> {
+        let columns: Vec<Vector4<f64>, ROTORS_MAX> = collected(rotors.iter().map(Rotor::column));
+        let squares: Vector4<f64> = columns.iter().map(|column| column.component_mul(column)).sum();
+        if !squares.iter().all(|square| *square > 0.0) {
+            return None;
+        }
+        let scale = squares.map(|square| 1.0 / math::sqrt_f64(square));
+        let scaled = || columns.iter().map(|column| column.component_mul(&scale));
+        // The rows' cosines. The diagonal of the inverse is 1/sin^2 of each row's angle to the span of the others.
+        let cosines: Matrix4<f64> = scaled().map(|column| column * column.transpose()).sum();
+        let inverted = cosines.try_inverse()?;
+        let independent = |of_row: &f64| *of_row > 0.0 && *of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
+        if !inverted.diagonal().iter().all(independent) {
+            return None;
+        }
+        let inverse = collected(scaled().map(|column| (inverted * column).component_mul(&scale)));
+        Some(Self { rotors, columns, scale, inverse })
+    }
+}
+
+impl Deref for Rotors {
+    type Target = [Rotor];
+
+    fn deref(&self) -> &[Rotor] {
+        &self.rotors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hummingbird() -> QuadX {
+        QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 }
+    }
+
+    fn refused(change: impl Fn(&mut [Rotor])) -> ParameterError {
+        let mut rotors: Vec<Rotor, ROTORS_MAX> = Rotors::quad_x(hummingbird()).unwrap().iter().copied().collect();
+        change(&mut rotors);
+        Rotors::new(&rotors).unwrap_err()
+    }
+
+    #[test]
+    fn thrust_on_the_left_rolls_right_and_thrust_ahead_pitches_up() {
+        let rotors = Rotors::quad_x(hummingbird()).unwrap();
+        let front_left = rotors.effectiveness()[0];
+        let side = 0.17 * core::f64::consts::FRAC_1_SQRT_2;
+        let expected = Vector4::new(1.0, side, -side, 1.36e-7 / 5.57e-6);
+        assert!((front_left - expected).amax() < 1e-8, "{front_left}");
+        let force = Vector3::new(0.0, 0.0, 1.0);
+        for (rotor, column) in rotors.iter().zip(rotors.effectiveness()) {
+            let torque = rotor.position.cross(&force);
+            assert!((column.y - f64::from(torque.x)).abs() < 1e-12 && (column.z - f64::from(torque.y)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_clockwise_rotor_turns_the_body_to_positive_yaw() {
+        let rotors = Rotors::quad_x(hummingbird()).unwrap();
+        for (rotor, column) in rotors.iter().zip(rotors.effectiveness()) {
+            assert_eq!(column.w > 0.0, rotor.spin == Spin::Clockwise);
+        }
+    }
+
+    #[test]
+    fn the_pseudo_inverse_is_a_right_inverse() {
+        let rotors = Rotors::quad_x(hummingbird()).unwrap();
+        let product: Matrix4<f64> =
+            rotors.effectiveness().iter().zip(rotors.pseudo_inverse()).map(|(b, row)| b * row.transpose()).sum();
+        assert!((product - Matrix4::identity()).amax() < 1e-12, "{product}");
+    }
+
+    #[test]
+    fn speed_and_thrust_are_inverse_to_each_other() {
+        let rotors = Rotors::quad_x(hummingbird()).unwrap();
+        for i in 0..1000 {
+            let thrust = 12.5 * i as f32 / 1000.0;
+            let back = rotors[0].thrust_at(rotors[0].speed_at(thrust));
+            assert!((back - thrust).abs() <= 4.0 * f32::EPSILON * thrust);
+        }
+    }
+
+    #[test]
+    fn every_bad_rotor_is_named() {
+        let case = |field, reason| ParameterError { field, reason };
+        assert_eq!(refused(|r| r[2].position.x = f32::NAN), case("rotors.position[2]", Reason::NotFinite));
+        assert_eq!(refused(|r| r[2].position.z = 1e3), case("rotors.position[2]", Reason::NotBelow(100.0)));
+        assert_eq!(
+            refused(|r| r[0].thrust_coefficient = 0.0),
+            case("rotors.thrust_coefficient[0]", Reason::NotPositive)
+        );
+        assert_eq!(refused(|r| r[3].drag_coefficient = -1.0), case("rotors.drag_coefficient[3]", Reason::NotPositive));
+        assert_eq!(refused(|r| r[1].thrust_min = -0.1), case("rotors.thrust_min[1]", Reason::Negative));
+        assert_eq!(refused(|r| r[1].thrust_max = f32::INFINITY), case("rotors.thrust_max[1]", Reason::NotFinite));
+        let equal = refused(|r| r[1].thrust_min = r[1].thrust_max);
+        assert!(equal.field == "rotors.thrust_min[1]" && matches!(equal.reason, Reason::NotBelow(_)));
+    }
+
+    #[test]
+    fn rotors_that_cannot_span_the_wrench_are_refused() {
+        let cannot = ParameterError { field: "rotors", reason: Reason::DoesNotSpan };
+        assert_eq!(refused(|r| r.iter_mut().for_each(|rotor| rotor.spin = Spin::Clockwise)), cannot);
+        assert_eq!(refused(|r| r.iter_mut().for_each(|rotor| rotor.position.x = 0.0)), cannot);
+        // Spins paired along one side: yaw is then a combination of roll and the rest.
+        let spins = [Spin::Clockwise, Spin::Clockwise, Spin::CounterClockwise, Spin::CounterClockwise];
+        assert_eq!(refused(|r| r.iter_mut().zip(spins).for_each(|(rotor, spin)| rotor.spin = spin)), cannot);
+    }
+
+    #[test]
+    fn fewer_than_four_or_more_than_eight_rotors_are_refused() {
+        let quad = Rotors::quad_x(hummingbird()).unwrap();
+        let nine: Vec<Rotor, 9> = quad.iter().cycle().take(9).copied().collect();
+        assert_eq!(Rotors::new(&quad[..3]).unwrap_err().reason, Reason::TooFew(4));
+        assert_eq!(Rotors::new(&nine).unwrap_err().reason, Reason::TooMany(8));
+    }
+}

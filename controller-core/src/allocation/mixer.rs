@@ -1,0 +1,264 @@
+//! Wrench to rotor thrusts. What cannot be had is given up in order: yaw first, then thrust, roll and pitch last.
+//!
+//! For w = (T, tau) and rotors f_min <= f <= f_max with w = B f (see [`super`]):
+//!
+//! 1. f = B+ w. If every rotor is within its range, done: nearly every tick ends here.
+//! 2. Otherwise three projections, each onto exactly what the one before leaves (see `attainable.rs`):
+//!    - (tau_x, tau_y) to the nearest point of the roll-pitch polygon;
+//!    - T to the range it has at that roll and pitch, yaw being free;
+//!    - tau_z to the range it has at that roll, pitch and thrust.
+//!
+//!    Each leaves a wrench alone that can be had. So for a wrench in the polytope all three do nothing, and outside it
+//!    the result has the least roll-pitch error of all attainable wrenches, among these the least thrust error, and
+//!    among these the least yaw error.
+//! 3. The wrench can now be had; find thrusts that deliver it. Four rotors: f = B^-1 w. With more, B+ w may leave a
+//!    rotor's range although other thrusts give the same wrench. The rotors beyond four are set one after another, each
+//!    as near to its share of B+ w as lets the rotors after it deliver the rest (a range, again by slabs); the
+//!    last four follow from the inverse of their part of B. No iteration, and the thrusts depend continuously on w.
+//!
+//! **Never worse than clipping, in roll and pitch.** Clipping each rotor of B+ w gives thrusts within their ranges, hence
+//! a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding, which
+//! [`Allocation::achieved`] shows: it is worked out from the thrusts.
+//!
+//! It does not know the rotors' lag, nor what they delivered last tick.
+
+use super::attainable::{Polygon, Slabs, generators, normal};
+use super::collected;
+use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
+use crate::error::InputError;
+use crate::state::{STATE_RANGE, Wrench, check_vector};
+use heapless::Vec;
+use nalgebra::{Vector2, Vector3, Vector4};
+
+/// Pairs of eight rotors.
+const PAIRS: usize = 28;
+/// Triples of eight rotors.
+const TRIPLES: usize = 56;
+/// Triples of the seven rotors after the first.
+const TRIPLES_AFTER_FIRST: usize = 35;
+
+/// Rotor thrusts, N, in the rotors' order.
+pub type Thrusts = Vec<f32, ROTORS_MAX>;
+
+/// What the rotors are asked to do, and what comes of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Allocation {
+    /// Thrust of each rotor, N, within its range.
+    pub thrusts: Thrusts,
+    /// B times the thrusts: the wrench they deliver, body frame.
+    pub achieved: Wrench,
+    /// Roll or pitch torque was reduced: the rotors cannot deliver that pair at any thrust and yaw.
+    pub roll_pitch_limited: bool,
+    /// Thrust was changed to what roll and pitch leave.
+    pub thrust_limited: bool,
+    /// Yaw torque was changed to what roll, pitch and thrust leave.
+    pub yaw_limited: bool,
+}
+
+impl Allocation {
+    /// Whether the wrench asked for is the wrench delivered (to rounding).
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
+    }
+}
+
+/// A rotor as the tick needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Actuator {
+    /// Its column of B.
+    column: Vector4<f32>,
+    /// Its row of B+.
+    share: Vector4<f32>,
+    least: f32,
+    greatest: f32,
+}
+
+impl Actuator {
+    fn clip(&self, thrust: f32) -> f32 {
+        thrust.max(self.least).min(self.greatest)
+    }
+}
+
+/// A rotor beyond the four that carry the wrench, with the ranges the rotors after it leave.
+#[derive(Debug, Clone, PartialEq)]
+struct Spare {
+    rotor: usize,
+    column: Vector4<f32>,
+    after: Slabs<TRIPLES_AFTER_FIRST>,
+}
+
+/// One of the four rotors that carry the rest: its row of the inverse of their columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Carrier {
+    rotor: usize,
+    row: Vector4<f32>,
+}
+
+/// Everything about one set of rotors that a tick needs, worked out once. About 6 KB.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mixer {
+    actuators: Vec<Actuator, ROTORS_MAX>,
+    roll_pitch: Polygon,
+    thrust: Slabs<PAIRS>,
+    yaw: Slabs<TRIPLES>,
+    spares: Vec<Spare, { ROTORS_MAX - ROTORS_MIN }>,
+    carriers: Vec<Carrier, ROTORS_MIN>,
+}
+
+impl Mixer {
+    /// Prepares the mixer; configuration time.
+    #[must_use]
+    pub fn new(rotors: &Rotors) -> Self {
+        let single = |v: &Vector4<f64>| v.map(|x| x as f32);
+        let actuator = |((rotor, column), share)| {
+            let rotor: &super::Rotor = rotor;
+            Actuator {
+                column: single(column),
+                share: single(share),
+                least: rotor.thrust_min,
+                greatest: rotor.thrust_max,
+            }
+        };
+        let actuators = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse()).map(actuator);
+        let carriers = carriers(rotors);
+        let carrying = || carriers.iter().map(|carrier| carrier.rotor);
+        let spare = (0..rotors.len()).filter(|index| !carrying().any(|carrier| carrier == *index));
+        let order: Vec<usize, ROTORS_MAX> = collected(spare.chain(carrying()));
+        let mut spares = Vec::new();
+        for (place, rotor) in order.iter().enumerate().take(rotors.len().saturating_sub(ROTORS_MIN)) {
+            if let Some(column) = rotors.effectiveness().get(*rotor) {
+                let rest = generators(rotors, order.iter().skip(place + 1));
+                let after = Slabs::new(rotors, &rest, None, *column);
+                // At most four spares beyond four carriers.
+                let _ = spares.push(Spare { rotor: *rotor, column: single(column), after });
+            }
+        }
+        let all = generators(rotors, order.iter());
+        Self {
+            actuators: collected(actuators),
+            roll_pitch: Polygon::new(rotors),
+            thrust: Slabs::new(rotors, &all, Some(Vector4::w()), -Vector4::x()),
+            yaw: Slabs::new(rotors, &all, None, -Vector4::w()),
+            spares,
+            carriers,
+        }
+    }
+
+    /// Thrusts for `wrench`, N and N m, body frame.
+    ///
+    /// # Errors
+    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
+    pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
+        check_vector(&Vector3::new(wrench.thrust, 0.0, 0.0), STATE_RANGE, "wrench.thrust")?;
+        check_vector(&wrench.torque, STATE_RANGE, "wrench.torque")?;
+        let asked = Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z);
+        let preferred = self.preferred(&asked);
+        let fits = |(actuator, thrust): (&Actuator, &f32)| actuator.clip(*thrust) == *thrust;
+        if self.actuators.iter().zip(&preferred).all(fits) {
+            return Ok(self.report(preferred, &asked, &asked));
+        }
+        let given = self.attainable(&asked);
+        Ok(self.report(self.deliver(&given), &asked, &given))
+    }
+
+    /// The wrench that thrusts, N, in the rotors' order, act on the body with.
+    #[must_use]
+    pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
+        let sum = self.sum(thrusts);
+        Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
+    }
+
+    /// B+ w.
+    fn preferred(&self, wrench: &Vector4<f32>) -> Thrusts {
+        collected(self.actuators.iter().map(|actuator| actuator.share.dot(wrench)))
+    }
+
+    /// B f.
+    fn sum(&self, thrusts: &[f32]) -> Vector4<f32> {
+        self.actuators.iter().zip(thrusts).map(|(actuator, thrust)| actuator.column * *thrust).sum()
+    }
+
+    /// Step 2: the attainable wrench that stands in for `asked`.
+    fn attainable(&self, asked: &Vector4<f32>) -> Vector4<f32> {
+        let torque = self.roll_pitch.nearest(&Vector2::new(asked.y, asked.z));
+        let thrust = within(asked.x, self.thrust.range(&Vector4::new(0.0, torque.x, torque.y, 0.0)));
+        let yaw = within(asked.w, self.yaw.range(&Vector4::new(thrust, torque.x, torque.y, 0.0)));
+        Vector4::new(thrust, torque.x, torque.y, yaw)
+    }
+
+    /// Step 3: thrusts within their ranges for an attainable `wrench`.
+    fn deliver(&self, wrench: &Vector4<f32>) -> Thrusts {
+        let mut thrusts = self.preferred(wrench);
+        let mut rest = *wrench;
+        for spare in &self.spares {
+            let range = spare.after.range(&rest);
+            if let (Some(thrust), Some(actuator)) = (thrusts.get_mut(spare.rotor), self.actuators.get(spare.rotor)) {
+                *thrust = actuator.clip(within(*thrust, range));
+                rest -= spare.column * *thrust;
+            }
+        }
+        for carrier in &self.carriers {
+            if let Some(thrust) = thrusts.get_mut(carrier.rotor) {
+                *thrust = carrier.row.dot(&rest);
+            }
+        }
+        self.clip(&mut thrusts);
+        // Rounding so far is of the size of the wrench asked for; what remains is of the size of the error.
+        let missing = wrench - self.sum(&thrusts);
+        for (thrust, correction) in thrusts.iter_mut().zip(&self.preferred(&missing)) {
+            *thrust += correction;
+        }
+        self.clip(&mut thrusts);
+        thrusts
+    }
+
+    fn clip(&self, thrusts: &mut Thrusts) {
+        for (thrust, actuator) in thrusts.iter_mut().zip(&self.actuators) {
+            *thrust = actuator.clip(*thrust);
+        }
+    }
+
+    fn report(&self, thrusts: Thrusts, asked: &Vector4<f32>, given: &Vector4<f32>) -> Allocation {
+        Allocation {
+            achieved: self.wrench(&thrusts),
+            thrusts,
+            roll_pitch_limited: asked.y != given.y || asked.z != given.z,
+            thrust_limited: asked.x != given.x,
+            yaw_limited: asked.w != given.w,
+        }
+    }
+}
+
+/// `value` moved into a range.
+fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
+    value.max(least).min(greatest)
+}
+
+/// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.
+///
+/// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
+/// handing its thrust over to them never magnifies an error.
+fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
+    let (mut best, mut largest) = (Vec::new(), 0.0);
+    for choice in 0_u32..1 << rotors.len() {
+        let chosen = |index: &usize| choice >> index & 1 == 1;
+        let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| chosen(index));
+        let columns: Vec<Vector4<f64>, ROTORS_MAX> =
+            collected(columns.map(|(_, column)| column.component_mul(rotors.scale())));
+        if let [a, b, c, d] = columns.as_slice() {
+            let volume = normal(b, c, d).dot(a).abs();
+            if volume > largest {
+                // The inverse's row for one column is normal to the other three.
+                let rows = [(a, normal(b, c, d)), (b, normal(a, c, d)), (c, normal(a, b, d)), (d, normal(a, b, c))];
+                let row = |(column, normal): &(&Vector4<f64>, Vector4<f64>)| {
+                    (normal / normal.dot(column)).component_mul(rotors.scale()).map(|x| x as f32)
+                };
+                let indices = (0..rotors.len()).filter(chosen);
+                best = collected(indices.zip(rows.iter().map(row)).map(|(rotor, row)| Carrier { rotor, row }));
+                largest = volume;
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,86 @@
+//! The certificate's last link: every wrench the certified law can command fits every rotor's range.
+//!
+//! The law's torque is a sum of terms whose sets are known exactly (`tau` of [`crate::attitude`]):
+//!
+//! | term | set | size |
+//! |---|---|---|
+//! | attitude and body-rate feedback | ball | iota of Theorem 2 |
+//! | J R~^T omega_d' | ellipsoid | J U_omega' |
+//! | \[J R~^T omega_d\]x R~^T omega_d | gyroscopic form | U_omega |
+//!
+//! R~ is any rotation, so the desired motion is a ball in the body's axes whatever its own direction. The extremes of
+//! rotor i over thrust interval and torque set are support functions in the direction of its row of the inverse
+//! ([`crate::allocation::support`]): no box around a ball is paid for.
+//!
+//! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may ask for beyond
+//! hovering is required of it.
+
+use super::configuration::Configuration;
+use super::inequality::Inequality;
+use super::{ARITHMETIC_ALLOWANCE, Form};
+use crate::allocation::geometry::{ROTORS_MAX, Rotors};
+use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
+use crate::error::ParameterError;
+use heapless::Vec;
+
+/// Names of the inequalities, by rotor.
+const NAMES: [(&str, &str); ROTORS_MAX] = [
+    ("R rotor 0 least", "R rotor 0 greatest"),
+    ("R rotor 1 least", "R rotor 1 greatest"),
+    ("R rotor 2 least", "R rotor 2 greatest"),
+    ("R rotor 3 least", "R rotor 3 greatest"),
+    ("R rotor 4 least", "R rotor 4 greatest"),
+    ("R rotor 5 least", "R rotor 5 greatest"),
+    ("R rotor 6 least", "R rotor 6 greatest"),
+    ("R rotor 7 least", "R rotor 7 greatest"),
+];
+
+/// What the law asks of one rotor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorReport {
+    /// Its extremes, what it has, and which term is to blame.
+    pub demand: RotorDemand,
+    /// How far below hovering the law may take it, against the room there, N.
+    pub least: Inequality,
+    /// How far above, N.
+    pub greatest: Inequality,
+}
+
+/// The reports of all rotors of `configuration` under the bounds of `form`; empty if it has none.
+///
+/// # Errors
+/// If the form's bounds are not finite; the constructors before it leave no way to that.
+pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
+    let Some(rotors) = configuration.rotors() else {
+        return Ok(Vec::new());
+    };
+    let inertia = configuration.vehicle().inertia.map(f64::from);
+    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+    let rate = form.rates.angular_velocity * raised;
+    let semi_axes = inertia * (form.rates.angular_acceleration * raised);
+    let terms = [
+        TorqueTerm::new("attitude and body-rate feedback", Shape::Ball { radius: form.feedback_torque * raised })?,
+        TorqueTerm::new("desired angular acceleration", Shape::Ellipsoid { semi_axes })?,
+        TorqueTerm::new("gyroscopic torque", Shape::Gyroscopic { inertia, rate })?,
+    ];
+    let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
+    let hover = f64::from(configuration.vehicle().mass) * f64::from(configuration.vehicle().gravity);
+    Ok(list(rotors, &commands, hover))
+}
+
+fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
+    let mut reports = Vec::new();
+    for ((demand, row), (least, greatest)) in
+        demands(rotors, commands).into_iter().zip(rotors.pseudo_inverse()).zip(NAMES)
+    {
+        let share = row.x * hover;
+        let report = RotorReport {
+            demand,
+            least: Inequality::new(least, "N", share - demand.least, share - demand.available_min).or_equal(),
+            greatest: Inequality::new(greatest, "N", demand.greatest - share, demand.available_max - share).or_equal(),
+        };
+        // As many reports as rotors: it fits.
+        let _ = reports.push(report);
+    }
+    reports
+}

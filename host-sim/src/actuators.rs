@@ -1,0 +1,182 @@
+//! What stands between the law's wrench and the body.
+//!
+//! Without `[rotors]` and `[sampling]` nothing does: the wrench acts at once, clipped to the limits. With them,
+//!
+//! ```text
+//! wrench -> (delay) -> allocation -> rotor speeds, first-order lag, limits -> thrusts f_i = k_eta speed_i^2 -> B f
+//! ```
+//!
+//! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it acts;
+//! - *allocation*: the core's own [`Mixer`], with its order of giving up what the rotors do not have;
+//! - *lag*: speed' = (command - speed) / lag, solved exactly over each plant step; the body feels the thrusts of the step's
+//!   middle, so the error against a continuous solution is of second order in step / lag.
+//!
+//! A rotor counts as saturated at a tick whose wrench the allocation could not deliver in full.
+//! Rotors start at the speeds that hover. There is no air flow through them, and no spin-up from standstill.
+
+use crate::plant::{Clipping, Diverged, Plant};
+use controller_core::allocation::mixer::{Mixer, Thrusts};
+use controller_core::allocation::{Rotor, Rotors};
+use controller_core::error::InputError;
+use controller_core::state::Wrench;
+use nalgebra::{Vector3, Vector4};
+use std::collections::VecDeque;
+use std::fmt;
+
+/// Rotors and how fast they follow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorSetup {
+    /// Geometry, coefficients, ranges.
+    pub rotors: Rotors,
+    /// First-order lag of their speeds, s; zero for none.
+    pub lag: f64,
+}
+
+/// Why a wrench could not be applied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ActuationError {
+    /// The allocation refused it.
+    Wrench(InputError),
+    /// The body's state is not finite afterwards.
+    Diverged(Diverged),
+}
+
+impl fmt::Display for ActuationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Wrench(error) => write!(f, "the allocation refused the wrench: {error}"),
+            Self::Diverged(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl From<Diverged> for ActuationError {
+    fn from(error: Diverged) -> Self {
+        Self::Diverged(error)
+    }
+}
+
+/// The rotors in motion.
+#[derive(Debug, Clone)]
+struct RotorDynamics {
+    mixer: Mixer,
+    rotors: Rotors,
+    /// What is left of a speed error after half a plant step, and after a whole one.
+    decay: (f64, f64),
+    /// Per rotor: speed now and speed commanded, rad/s.
+    speeds: Vec<(f64, f64)>,
+}
+
+impl RotorDynamics {
+    fn new(setup: &RotorSetup, hover: f32, step: f64) -> Self {
+        let hovering = |(rotor, row): (&Rotor, &Vector4<f64>)| {
+            let thrust = (row.x as f32 * hover).clamp(rotor.thrust_min, rotor.thrust_max);
+            f64::from(rotor.speed_at(thrust))
+        };
+        let hovering = setup.rotors.iter().zip(setup.rotors.pseudo_inverse()).map(hovering);
+        let left = |time: f64| if setup.lag > 0.0 { (-time / setup.lag).exp() } else { 0.0 };
+        Self {
+            mixer: Mixer::new(&setup.rotors),
+            rotors: setup.rotors.clone(),
+            decay: (left(0.5 * step), left(step)),
+            speeds: hovering.map(|speed| (speed, speed)).collect(),
+        }
+    }
+
+    /// Sends a wrench to the rotors; returns their commanded thrusts and whether they could deliver it.
+    fn command(&mut self, wrench: &Wrench) -> Result<(Thrusts, Clipping), InputError> {
+        let allocation = self.mixer.allocate(wrench)?;
+        for ((speed, rotor), thrust) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(&allocation.thrusts) {
+            speed.1 = f64::from(rotor.speed_at(*thrust));
+        }
+        let clipping = Clipping {
+            thrust: allocation.thrust_limited,
+            torque: allocation.roll_pitch_limited || allocation.yaw_limited,
+        };
+        Ok((allocation.thrusts, clipping))
+    }
+
+    /// Advances the speeds by one plant step and returns thrust and torque at its middle.
+    fn advance(&mut self) -> (f64, Vector3<f64>) {
+        let (half, whole) = self.decay;
+        let mut thrust = 0.0;
+        let mut torque = Vector3::zeros();
+        let columns = self.rotors.effectiveness();
+        for (((speed, command), rotor), column) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(columns) {
+            let middle = *command + (*speed - *command) * half;
+            *speed = *command + (*speed - *command) * whole;
+            let force = f64::from(rotor.thrust_coefficient) * middle * middle;
+            thrust += force * column.x;
+            torque += Vector3::new(column.y, column.z, column.w) * force;
+        }
+        (thrust, torque)
+    }
+}
+
+/// Delay and rotors between the law and the body.
+#[derive(Debug, Clone)]
+pub struct Actuators {
+    rotors: Option<RotorDynamics>,
+    delay_steps: u64,
+    /// Plant steps since the start.
+    now: u64,
+    /// Wrenches on their way, with the step at which they act.
+    waiting: VecDeque<(u64, Wrench)>,
+    /// Wrench that acts now.
+    acting: Wrench,
+}
+
+impl Actuators {
+    /// Actuators that hold the hover thrust, N, until the first wrench arrives. `step` is the plant's, s.
+    #[must_use]
+    pub fn new(setup: Option<&RotorSetup>, delay_steps: u64, hover: f32, step: f64) -> Self {
+        Self {
+            rotors: setup.map(|setup| RotorDynamics::new(setup, hover, step)),
+            delay_steps,
+            now: 0,
+            waiting: VecDeque::new(),
+            acting: Wrench { thrust: hover, torque: Vector3::zeros() },
+        }
+    }
+
+    /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns what was cut, and the commanded
+    /// rotor thrusts, N, as they stand at the end (none without rotors).
+    ///
+    /// # Errors
+    /// [`ActuationError`].
+    pub fn hold(
+        &mut self,
+        plant: &mut Plant,
+        wrench: &Wrench,
+        steps: u32,
+    ) -> Result<(Clipping, Thrusts), ActuationError> {
+        if self.rotors.is_none() && self.delay_steps == 0 {
+            return Ok((plant.hold(wrench, steps)?, Thrusts::new()));
+        }
+        self.waiting.push_back((self.now + self.delay_steps, *wrench));
+        let mut clipping = Clipping::default();
+        let mut thrusts = Thrusts::new();
+        for _ in 0..steps {
+            let mut arrived = false;
+            while let Some((_, due)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+                self.acting = due;
+                arrived = true;
+            }
+            match &mut self.rotors {
+                None => clipping = clipping.or(plant.hold(&self.acting, 1)?),
+                Some(rotors) => {
+                    if arrived {
+                        let (commanded, cut) = rotors.command(&self.acting).map_err(ActuationError::Wrench)?;
+                        clipping = clipping.or(cut);
+                        thrusts = commanded;
+                    }
+                    let (thrust, torque) = rotors.advance();
+                    plant.act(thrust, &torque);
+                }
+            }
+            self.now += 1;
+        }
+        plant.check()?;
+        Ok((clipping, thrusts))
+    }
+}

@@ -1,0 +1,298 @@
+//! What a flight claims, what it showed, and whether the two agree.
+//!
+//! Every flight claims Theorem 1's thrust interval, the file's limits and the box of the filters:
+//!
+//! ```text
+//! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
+//! ```
+//!
+//! The paper's own scenario claims the figures of Section VI besides. For any other, tracking is reported without a
+//! verdict. "Steady state" is the last quarter of the flight: of the paper's 40 s, the last 10.
+
+use crate::flight::Tick;
+use crate::scenario::Scenario;
+use std::fmt::Write;
+
+/// Section VI: thrust, N.
+pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
+/// Section VI: |torque| about each axis, N m.
+pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
+/// Section VI: steady-state position error, m.
+const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+/// Section VI: steady-state norm of the modified Rodrigues parameters.
+const PUBLISHED_MRP_ERROR: f64 = 1e-4;
+/// Relative rounding of the law's thrust: some ten operations in single precision.
+const ROUNDING: f64 = 1e-6;
+
+/// The extremes of a flight, gathered tick by tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flown {
+    steady_from_us: u64,
+    last_sign: Option<f32>,
+    start_height: Option<f64>,
+    /// Ticks seen.
+    pub ticks: u64,
+    /// Least and greatest commanded thrust, N.
+    pub thrust: (f64, f64),
+    /// Greatest commanded |torque| about each body axis, N m.
+    pub torque: [f64; 3],
+    /// Greatest component of u_f and u_s, m/s^2.
+    pub filter: f64,
+    /// Ticks at which the plant clipped a command.
+    pub clipped: u64,
+    /// Changes of m*.
+    pub lift_changes: u64,
+    /// Greatest position error in steady state, m.
+    pub steady_position_error: f64,
+    /// Greatest norm of the modified Rodrigues parameters in steady state.
+    pub steady_mrp_error: f64,
+    /// Start minus lowest height, m.
+    pub height_lost: f64,
+}
+
+/// One line of the table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Claim {
+    /// What it is about.
+    pub claim: String,
+    /// What must be; empty where nothing must.
+    pub required: String,
+    /// What was.
+    pub flown: String,
+    /// Whether it holds; none where nothing is required.
+    pub holds: Option<bool>,
+}
+
+impl Flown {
+    /// Nothing seen yet of a flight of `scenario`.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        let timing = &scenario.timing;
+        Self {
+            steady_from_us: (timing.ticks - timing.ticks / 4) * timing.period_us,
+            last_sign: None,
+            start_height: None,
+            ticks: 0,
+            thrust: (f64::INFINITY, f64::NEG_INFINITY),
+            torque: [0.0; 3],
+            filter: 0.0,
+            clipped: 0,
+            lift_changes: 0,
+            steady_position_error: 0.0,
+            steady_mrp_error: 0.0,
+            height_lost: 0.0,
+        }
+    }
+
+    /// Takes one tick into account.
+    pub fn observe(&mut self, tick: &Tick) {
+        let (wrench, diagnostics) = (&tick.wrench, &tick.diagnostics);
+        let thrust = f64::from(wrench.thrust);
+        self.ticks += 1;
+        self.thrust = (self.thrust.0.min(thrust), self.thrust.1.max(thrust));
+        for (greatest, torque) in self.torque.iter_mut().zip(wrench.torque.iter()) {
+            *greatest = greatest.max(f64::from(torque.abs()));
+        }
+        self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
+        self.clipped += u64::from(tick.clipping.any());
+        self.lift_changes += u64::from(self.last_sign.is_some_and(|sign| sign != diagnostics.lift_sign));
+        self.last_sign = Some(diagnostics.lift_sign);
+        let height = tick.state.position.z;
+        self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
+        if tick.time_us >= self.steady_from_us {
+            let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
+            self.steady_position_error = self.steady_position_error.max(position_error);
+            self.steady_mrp_error = self.steady_mrp_error.max(f64::from(diagnostics.mrp.norm()));
+        }
+    }
+}
+
+/// Theorem 1's least and greatest thrust, N, for the scenario's vehicle, gains and reference; with a thrust floor, that is
+/// the least.
+#[must_use]
+pub fn theorem_1_thrust(scenario: &Scenario) -> (f64, f64) {
+    let bounds = scenario.trajectory.bounds();
+    let configuration = &scenario.configuration;
+    let (mass, gravity) = (f64::from(configuration.vehicle().mass), f64::from(configuration.vehicle().gravity));
+    let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
+    let m_p = f64::from(configuration.gains().m_p);
+    let least = configuration.thrust_floor().map_or(mass * (gravity - m_p - vertical), f64::from);
+    (least, mass * (3.0_f64.sqrt() * m_p + horizontal.hypot(vertical + gravity)))
+}
+
+/// The claims about a flight of `scenario` that showed `flown`.
+#[must_use]
+pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
+    let published = scenario.is_papers();
+    let steady = format!("steady state (last {:.4} s)", scenario.timing.duration() / 4.0);
+    let mut claims = Vec::new();
+    let mut at_most = |what: String, value: f64, limit: Option<f64>, unit: &str| {
+        claims.push(Claim {
+            claim: what,
+            required: limit.map_or(String::new(), |limit| format!("<= {}{unit}", short(limit))),
+            flown: format!("{}{unit}", short(value)),
+            holds: limit.map(|limit| value <= limit),
+        });
+    };
+    at_most(
+        format!("position error, {steady}"),
+        flown.steady_position_error,
+        published.then_some(PUBLISHED_POSITION_ERROR),
+        " m",
+    );
+    at_most(format!("MRP error, {steady}"), flown.steady_mrp_error, published.then_some(PUBLISHED_MRP_ERROR), "");
+    for (axis, (value, limit)) in ["x", "y", "z"].into_iter().zip(flown.torque.into_iter().zip(PUBLISHED_TORQUE)) {
+        if published {
+            at_most(format!("|torque {axis}|, published bound"), value, Some(limit), " N m");
+        }
+    }
+    let limits = scenario.configuration.limits().torque_max;
+    for (axis, (value, limit)) in ["x", "y", "z"].into_iter().zip(flown.torque.into_iter().zip(limits.iter())) {
+        at_most(format!("|torque {axis}|, vehicle's limit"), value, Some(f64::from(*limit)), " N m");
+    }
+    at_most(
+        "thrust, vehicle's limit".into(),
+        flown.thrust.1,
+        Some(f64::from(scenario.configuration.limits().thrust_max)),
+        " N",
+    );
+    at_most(
+        "|u_f|, |u_s| per axis, M_p".into(),
+        flown.filter,
+        Some(f64::from(scenario.configuration.gains().m_p)),
+        " m/s^2",
+    );
+    at_most("ticks clipped by the plant".into(), flown.clipped as f64, Some(0.0), "");
+    at_most("changes of m*".into(), flown.lift_changes as f64, None, "");
+    at_most("height lost".into(), flown.height_lost, None, " m");
+
+    let (least, greatest) = theorem_1_thrust(scenario);
+    let theorem = within("thrust, Theorem 1", flown.thrust, (least, greatest), ROUNDING);
+    claims.insert(2, theorem);
+    if published {
+        claims.insert(2, within("thrust, published bound", flown.thrust, PUBLISHED_THRUST, 0.0));
+    }
+    claims
+}
+
+/// Whether every claim that has a verdict holds.
+#[must_use]
+pub fn all_hold(claims: &[Claim]) -> bool {
+    claims.iter().all(|claim| claim.holds != Some(false))
+}
+
+/// The claims as an aligned table for a terminal.
+#[must_use]
+pub fn table(claims: &[Claim]) -> String {
+    let rows: Vec<[&str; 4]> = std::iter::once(["claim", "required", "flown", "verdict"])
+        .chain(claims.iter().map(|c| [&c.claim as &str, &c.required, &c.flown, verdict(c)]))
+        .collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let (first, second, third) = (width(0), width(1), width(2));
+    rows.iter().fold(String::new(), |mut text, [claim, required, flown, verdict]| {
+        let _ = writeln!(text, "{claim:first$}  {required:second$}  {flown:third$}  {verdict}");
+        text
+    })
+}
+
+/// The claims as a Markdown table.
+#[must_use]
+pub fn markdown(claims: &[Claim]) -> String {
+    let head = "| claim | required | flown | verdict |\n|---|---|---|---|\n".to_owned();
+    claims.iter().fold(head, |mut text, claim| {
+        // A bar inside a cell would end it.
+        let name = claim.claim.replace('|', "\\|");
+        let _ = writeln!(text, "| {name} | {} | {} | {} |", claim.required, claim.flown, verdict(claim));
+        text
+    })
+}
+
+fn verdict(claim: &Claim) -> &'static str {
+    match claim.holds {
+        Some(true) => "holds",
+        Some(false) => "FAILS",
+        None => "reported",
+    }
+}
+
+fn within(what: &str, flown: (f64, f64), required: (f64, f64), rounding: f64) -> Claim {
+    let holds = flown.0 >= required.0 * (1.0 - rounding) && flown.1 <= required.1 * (1.0 + rounding);
+    let interval = |(least, greatest): (f64, f64)| format!("[{}, {}] N", short(least), short(greatest));
+    Claim { claim: what.into(), required: interval(required), flown: interval(flown), holds: Some(holds) }
+}
+
+/// Four significant digits.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && magnitude < 1e6 {
+        format!("{value:.0}")
+    } else if (1e-3..1e4).contains(&magnitude) {
+        let decimals = (3 - magnitude.log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.decimals$}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::Flight;
+
+    fn flown(scenario: &Scenario, ticks: u64) -> Flown {
+        let mut flight = Flight::new(scenario).unwrap();
+        let mut flown = Flown::new(scenario);
+        for _ in 0..ticks {
+            flown.observe(&flight.tick().unwrap());
+        }
+        flown
+    }
+
+    #[test]
+    fn theorem_1_gives_the_papers_published_interval() {
+        let (least, greatest) = theorem_1_thrust(&Scenario::paper().unwrap());
+        assert!((least - 3.51).abs() < 0.005 && (greatest - 6.19).abs() < 0.005, "{least} {greatest}");
+    }
+
+    #[test]
+    fn only_the_papers_scenario_carries_the_published_figures() {
+        let paper = Scenario::paper().unwrap();
+        let renamed = Scenario { name: "mine".into(), ..paper.clone() };
+        let mut other = paper.clone();
+        other.initial.position.x += 1.0;
+        let count = |scenario: &Scenario| {
+            let claims = claims(scenario, &flown(scenario, 10));
+            claims.iter().filter(|claim| claim.claim.contains("published")).count()
+        };
+        assert_eq!((count(&paper), count(&renamed), count(&other)), (4, 4, 0));
+    }
+
+    #[test]
+    fn each_claim_can_fail() {
+        let paper = Scenario::paper().unwrap();
+        let good = flown(&paper, paper.timing.ticks);
+        assert!(all_hold(&claims(&paper, &good)), "{}", table(&claims(&paper, &good)));
+        let broken = [
+            Flown { steady_position_error: 1.1e-3, ..good.clone() },
+            Flown { steady_mrp_error: 1.1e-4, ..good.clone() },
+            Flown { thrust: (3.5, 6.0), ..good.clone() },
+            Flown { thrust: (3.6, 6.2), ..good.clone() },
+            Flown { torque: [0.3, 0.1, 0.1], ..good.clone() },
+            Flown { torque: [0.1, 0.34, 0.1], ..good.clone() },
+            Flown { torque: [0.1, 0.1, 0.49], ..good.clone() },
+            Flown { filter: 2.000_001, ..good.clone() },
+            Flown { clipped: 1, ..good.clone() },
+        ];
+        for flown in broken {
+            assert!(!all_hold(&claims(&paper, &flown)), "{flown:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [(0.206, "0.206"), (6.187_53, "6.188"), (2.0, "2"), (1.234e-5, "1.23e-5"), (0.0, "0")] {
+            assert_eq!(short(value), text);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The controller alone, lock-step over text: for simulators that others wrote.
+//!
+//! One line of 33 numbers in, one line of 4 numbers out, flushed, until the input ends:
+//!
+//! ```text
+//! in:  t dt | x(3) v(3) world, z up | q(4) as x y z w, body to world | omega(3) body |
+//!      reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
+//! out: thrust [N], torque x y z [N m], as commanded: not clipped to any limit
+//! ```
+//!
+//! SI units and rad. The output uses the filters as they stand; they then advance by the line's dt. t serves messages
+//! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
+
+use crate::flight::controller;
+use crate::scenario::Scenario;
+use controller_core::controller::Controller;
+use controller_core::error::ParameterError;
+use controller_core::heading::Heading;
+use controller_core::reference::Reference;
+use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
+use nalgebra::{Quaternion, Vector2, Vector3};
+use std::io::{self, BufRead, Write};
+
+/// The 33 numbers by the names that messages use.
+const FIELDS: [&str; 33] = [
+    "t",
+    "dt",
+    "x[0]",
+    "x[1]",
+    "x[2]",
+    "v[0]",
+    "v[1]",
+    "v[2]",
+    "q.x",
+    "q.y",
+    "q.z",
+    "q.w",
+    "omega[0]",
+    "omega[1]",
+    "omega[2]",
+    "reference x[0]",
+    "reference x[1]",
+    "reference x[2]",
+    "reference v[0]",
+    "reference v[1]",
+    "reference v[2]",
+    "reference a[0]",
+    "reference a[1]",
+    "reference a[2]",
+    "reference j[0]",
+    "reference j[1]",
+    "reference j[2]",
+    "reference s[0]",
+    "reference s[1]",
+    "reference s[2]",
+    "yaw",
+    "yaw_rate",
+    "yaw_acceleration",
+];
+
+/// Longest dt, s.
+const GREATEST_PERIOD: f64 = 0.1;
+
+/// The law behind a text interface.
+pub struct LawServer {
+    controller: Controller,
+    /// The reference's a_z must stay above this, m/s^2.
+    least_vertical_acceleration: f64,
+}
+
+/// The numbers of one line, in order.
+struct Numbers<'a> {
+    values: &'a [f64],
+}
+
+impl Numbers<'_> {
+    fn next(&mut self) -> f64 {
+        let (first, rest) = self.values.split_first().unwrap_or((&0.0, &[]));
+        self.values = rest;
+        *first
+    }
+
+    fn vector(&mut self) -> Vector3<f32> {
+        Vector3::new(self.next(), self.next(), self.next()).map(|value| value as f32)
+    }
+}
+
+impl LawServer {
+    /// The law for the scenario's vehicle and gains, reset. Its initial state, reference and plant are not used.
+    ///
+    /// # Errors
+    /// As [`Controller::new`]'s.
+    pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
+        let configuration = &scenario.configuration;
+        let (m_p, gravity) = (f64::from(configuration.gains().m_p), f64::from(configuration.vehicle().gravity));
+        Ok(Self {
+            controller: controller(scenario)?,
+            // A step of single precision above M_p - g, so that rounding never turns a refused number into a served one.
+            least_vertical_acceleration: m_p - gravity * (1.0 - f64::from(f32::EPSILON)),
+        })
+    }
+
+    /// Serves lines until the input ends or nobody reads the output any more.
+    ///
+    /// # Errors
+    /// If the input cannot be read or the output not written, but for a closed pipe.
+    pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> io::Result<()> {
+        let mut line = Vec::new();
+        while input.read_until(b'\n', &mut line)? > 0 {
+            let answered = match self.answer(&String::from_utf8_lossy(&line)) {
+                Ok(Wrench { thrust, torque }) => {
+                    writeln!(output, "{thrust:?} {:?} {:?} {:?}", torque.x, torque.y, torque.z)
+                }
+                Err(problem) => writeln!(output, "error: {problem}"),
+            };
+            match answered.and_then(|()| output.flush()) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+                other => other?,
+            }
+            line.clear();
+        }
+        Ok(())
+    }
+
+    /// The wrench for one line, or why there is none.
+    ///
+    /// # Errors
+    /// One line of text; the controller's memory is then unchanged.
+    pub fn answer(&mut self, line: &str) -> Result<Wrench, String> {
+        let values = parse(line)?;
+        let mut numbers = Numbers { values: &values };
+        let time = numbers.next();
+        let at_time = |problem: String| format!("t = {time}: {problem}");
+
+        let period = numbers.next();
+        if !(period > 0.0 && period <= GREATEST_PERIOD) {
+            return Err(at_time(format!("dt: must be above 0 and at most {GREATEST_PERIOD} s, found {period}")));
+        }
+        let (position, velocity) = (numbers.vector(), numbers.vector());
+        let [i, j, k, w] = [numbers.next(), numbers.next(), numbers.next(), numbers.next()];
+        let attitude = Quaternion::new(w, i, j, k);
+        let length = attitude.norm();
+        // A NaN was refused before; an overflowing length is not near one.
+        if (length - 1.0).abs() > f64::from(UNIT_TOLERANCE) {
+            let problem = format!("q: must have unit length within {UNIT_TOLERANCE}, found length {length}");
+            return Err(at_time(problem));
+        }
+        let attitude = Quaternion::from((attitude.coords / length).map(|value| value as f32));
+        let state = State { position, velocity, attitude, angular_velocity: numbers.vector() };
+
+        let (position, velocity, acceleration) = (numbers.vector(), numbers.vector(), numbers.vector());
+        let (jerk, snap) = (numbers.vector(), numbers.vector());
+        let yaw = numbers.next();
+        let direction = Vector2::new(yaw.cos() as f32, yaw.sin() as f32);
+        let heading = Heading::new(direction, numbers.next() as f32, numbers.next() as f32)
+            .map_err(|error| at_time(error.to_string()))?;
+        let reference = Reference { position, velocity, acceleration, jerk, snap, heading };
+        if f64::from(acceleration.z) <= self.least_vertical_acceleration {
+            let limit = self.least_vertical_acceleration;
+            return Err(at_time(format!("reference a[2]: must stay above M_p - g = {limit:.6}, found {}", values[23])));
+        }
+
+        self.controller.set_period(period as f32).map_err(|error| at_time(error.to_string()))?;
+        let (wrench, _) = self.controller.step(&state, &reference).map_err(|error| at_time(error.to_string()))?;
+        Ok(wrench)
+    }
+}
+
+/// Exactly 33 finite numbers that fit single precision.
+fn parse(line: &str) -> Result<[f64; FIELDS.len()], String> {
+    let found = line.split_whitespace().count();
+    if found != FIELDS.len() {
+        return Err(format!("needs {} numbers on a line, found {found}", FIELDS.len()));
+    }
+    let mut values = [0.0; FIELDS.len()];
+    for ((value, word), field) in values.iter_mut().zip(line.split_whitespace()).zip(FIELDS) {
+        let number: f64 = word.parse().map_err(|_| format!("{field}: must be a number, found {word:?}"))?;
+        if !number.is_finite() {
+            return Err(format!("{field}: must be finite, found {number}"));
+        }
+        if number.abs() > f64::from(f32::MAX) {
+            return Err(format!("{field}: must be within ±{:e}, found {number:e}", f32::MAX));
+        }
+        *value = number;
+    }
+    Ok(values)
+}
+
+#[cfg(test)]
+mod tests;

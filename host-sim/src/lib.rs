@@ -1,0 +1,24 @@
+//! The desktop side: a vehicle to fly, scenarios to fly it through, and reports of what was flown.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`plant`] | the paper's rigid body, eq. (2) |
+//! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
+//! | [`scenario`] | files to validated types |
+//! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
+//! | [`claims`] | what was claimed against what was flown |
+//! | [`log`], [`plots`] | log.csv and the figures |
+//! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
+//! | [`fly`], [`law`] | the two commands |
+
+pub mod actuators;
+pub mod claims;
+pub mod flight;
+pub mod fly;
+pub mod law;
+pub mod log;
+pub mod plant;
+pub mod plots;
+pub mod progress;
+pub mod sampled_loop;
+pub mod scenario;

@@ -1,0 +1,266 @@
+//! One panel: curves over time, bounds as labelled dashed lines, and a legend above the data.
+//!
+//! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also dashed.
+
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::coord::{Shift, types::RangedCoordf64};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Blue: the first axis, or the only curve.
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+/// Vermilion: the second axis.
+pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
+/// Bluish green: the third axis.
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// Nearly black: bounds that belong to no axis, and references.
+pub const INK: RGBColor = RGBColor(60, 60, 60);
+/// Grid lines.
+const GRID: RGBColor = RGBColor(228, 228, 228);
+
+/// The width of a chart in pixels, near enough: a curve needs no more than its extremes in each.
+const COLUMNS: usize = 520;
+
+/// The vertical axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly spaced numbers.
+    Linear,
+    /// Evenly spaced decades.
+    Log,
+}
+
+/// A line through the samples.
+pub struct Curve {
+    /// Its name in the legend.
+    pub label: String,
+    /// Its colour.
+    pub color: RGBColor,
+    /// Dashed: something asked for rather than flown.
+    pub dashed: bool,
+    /// (s, the panel's unit).
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A level that must not be crossed.
+pub struct Bound {
+    /// Where, in the panel's unit.
+    pub value: f64,
+    /// What it says at the line's end.
+    pub label: String,
+    /// Its colour: the one of the curve it belongs to, or [`INK`].
+    pub color: RGBColor,
+}
+
+/// A chart over time.
+pub struct Panel {
+    /// Above the chart.
+    pub title: &'static str,
+    /// Beside the vertical axis, with the unit.
+    pub quantity: &'static str,
+    /// The vertical axis.
+    pub scale: Scale,
+    /// What is drawn.
+    pub curves: Vec<Curve>,
+    /// What it is measured against.
+    pub bounds: Vec<Bound>,
+}
+
+/// What can go wrong while drawing.
+pub type DrawingResult<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+
+impl Panel {
+    /// Draws into `area`.
+    ///
+    /// # Errors
+    /// As the backend's.
+    pub fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
+        area.draw(&Text::new(self.title, (14, 10), ("sans-serif", 17).into_font().style(FontStyle::Bold).color(&INK)))?;
+        self.draw_legend(area)?;
+        let (low, high) = self.vertical_range();
+        let chart_area = area.margin(58, 6, 8, 22);
+        match self.scale {
+            Scale::Linear => self.draw_chart(&chart_area, low..high, &|value| format_linear(*value, high - low)),
+            Scale::Log => self.draw_chart(&chart_area, (low..high).log_scale(), &|value| format_decade(*value)),
+        }
+    }
+
+    /// A row of line samples with names, between title and chart, where no data can be.
+    fn draw_legend<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
+        const SAMPLE: i32 = 26;
+        const CHARACTER: i32 = 8;
+        let mut x = 16;
+        for curve in &self.curves {
+            draw_dashes(area, x, x + SAMPLE, 43, curve)?;
+            x += SAMPLE + 6;
+            area.draw(&Text::new(curve.label.as_str(), (x, 35), ("sans-serif", 14).into_font().color(&INK)))?;
+            x += CHARACTER * curve.label.chars().count() as i32 + 18;
+        }
+        Ok(())
+    }
+
+    fn draw_chart<DB, Y>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        vertical: Y,
+        label: &dyn Fn(&f64) -> String,
+    ) -> DrawingResult<DB>
+    where
+        DB: DrawingBackend,
+        Y: AsRangedCoord<Value = f64>,
+        Y::CoordDescType: ValueFormatter<f64> + Ranged<ValueType = f64>,
+    {
+        let end = self.end();
+        let mut chart = ChartBuilder::on(area)
+            .x_label_area_size(38)
+            .y_label_area_size(64)
+            .build_cartesian_2d(0.0..end, vertical)?;
+        let axis = ("sans-serif", 13).into_font().color(&INK);
+        chart
+            .configure_mesh()
+            .bold_line_style(GRID)
+            .light_line_style(TRANSPARENT)
+            .axis_style(INK)
+            .label_style(axis.clone())
+            .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
+            .x_labels(9)
+            .y_labels(7)
+            .x_label_formatter(&|value| format_linear(*value, end))
+            .y_label_formatter(&label)
+            .x_desc("time [s]")
+            .y_desc(self.quantity)
+            .draw()?;
+        for bound in &self.bounds {
+            let line = [(0.0, bound.value), (end, bound.value)];
+            chart.draw_series(DashedLineSeries::new(line, 7, 5, bound.color.stroke_width(1)))?;
+            let below = self.bounds.iter().any(|other| other.value > bound.value) && bound.value < 0.0;
+            let anchor = Pos::new(HPos::Right, if below { VPos::Top } else { VPos::Bottom });
+            let style = ("sans-serif", 12).into_font().color(&bound.color).pos(anchor);
+            let text = EmptyElement::at((end, bound.value))
+                + Text::new(bound.label.clone(), (-6, if below { 3 } else { -3 }), style);
+            chart.plotting_area().draw(&text)?;
+        }
+        for curve in &self.curves {
+            let points = thinned(&curve.points, end);
+            if curve.dashed {
+                chart.draw_series(DashedLineSeries::new(points, 6, 4, curve.color.stroke_width(2)))?;
+            } else {
+                chart.draw_series(LineSeries::new(points, curve.color.stroke_width(2)))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn end(&self) -> f64 {
+        self.curves.iter().filter_map(|curve| curve.points.last()).fold(1e-3, |end, point| end.max(point.0))
+    }
+
+    /// What holds all curves and bounds, with room for the bounds' labels.
+    fn vertical_range(&self) -> (f64, f64) {
+        let values = self.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
+        let values = values.chain(self.bounds.iter().map(|bound| bound.value));
+        let (low, high) = match self.scale {
+            Scale::Linear => values.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value))),
+            Scale::Log => {
+                let seen = values.filter(|value| *value > LEAST_ON_LOG);
+                let (low, high) = seen.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value)));
+                let (low, high) = if low > high { (LEAST_ON_LOG, 1.0) } else { (low, high) };
+                return (
+                    10f64.powf(low.log10().floor()),
+                    10f64.powf(high.log10().ceil().max(low.log10().floor() + 1.0)),
+                );
+            }
+        };
+        let room = if high - low > 1e-9 { 0.1 * (high - low) } else { 1.0 };
+        (low - room, high + room)
+    }
+}
+
+/// Below this a number on a logarithmic axis is as good as zero.
+const LEAST_ON_LOG: f64 = 1e-8;
+
+/// A horizontal sample of the curve's line in a legend.
+fn draw_dashes<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    from: i32,
+    to: i32,
+    y: i32,
+    curve: &Curve,
+) -> DrawingResult<DB> {
+    let style = curve.color.stroke_width(2);
+    let dash = if curve.dashed { 6 } else { to - from };
+    let mut x = from;
+    while x < to {
+        area.draw(&PathElement::new(vec![(x, y), ((x + dash).min(to), y)], style))?;
+        x += dash + 4;
+    }
+    Ok(())
+}
+
+/// The least and the greatest point of each column of pixels, in order of time.
+fn thinned(points: &[(f64, f64)], end: f64) -> Vec<(f64, f64)> {
+    let column = |point: &(f64, f64)| (point.0 / end * COLUMNS as f64) as usize;
+    let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+    let mut kept = Vec::with_capacity(2 * COLUMNS);
+    for chunk in points.chunk_by(|a, b| column(a) == column(b)) {
+        let (Some(least), Some(greatest)) = (chunk.iter().min_by(by_value), chunk.iter().max_by(by_value)) else {
+            continue;
+        };
+        let (first, second) = if least.0 <= greatest.0 { (least, greatest) } else { (greatest, least) };
+        kept.push(*first);
+        if second.0 > first.0 {
+            kept.push(*second);
+        }
+    }
+    kept
+}
+
+/// As many decimals as the axis' span needs.
+fn format_linear(value: f64, span: f64) -> String {
+    let decimals = if span > 8.0 { 0 } else { (1.0 - span.log10()).ceil().clamp(1.0, 6.0) as usize };
+    // Rounding can leave a minus before a zero.
+    let text = format!("{value:.decimals$}");
+    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { text }
+}
+
+/// A power of ten with a raised exponent.
+fn format_decade(value: f64) -> String {
+    let exponent = value.log10().round() as i32;
+    let raised: String = exponent
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            other => char::from_u32('⁰' as u32 + other.to_digit(10).unwrap_or(0)).unwrap_or(other),
+        })
+        .collect();
+    format!("10{raised}")
+}
+
+/// The horizontal axis' type, for readers of signatures.
+pub type TimeAxis = RangedCoordf64;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_every_columns_extremes() {
+        let mut points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i) * 1e-3, 0.0)).collect();
+        points[50_000].1 = 7.0;
+        points[50_001].1 = -7.0;
+        let kept = thinned(&points, 100.0);
+        assert!(kept.len() <= 2 * COLUMNS + 2);
+        assert!(kept.contains(&points[50_000]) && kept.contains(&points[50_001]));
+        assert!(kept.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+
+    #[test]
+    fn labels_read_well() {
+        assert_eq!((format_decade(1e-5), format_decade(10.0)), ("10⁻⁵".into(), "10¹".into()));
+        assert_eq!((format_linear(-0.0, 20.0), format_linear(0.25, 0.5)), ("0".into(), "0.25".into()));
+    }
+}

@@ -1,0 +1,164 @@
+//! How much gain or delay a stable loop can take before an eigenvalue reaches the unit circle.
+//!
+//! An eigenvalue e^(i angle) appears where the loop's response passes through -1. Scaling the loop's gain by kappa moves
+//! every point of the response along its ray, so the critical kappa are -1 / L at the crossings of the negative real
+//! axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held command
+//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left.
+//!
+//! The response is followed along a grid of frequencies; where it crosses an axis twice between neighbours, a near-tangency
+//! within 10 % of frequency, that is not seen.
+
+use super::chain::SampledLoop;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Complex;
+
+/// The lowest frequency looked at, radians per sample: below the slowest position loop one would fly.
+const LOWEST: f64 = 3e-5;
+
+/// The highest one. At pi itself the response is real, so the sign of its imaginary part there would be rounding's.
+const HIGHEST: f64 = PI * (1.0 - 1e-4);
+
+/// Greatest ratio of neighbouring frequencies less one.
+const SPACING: f64 = 0.1;
+
+/// The margins of a stable loop, in samples and radians per sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SampleMargins {
+    /// Least factor above one at which stability is lost; infinite if none.
+    pub gain_up: f64,
+    /// Greatest factor below one at which stability is lost; zero if none.
+    pub gain_down: f64,
+    /// Least further delay at which stability is lost. Zero for a loop slower than [`LOWEST`], which is not looked at.
+    pub delay: f64,
+    /// Highest frequency at which the loop's gain is one.
+    pub crossover: f64,
+}
+
+/// The margins of `chain`, which is stable with its commands `delay` samples late.
+pub(super) fn margins(chain: &SampledLoop, delay: f64) -> SampleMargins {
+    let sweep = Sweep::of(chain, LOWEST, delay);
+    let (gain_down, gain_up) = sweep.critical_gains();
+    let unit_gain = sweep.crossings(gain);
+    let (Some(lowest), Some(crossover)) = (unit_gain.first(), unit_gain.last()) else {
+        return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
+    };
+    SampleMargins { gain_up, gain_down, delay: delay_margin(chain, delay, *lowest), crossover: *crossover }
+}
+
+/// Positive where the loop amplifies.
+fn gain(response: Complex<f64>) -> f64 {
+    response.norm_sqr().ln()
+}
+
+/// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
+/// `unit_gain` and nowhere below.
+fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
+    /// Brackets are found in a few steps.
+    const STEPS: usize = 40;
+    /// Of a sample.
+    const RESOLUTION: f64 = 1e-8;
+    // How a fraction of a sample is held changes the gain at high frequencies only: nothing crosses far below.
+    let lowest = 0.5 * unit_gain;
+
+    // Samples of delay that each frequency of unit gain still takes before -1, were the gain to stay.
+    let left_at = |extra: f64| {
+        let delayed = chain.with_delay(delay + extra);
+        // The gain does not turn with the delay, so the grid need not be any finer for it.
+        Sweep::of(&delayed, lowest, 0.0).crossings(gain).into_iter().map(move |angle| {
+            let response = delayed.response(angle);
+            ((-response.im).atan2(-response.re), angle)
+        })
+    };
+    // From the start that may be all the way round; near the end, to either side.
+    let first = left_at(0.0).map(|(phase, angle)| phase.rem_euclid(TAU) / angle).fold(f64::INFINITY, f64::min);
+    let nearest = |extra: f64| {
+        let left = left_at(extra).map(|(phase, angle)| phase / angle).min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        left.filter(|left| left.abs() > RESOLUTION).unwrap_or(0.0)
+    };
+    let mut low = (0.0, first);
+    let mut high = (first, nearest(first));
+    for _ in 0..STEPS {
+        if high.1 <= 0.0 {
+            break;
+        }
+        low = high;
+        let further = high.0 + 2.0 * high.1;
+        high = (further, nearest(further));
+    }
+    if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
+}
+
+/// The response along a grid of frequencies, rising.
+struct Sweep<'a> {
+    chain: &'a SampledLoop,
+    points: Vec<(f64, Complex<f64>)>,
+}
+
+impl<'a> Sweep<'a> {
+    /// From `lowest` up, fine enough to follow a response that `delay` samples turn.
+    fn of(chain: &'a SampledLoop, lowest: f64, delay: f64) -> Self {
+        let step = PI / (8.0 * (delay + 1.0));
+        let mut points = Vec::with_capacity(160);
+        let mut angle = lowest;
+        while angle < HIGHEST {
+            points.push((angle, chain.response(angle)));
+            angle += step.min(SPACING * angle);
+        }
+        points.push((HIGHEST, chain.response(HIGHEST)));
+        Self { chain, points }
+    }
+
+    /// The frequencies, rising, at which `measure` of the response changes sign.
+    fn crossings(&self, measure: impl Fn(Complex<f64>) -> f64) -> Vec<f64> {
+        self.points
+            .windows(2)
+            .filter_map(|pair| {
+                let [(left, at_left), (right, at_right)] = [pair[0], pair[1]];
+                let (at_left, at_right) = (measure(at_left), measure(at_right));
+                let changes = (at_left < 0.0) != (at_right < 0.0);
+                changes.then(|| root(|angle| measure(self.chain.response(angle)), (left, at_left), (right, at_right)))
+            })
+            .collect()
+    }
+
+    /// The factors on the gain nearest to one, below and above, that put the response through -1.
+    fn critical_gains(&self) -> (f64, f64) {
+        // At the Nyquist frequency the curve ends on the axis without crossing it.
+        let end = core::iter::once(PI);
+        self.crossings(|response| response.im)
+            .into_iter()
+            .chain(end)
+            .map(|angle| -1.0 / self.chain.response(angle).re)
+            .filter(|factor| *factor > 0.0)
+            .fold(
+                (0.0, f64::INFINITY),
+                |(down, up), factor| {
+                    if factor > 1.0 { (down, factor.min(up)) } else { (factor.max(down), up) }
+                },
+            )
+    }
+}
+
+/// The zero of `value` between two points of opposite sign: regula falsi, Illinois variant.
+fn root(value: impl Fn(f64) -> f64, mut left: (f64, f64), mut right: (f64, f64)) -> f64 {
+    /// Some eight are enough to the last bit; the bound is for values that are noise.
+    const STEPS: usize = 60;
+    for _ in 0..STEPS {
+        let middle = (left.0 * right.1 - right.0 * left.1) / (right.1 - left.1);
+        if !(middle > left.0 && middle < right.0) {
+            break;
+        }
+        let at_middle = value(middle);
+        if at_middle == 0.0 {
+            return middle;
+        }
+        if (at_middle < 0.0) == (right.1 < 0.0) {
+            right = (middle, at_middle);
+            left.1 *= 0.5;
+        } else {
+            left = (middle, at_middle);
+            right.1 *= 0.5;
+        }
+    }
+    0.5 * (left.0 + right.0)
+}

@@ -1,0 +1,113 @@
+//! `[rotors]` and `[sampling]`: what stands between the law's wrench and the body. Both may be left out.
+//!
+//! ```toml
+//! [rotors]
+//! position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]   # m, body
+//! spin = ["cw", "ccw", "cw", "ccw"]     # seen from above
+//! thrust_coefficient = 5.57e-6          # k_eta, N/(rad/s)^2
+//! drag_coefficient = 1.36e-7            # k_m, N m/(rad/s)^2
+//! speed = [0.0, 1500.0]                 # least and greatest while flying, rad/s
+//! lag = 0.005                           # first-order, s; 0 for none
+//!
+//! [sampling]
+//! delay = 0.01                          # from a tick to the moment its wrench acts, s; whole plant steps
+//! ```
+
+use super::refused;
+use super::section::{FieldError, Section, vector_at};
+use super::timing::Timing;
+use crate::actuators::RotorSetup;
+use controller_core::allocation::{Rotor, Rotors, Spin};
+use toml::Value;
+
+/// Longest lag and delay, s: slower actuators fly no multirotor.
+const LONGEST: f64 = 1.0;
+
+/// Reads `[rotors]`.
+///
+/// # Errors
+/// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench.
+pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
+    let Some(section) = root.optional_section("rotors")? else {
+        return Ok(None);
+    };
+    section.allow(&["position", "spin", "thrust_coefficient", "drag_coefficient", "speed", "lag"])?;
+    let positions = section.elements("position", "a list of positions [x, y, z]")?;
+    let spins = section.elements("spin", "a list of \"cw\" and \"ccw\", one for each rotor")?;
+    if spins.len() != positions.len() {
+        let problem = format!("must have one element for each of {} positions, found {}", positions.len(), spins.len());
+        return Err(FieldError::new(section.path_of("spin"), problem));
+    }
+    let thrust_coefficient = section.number("thrust_coefficient")? as f32;
+    let drag_coefficient = section.number("drag_coefficient")? as f32;
+    let (slowest, fastest) = read_speeds(&section)?;
+    let thrust = |speed: f64| thrust_coefficient * (speed * speed) as f32;
+    let mut list = Vec::new();
+    for ((path, position), (spin_path, spin)) in positions.into_iter().zip(spins) {
+        list.push(Rotor {
+            position: vector_at(&path, position)?.map(|component| component as f32),
+            spin: read_spin(spin_path, spin)?,
+            thrust_coefficient,
+            drag_coefficient,
+            thrust_min: thrust(slowest),
+            thrust_max: thrust(fastest),
+        });
+    }
+    let rotors = Rotors::new(&list).map_err(|error| refused(root, &error))?;
+    let lag = read_time(&section, "lag")?;
+    Ok(Some(RotorSetup { rotors, lag }))
+}
+
+/// Reads `[sampling]`: the delay in plant steps.
+///
+/// # Errors
+/// If it is negative, too long, or no whole number of plant steps.
+pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
+    let Some(section) = root.optional_section("sampling")? else {
+        return Ok(0);
+    };
+    section.allow(&["delay"])?;
+    let delay = read_time(&section, "delay")?;
+    let steps = delay / timing.step();
+    let whole = steps.round();
+    if (steps - whole).abs() > 1e-6 {
+        let nearest = whole * timing.step();
+        let problem = format!("must be a whole number of plant steps, found {delay} s (nearest: {nearest:e} s)");
+        return Err(FieldError::new(section.path_of("delay"), problem));
+    }
+    Ok(whole as u64)
+}
+
+fn read_time(section: &Section, key: &str) -> Result<f64, FieldError> {
+    let time = section.number_or(key, 0.0)?;
+    if (0.0..=LONGEST).contains(&time) {
+        Ok(time)
+    } else {
+        Err(FieldError::new(section.path_of(key), format!("must be from 0 to {LONGEST} s, found {time}")))
+    }
+}
+
+fn read_speeds(section: &Section) -> Result<(f64, f64), FieldError> {
+    const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
+    let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}"));
+    let elements = section.elements("speed", WANTED)?;
+    let numbers: Vec<f64> = elements.iter().filter_map(|(_, value)| number(value)).collect();
+    match numbers.as_slice() {
+        [least, greatest] if elements.len() == 2 && 0.0 <= *least && least < greatest && greatest.is_finite() => {
+            Ok((*least, *greatest))
+        }
+        _ => Err(refuse()),
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+fn read_spin(path: String, value: &Value) -> Result<Spin, FieldError> {
+    match value.as_str() {
+        Some("cw") => Ok(Spin::Clockwise),
+        Some("ccw") => Ok(Spin::CounterClockwise),
+        _ => Err(FieldError::new(path, format!("must be \"cw\" or \"ccw\" as seen from above, found {value}"))),
+    }
+}

@@ -1,0 +1,54 @@
+//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of itself.
+//!
+//! ```toml
+//! [reference_bounds]
+//! horizontal_acceleration = 2.5      # K_a12, m/s^2, Euclidean
+//! vertical_acceleration = 0.5        # K_a3, m/s^2
+//! jerk = 4.0                         # K_j, m/s^3, Euclidean
+//! snap = 7.0                         # K_s, m/s^4, Euclidean
+//! heading_rate = 1.4                 # K_nu', rad/s
+//! heading_second_derivative = 2.0    # K_nu'', 1/s^2: sqrt(psi''^2 + psi'^4)
+//! ```
+//!
+//! All six are needed, and none may be less than the scenario's own reference takes.
+
+use super::refused;
+use super::section::{FieldError, Section};
+use controller_core::reference::ReferenceBounds;
+
+/// Reads `[reference_bounds]`; `own` are those of the scenario's reference.
+///
+/// # Errors
+/// Names the bound that is missing, negative, or below what the reference takes.
+pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBounds, FieldError> {
+    let Some(section) = root.optional_section("reference_bounds")? else {
+        return Ok(*own);
+    };
+    let fields = [
+        ("horizontal_acceleration", own.horizontal_acceleration),
+        ("vertical_acceleration", own.vertical_acceleration),
+        ("jerk", own.jerk),
+        ("snap", own.snap),
+        ("heading_rate", own.heading_rate),
+        ("heading_second_derivative", own.heading_second_derivative),
+    ];
+    section.allow(&fields.map(|(key, _)| key))?;
+    let mut values = [0.0_f32; 6];
+    for (value, (key, taken)) in values.iter_mut().zip(fields) {
+        *value = section.number(key)? as f32;
+        if *value < taken {
+            let problem = format!("must be at least {taken}, which [reference] takes, found {value}");
+            return Err(FieldError::new(section.path_of(key), problem));
+        }
+    }
+    let [horizontal_acceleration, vertical_acceleration, jerk, snap, heading_rate, heading_second_derivative] = values;
+    let bounds = ReferenceBounds {
+        horizontal_acceleration,
+        vertical_acceleration,
+        jerk,
+        snap,
+        heading_rate,
+        heading_second_derivative,
+    };
+    bounds.validated().map_err(|error| refused(root, &error))
+}

@@ -1,0 +1,35 @@
+//! `[initial]`: where a flight starts. Left out, in whole or in part: on the reference, at rest, level, facing world x.
+
+use super::section::{FieldError, Section};
+use crate::plant::{BodyState, Plant, attitude_from_euler};
+use controller_core::state::STATE_RANGE;
+use nalgebra::Vector3;
+
+/// Reads `[initial]`; `on_reference` is the reference's first position, m.
+///
+/// # Errors
+/// Names the field that is not finite, out of the law's range, or turns too fast for the plant's `step` (s).
+pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Result<BodyState, FieldError> {
+    let rest = Vector3::zeros();
+    let Some(section) = root.optional_section("initial")? else {
+        let attitude = attitude_from_euler(0.0, 0.0, 0.0);
+        return Ok(BodyState { position: on_reference, velocity: rest, attitude, angular_velocity: rest });
+    };
+    section.allow(&["position", "velocity", "euler_deg", "angular_velocity"])?;
+    let position = section.vector_or("position", on_reference)?;
+    let velocity = section.vector_or("velocity", rest)?;
+    let euler = section.vector_or("euler_deg", rest)?.map(f64::to_radians);
+    let angular_velocity = section.vector_or("angular_velocity", rest)?;
+    for (vector, key) in [(&position, "position"), (&velocity, "velocity")] {
+        if vector.amax() > f64::from(STATE_RANGE) {
+            return Err(FieldError::new(section.path_of(key), format!("must be within ±{STATE_RANGE:e}")));
+        }
+    }
+    let greatest = Plant::GREATEST_TURN_PER_STEP / step;
+    if angular_velocity.norm() > greatest {
+        let problem = format!("must be at most {greatest:.4} rad/s for plant.step = {step} s (or take a smaller step)");
+        return Err(FieldError::new(section.path_of("angular_velocity"), problem));
+    }
+    let attitude = attitude_from_euler(euler.x, euler.y, euler.z);
+    Ok(BodyState { position, velocity, attitude, angular_velocity })
+}

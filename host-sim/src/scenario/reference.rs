@@ -1,0 +1,102 @@
+//! `[reference]`: what the vehicle is asked to do, one kind of trajectory per `kind`.
+
+use super::section::{FieldError, Section};
+use controller_core::error::ParameterError;
+use controller_core::heading::Heading;
+use controller_core::reference::Trajectory;
+use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
+use controller_core::reference::hover::Hover;
+use controller_core::reference::waypoints::{Waypoint, Waypoints};
+use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
+
+/// A reference as the file describes it, double precision.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ReferenceKind {
+    /// A point and a heading, at rest.
+    Hover {
+        /// m, world.
+        position: Vector3<f64>,
+        /// rad from world x.
+        heading: f64,
+    },
+    /// A cosine on each axis, a heading that turns and swings.
+    Harmonic(HarmonicParameters),
+    /// Points with times, and a path through them.
+    Waypoints(Vec<Waypoint>),
+}
+
+impl ReferenceKind {
+    /// Reads `[reference]`.
+    ///
+    /// # Errors
+    /// Names the field that is missing, unknown, or no number.
+    pub fn read(root: &Section) -> Result<Self, FieldError> {
+        let section = root.section("reference")?;
+        match section.text("kind")? {
+            "hover" => read_hover(&section),
+            "harmonic" => read_harmonic(&section).map(Self::Harmonic),
+            "waypoints" => read_waypoints(&section).map(Self::Waypoints),
+            other => {
+                let allowed = "must be \"hover\", \"harmonic\" or \"waypoints\"";
+                Err(FieldError::new(section.path_of("kind"), format!("{allowed}, found {other:?}")))
+            }
+        }
+    }
+
+    /// The trajectory itself.
+    ///
+    /// # Errors
+    /// If the trajectory's own constructor refuses a number, naming the field.
+    pub fn build(&self) -> Result<Arc<dyn Trajectory + Send + Sync>, ParameterError> {
+        Ok(match self {
+            Self::Hover { position, heading } => {
+                let direction = Vector2::new(heading.cos() as f32, heading.sin() as f32);
+                Arc::new(Hover::new(position.map(|value| value as f32), Heading::new(direction, 0.0, 0.0)?)?)
+            }
+            Self::Harmonic(parameters) => Arc::new(Harmonic::new(*parameters)?),
+            Self::Waypoints(points) => Arc::new(Waypoints::new(points)?),
+        })
+    }
+}
+
+fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
+    section.allow(&["kind", "position", "heading_deg"])?;
+    let position = section.vector("position")?;
+    let heading = section.number_or("heading_deg", 0.0)?.to_radians();
+    Ok(ReferenceKind::Hover { position, heading })
+}
+
+/// `phase` and `heading`, or fields of it, are zero where they are left out.
+fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
+    section.allow(&["kind", "center", "amplitude", "frequency", "phase", "heading"])?;
+    let mut heading = HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 0.0, frequency: 0.0 };
+    if let Some(section) = section.optional_section("heading")? {
+        section.allow(&["offset", "rate", "amplitude", "frequency"])?;
+        heading.offset = section.number_or("offset", 0.0)?;
+        heading.rate = section.number_or("rate", 0.0)?;
+        heading.amplitude = section.number_or("amplitude", 0.0)?;
+        heading.frequency = section.number_or("frequency", 0.0)?;
+    }
+    Ok(HarmonicParameters {
+        center: section.vector("center")?.into(),
+        amplitude: section.vector("amplitude")?.into(),
+        frequency: section.vector("frequency")?.into(),
+        phase: section.vector_or("phase", Vector3::zeros())?.into(),
+        heading,
+    })
+}
+
+/// `heading_deg` is zero where it is left out.
+fn read_waypoints(section: &Section) -> Result<Vec<Waypoint>, FieldError> {
+    section.allow(&["kind", "points"])?;
+    let read = |point: &Section| {
+        point.allow(&["t", "position", "heading_deg"])?;
+        Ok(Waypoint {
+            time: point.number("t")?,
+            position: point.vector("position")?.into(),
+            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
+        })
+    };
+    section.sections("points")?.iter().map(read).collect()
+}

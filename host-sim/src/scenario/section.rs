@@ -1,0 +1,291 @@
+//! Reading a TOML table field by field, with errors that name the field by its dotted path.
+//!
+//! Every section lists its keys when it is opened, so a misspelt key is reported as such, with the nearest known one,
+//! before the key it stands for is reported missing. Numbers must be finite and fit single precision.
+
+use nalgebra::Vector3;
+use std::fmt;
+use toml::{Table, Value};
+
+/// A field that was refused, and why; `problem` also says what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldError {
+    /// Dotted path in the file, e.g. `vehicle.inertia[2]`.
+    pub field: String,
+    /// What is wrong and what is allowed, in one line.
+    pub problem: String,
+}
+
+impl FieldError {
+    /// Refuses `field`.
+    pub fn new(field: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self { field: field.into(), problem: problem.into() }
+    }
+}
+
+impl fmt::Display for FieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.field, self.problem)
+    }
+}
+
+/// One table of the file and where it stands in it.
+#[derive(Debug, Clone)]
+pub struct Section<'a> {
+    path: String,
+    table: &'a Table,
+}
+
+impl<'a> Section<'a> {
+    /// The whole file.
+    #[must_use]
+    pub fn root(table: &'a Table) -> Self {
+        Self { path: String::new(), table }
+    }
+
+    /// The dotted path of `key` in this section.
+    #[must_use]
+    pub fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// Refuses keys outside `known`, naming the nearest known one.
+    ///
+    /// # Errors
+    /// The first unknown key.
+    pub fn allow(&self, known: &[&str]) -> Result<(), FieldError> {
+        match self.table.keys().find(|key| !known.contains(&key.as_str())) {
+            None => Ok(()),
+            Some(key) => {
+                let nearest = known.iter().min_by_key(|candidate| strsim::damerau_levenshtein(candidate, key));
+                let nearest = nearest.copied().unwrap_or_default();
+                let all = known.join(", ");
+                Err(FieldError::new(
+                    self.path_of(key),
+                    format!("unknown key, did you mean \"{nearest}\"? (allowed: {all})"),
+                ))
+            }
+        }
+    }
+
+    /// The value at a dotted path such as `limits.torque_max[0]`, as text.
+    #[must_use]
+    pub fn lookup(&self, path: &str) -> Option<String> {
+        let (parents, last) = path.rsplit_once('.').map_or((None, path), |(parents, last)| (Some(parents), last));
+        let mut parents = parents.into_iter().flat_map(|path| path.split('.'));
+        let table = parents.try_fold(self.table, |table, key| element(table, key)?.as_table())?;
+        element(table, last).map(Value::to_string)
+    }
+
+    /// Whether `key` is there.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// A section that must be there, keys not yet checked.
+    ///
+    /// # Errors
+    /// If it is missing or no table.
+    pub fn section(&self, key: &str) -> Result<Section<'a>, FieldError> {
+        match self.require(key, "a section")? {
+            Value::Table(table) => Ok(Section { path: self.path_of(key), table }),
+            other => Err(self.mismatch(key, "a section", other)),
+        }
+    }
+
+    /// A section that may be left out, keys not yet checked.
+    ///
+    /// # Errors
+    /// If it is no table.
+    pub fn optional_section(&self, key: &str) -> Result<Option<Section<'a>>, FieldError> {
+        if self.has(key) { self.section(key).map(Some) } else { Ok(None) }
+    }
+
+    /// A list of tables, keys not yet checked.
+    ///
+    /// # Errors
+    /// If it is missing, no list, or an element is no table.
+    pub fn sections(&self, key: &str) -> Result<Vec<Section<'a>>, FieldError> {
+        const WANTED: &str = "a list of tables, e.g. [{ … }, { … }]";
+        let Value::Array(elements) = self.require(key, WANTED)? else {
+            return Err(FieldError::new(self.path_of(key), format!("must be {WANTED}")));
+        };
+        let open = |(index, element): (usize, &'a Value)| match element {
+            Value::Table(table) => Ok(Section { path: format!("{}[{index}]", self.path_of(key)), table }),
+            other => Err(self.mismatch(&format!("{key}[{index}]"), "a table", other)),
+        };
+        elements.iter().enumerate().map(open).collect()
+    }
+
+    /// A text that must be there.
+    ///
+    /// # Errors
+    /// If it is missing or no text.
+    pub fn text(&self, key: &str) -> Result<&'a str, FieldError> {
+        match self.require(key, "a text")? {
+            Value::String(text) => Ok(text),
+            other => Err(self.mismatch(key, "a text", other)),
+        }
+    }
+
+    /// A finite number that must be there.
+    ///
+    /// # Errors
+    /// If it is missing, no number, not finite, or beyond single precision.
+    pub fn number(&self, key: &str) -> Result<f64, FieldError> {
+        let value = self.require(key, "a number")?;
+        finite(value).map_err(|problem| FieldError::new(self.path_of(key), problem))
+    }
+
+    /// A finite number, or `default` if it is left out.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn number_or(&self, key: &str, default: f64) -> Result<f64, FieldError> {
+        if self.has(key) { self.number(key) } else { Ok(default) }
+    }
+
+    /// Three finite numbers that must be there.
+    ///
+    /// # Errors
+    /// If they are missing, not three, or one of them is refused as in [`Self::number`].
+    pub fn vector(&self, key: &str) -> Result<Vector3<f64>, FieldError> {
+        vector_at(&self.path_of(key), self.require(key, THREE_NUMBERS)?)
+    }
+
+    /// The elements of a list that must be there, each with its path.
+    ///
+    /// # Errors
+    /// If it is missing or no list; `wanted` says of what.
+    pub fn elements(&self, key: &str, wanted: &str) -> Result<Vec<(String, &'a Value)>, FieldError> {
+        match self.require(key, wanted)? {
+            Value::Array(elements) => {
+                let path = self.path_of(key);
+                Ok(elements.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect())
+            }
+            other => Err(self.mismatch(key, wanted, other)),
+        }
+    }
+
+    /// Three finite numbers, or `default` if they are left out.
+    ///
+    /// # Errors
+    /// As [`Self::vector`].
+    pub fn vector_or(&self, key: &str, default: Vector3<f64>) -> Result<Vector3<f64>, FieldError> {
+        if self.has(key) { self.vector(key) } else { Ok(default) }
+    }
+
+    fn require(&self, key: &str, wanted: &str) -> Result<&'a Value, FieldError> {
+        self.table.get(key).ok_or_else(|| FieldError::new(self.path_of(key), format!("missing, must be {wanted}")))
+    }
+
+    fn mismatch(&self, key: &str, wanted: &str, found: &Value) -> FieldError {
+        FieldError::new(self.path_of(key), format!("must be {wanted}, found {}", found.type_str()))
+    }
+}
+
+/// What a table holds at `key` or, with an index, at `key[index]`.
+fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
+    match key.strip_suffix(']').and_then(|key| key.split_once('[')) {
+        Some((key, index)) => table.get(key)?.get(index.parse::<usize>().ok()?),
+        None => table.get(key),
+    }
+}
+
+/// What a vector must be.
+const THREE_NUMBERS: &str = "a list of three numbers";
+
+/// Three finite numbers at `path`.
+///
+/// # Errors
+/// Names the element that is refused, or `path` if there are not three.
+pub fn vector_at(path: &str, value: &Value) -> Result<Vector3<f64>, FieldError> {
+    let Value::Array(elements) = value else {
+        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", value.type_str())));
+    };
+    if elements.len() != 3 {
+        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", elements.len())));
+    }
+    let mut vector = Vector3::zeros();
+    for (index, (component, value)) in vector.iter_mut().zip(elements).enumerate() {
+        *component = finite(value).map_err(|problem| FieldError::new(format!("{path}[{index}]"), problem))?;
+    }
+    Ok(vector)
+}
+
+/// A number that single precision can hold, or what is wrong with it.
+fn finite(value: &Value) -> Result<f64, String> {
+    let number = match value {
+        Value::Float(number) => *number,
+        Value::Integer(number) => *number as f64,
+        other => return Err(format!("must be a number, found {}", other.type_str())),
+    };
+    if !number.is_finite() {
+        Err(format!("must be a finite number, found {number}"))
+    } else if number.abs() > f64::from(f32::MAX) {
+        Err(format!("must be within ±{:e}, found {number:e}", f32::MAX))
+    } else {
+        Ok(number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(text: &str) -> Table {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn an_unknown_key_names_the_nearest_known_one() {
+        let table = table("[vehicle]\nmas = 1.0");
+        let section = Section::root(&table).section("vehicle").unwrap();
+        let error = section.allow(&["mass", "inertia", "gravity"]).unwrap_err();
+        assert_eq!(error.field, "vehicle.mas");
+        assert!(error.problem.contains("did you mean \"mass\"?"), "{error}");
+    }
+
+    #[test]
+    fn numbers_may_be_integers_but_nothing_else() {
+        let table = table("a = 3\nb = \"3\"\nc = nan\nd = -inf\ne = 1e39\nf = true");
+        let section = Section::root(&table);
+        assert_eq!(section.number("a"), Ok(3.0));
+        for (key, word) in
+            [("b", "found string"), ("c", "found NaN"), ("d", "found -inf"), ("e", "within"), ("f", "found boolean")]
+        {
+            let error = section.number(key).unwrap_err();
+            assert!(error.problem.contains(word) && error.field == key, "{error}");
+        }
+    }
+
+    #[test]
+    fn a_vector_has_three_elements_and_names_the_bad_one() {
+        let table = table("a = [1, 2.5, 3]\nb = [1, 2]\nc = [1, 2, inf]\nd = 7");
+        let section = Section::root(&table);
+        assert_eq!(section.vector("a"), Ok(Vector3::new(1.0, 2.5, 3.0)));
+        assert_eq!(section.vector("b").unwrap_err().problem, "must be a list of three numbers, found 2");
+        assert_eq!(section.vector("c").unwrap_err().field, "c[2]");
+        assert!(section.vector("d").unwrap_err().problem.contains("found integer"));
+        assert_eq!(section.vector("x").unwrap_err().problem, "missing, must be a list of three numbers");
+    }
+
+    #[test]
+    fn lookup_follows_dotted_paths_and_indices() {
+        let table = table("[a]\nb = [1, 2]\np = [{ t = 3 }]\n[a.c]\nd = 0.5");
+        let section = Section::root(&table);
+        assert_eq!(section.lookup("a.b[1]").as_deref(), Some("2"));
+        assert_eq!(section.lookup("a.c.d").as_deref(), Some("0.5"));
+        assert_eq!(section.lookup("a.p[0].t").as_deref(), Some("3"));
+        assert_eq!(section.lookup("a.p[1].t"), None);
+        assert_eq!(section.lookup("a.x.d"), None);
+    }
+
+    #[test]
+    fn lists_of_tables_carry_their_index() {
+        let table = table("[r]\npoints = [{ t = 0 }, { t = \"x\" }]");
+        let points = Section::root(&table).section("r").unwrap().sections("points").unwrap();
+        assert_eq!(points[1].number("t").unwrap_err().field, "r.points[1].t");
+    }
+}

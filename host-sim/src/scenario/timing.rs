@@ -1,0 +1,173 @@
+//! How long, how often: `duration`, `[control] rate` and `[plant] step`.
+//!
+//! Time is counted in integer microseconds. The control period is a whole number of them and of plant steps, so that a
+//! tick never falls between two steps.
+
+use super::section::{FieldError, Section};
+
+/// The clock of a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Control ticks in the flight.
+    pub ticks: u64,
+    /// Time between ticks, us.
+    pub period_us: u64,
+    /// Plant steps between ticks.
+    pub steps_per_tick: u32,
+}
+
+/// Longest flight, s: nearly four months.
+const GREATEST_DURATION: f64 = 1e7;
+/// The filters advance by at most a tenth of a second at a time.
+const LEAST_RATE: f64 = 10.0;
+/// Periods are whole microseconds, so there is no faster rate.
+const GREATEST_RATE: f64 = 1e6;
+/// Rate where `[control]` is left out, Hz.
+const DEFAULT_RATE: f64 = 100.0;
+/// Longest plant step where `[plant]` is left out, s.
+const DEFAULT_STEP: f64 = 1e-3;
+/// More plant steps than this between two ticks are a slip of the pen.
+const MOST_STEPS: f64 = 1e5;
+/// How far from a whole number a quotient of the file's decimal fractions may be, relative.
+const WHOLE: f64 = 1e-9;
+
+impl Timing {
+    /// Reads `duration`, `[control]` and `[plant]` from the file's root.
+    ///
+    /// # Errors
+    /// Names the field that does not fit, with the nearest value that does.
+    pub fn read(root: &Section) -> Result<Self, FieldError> {
+        let period_us = read_period(root)?;
+        let steps_per_tick = read_steps(root, period_us)?;
+        let duration = root.number("duration")?;
+        let period = period_us as f64 * 1e-6;
+        if !(duration >= period && duration <= GREATEST_DURATION) {
+            let allowed = format!("must be from one control period, {period} s, to {GREATEST_DURATION:e} s");
+            return Err(FieldError::new("duration", format!("{allowed}, found {duration}")));
+        }
+        let ticks = (duration / period * (1.0 + WHOLE)).floor() as u64;
+        Ok(Self { ticks, period_us, steps_per_tick })
+    }
+
+    /// The control period, s.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.period_us as f64 * 1e-6
+    }
+
+    /// The plant's integration step, s.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.period() / f64::from(self.steps_per_tick)
+    }
+
+    /// From the first tick to one period after the last, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        (self.ticks * self.period_us) as f64 * 1e-6
+    }
+}
+
+fn read_period(root: &Section) -> Result<u64, FieldError> {
+    const FIELD: &str = "control.rate";
+    let Some(control) = root.optional_section("control")? else {
+        return Ok((1e6 / DEFAULT_RATE) as u64);
+    };
+    control.allow(&["rate", "thrust_floor"])?;
+    let rate = control.number_or("rate", DEFAULT_RATE)?;
+    if !(LEAST_RATE..=GREATEST_RATE).contains(&rate) {
+        let allowed = format!("must be from {LEAST_RATE} to {GREATEST_RATE:e} Hz");
+        return Err(FieldError::new(FIELD, format!("{allowed}, found {rate}")));
+    }
+    let period_us = 1e6 / rate;
+    let whole = period_us.round();
+    if (period_us - whole).abs() > WHOLE * period_us {
+        let problem = format!(
+            "1/rate must be a whole number of microseconds, found {rate} Hz = {period_us:.3} us (nearest: {} Hz)",
+            1e6 / whole
+        );
+        return Err(FieldError::new(FIELD, problem));
+    }
+    Ok(whole as u64)
+}
+
+fn read_steps(root: &Section, period_us: u64) -> Result<u32, FieldError> {
+    const FIELD: &str = "plant.step";
+    let period = period_us as f64 * 1e-6;
+    let Some(plant) = root.optional_section("plant")? else {
+        return Ok((period / DEFAULT_STEP * (1.0 - WHOLE)).ceil() as u32);
+    };
+    plant.allow(&["step"])?;
+    let step = plant.number("step")?;
+    let least = period / MOST_STEPS;
+    if step < least || step <= 0.0 {
+        let allowed = format!("must be greater than zero and at least 1/{MOST_STEPS:e} of 1/control.rate, {least:e} s");
+        return Err(FieldError::new(FIELD, format!("{allowed}, found {step}")));
+    }
+    let steps = period / step;
+    let whole = steps.round().max(1.0);
+    if (steps - whole).abs() > WHOLE * whole {
+        let problem = format!(
+            "1/control.rate must be a whole number of steps, found {period} s / {step} s = {steps:.4} (nearest: {:e} s)",
+            period / whole
+        );
+        return Err(FieldError::new(FIELD, problem));
+    }
+    Ok(whole as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Timing, FieldError> {
+        Timing::read(&Section::root(&text.parse().unwrap()))
+    }
+
+    #[test]
+    fn the_papers_clock_ticks_4000_times() {
+        let timing = read("duration = 40.0\ncontrol.rate = 100\nplant.step = 0.001").unwrap();
+        assert_eq!(timing, Timing { ticks: 4000, period_us: 10_000, steps_per_tick: 10 });
+        assert_eq!(read("duration = 40.0").unwrap(), timing);
+        assert!((timing.duration() - 40.0).abs() < 1e-12 && (timing.step() - 1e-3).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_period_between_microseconds_is_refused_with_the_nearest_rate() {
+        let error = read("duration = 1\ncontrol.rate = 300").unwrap_err();
+        assert_eq!(error.field, "control.rate");
+        assert!(error.problem.contains("nearest: 300.03"), "{error}");
+    }
+
+    #[test]
+    fn a_step_that_does_not_divide_the_period_is_refused_with_the_nearest_step() {
+        let error = read("duration = 1\ncontrol.rate = 400\nplant.step = 0.001").unwrap_err();
+        assert_eq!(error.field, "plant.step");
+        let error = read("duration = 1\nplant.step = 0.02").unwrap_err();
+        assert!(error.field == "plant.step" && error.problem.contains("nearest: 1e-2 s"), "{error}");
+    }
+
+    #[test]
+    fn zero_and_negative_times_are_refused_by_name() {
+        for (text, field) in [
+            ("duration = 0", "duration"),
+            ("duration = -1", "duration"),
+            ("duration = 0.001", "duration"),
+            ("duration = 1e8", "duration"),
+            ("duration = 1\ncontrol.rate = 0", "control.rate"),
+            ("duration = 1\ncontrol.rate = -100", "control.rate"),
+            ("duration = 1\ncontrol.rate = 5", "control.rate"),
+            ("duration = 1\nplant.step = 0", "plant.step"),
+            ("duration = 1\nplant.step = -0.001", "plant.step"),
+            ("duration = 1\nplant.step = 1e-12", "plant.step"),
+        ] {
+            assert_eq!(read(text).unwrap_err().field, field, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_default_step_divides_any_period() {
+        let timing = read("duration = 1\ncontrol.rate = 400").unwrap();
+        assert_eq!((timing.period_us, timing.steps_per_tick), (2500, 3));
+    }
+}

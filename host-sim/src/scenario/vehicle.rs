@@ -1,0 +1,80 @@
+//! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about. All their fields are required.
+//!
+//! `[control] thrust_floor` (N) is an option of the law: see [`controller_core::projection`].
+
+use super::refused;
+use super::section::{FieldError, Section};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::gains::{GainParameters, Gains};
+use controller_core::reference::ReferenceBounds;
+use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+
+/// Reads the three sections and the thrust floor, for references within `bounds`.
+///
+/// # Errors
+/// Names the field that is missing, not physical, or leaves the law undefined: M_p >= g - K_a3.
+pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Configuration, FieldError> {
+    let vehicle = read_vehicle(root)?;
+    let limits = read_limits(root, &vehicle)?;
+    let gains = read_gains(root, &vehicle)?;
+    let configuration = Configuration::new(vehicle, limits, gains, *bounds).map_err(|error| {
+        let refused = refused(root, &error);
+        let problem = format!(
+            "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
+            refused.problem, bounds.vertical_acceleration
+        );
+        FieldError::new(refused.field, problem)
+    })?;
+    match root.optional_section("control")? {
+        Some(control) if control.has("thrust_floor") => {
+            let floor = control.number("thrust_floor")? as f32;
+            configuration.with_thrust_floor(floor).map_err(|error| refused(root, &error))
+        }
+        _ => Ok(configuration),
+    }
+}
+
+/// Reads `[vehicle]`.
+fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
+    let section = root.section("vehicle")?;
+    section.allow(&["mass", "inertia", "gravity"])?;
+    let parameters = VehicleParameters {
+        mass: section.number("mass")? as f32,
+        inertia: section.vector("inertia")?.map(|moment| moment as f32),
+        gravity: section.number("gravity")? as f32,
+    };
+    Vehicle::new(parameters).map_err(|error| refused(root, &error))
+}
+
+/// Reads `[limits]`.
+fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldError> {
+    let section = root.section("limits")?;
+    section.allow(&["thrust_max", "torque_max"])?;
+    let parameters = LimitParameters {
+        thrust_max: section.number("thrust_max")? as f32,
+        torque_max: section.vector("torque_max")?.map(|torque| torque as f32),
+    };
+    Limits::new(parameters, vehicle).map_err(|error| refused(root, &error))
+}
+
+/// Reads `[gains]`.
+fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
+    let section = root.section("gains")?;
+    section
+        .allow(&["k_p", "k_v", "k_f", "k_s", "k_theta", "k_omega", "m_p", "m_theta", "m_omega", "delta", "alpha"])?;
+    let gain = |key: &str| section.number(key).map(|value| value as f32);
+    let parameters = GainParameters {
+        k_p: gain("k_p")?,
+        k_v: gain("k_v")?,
+        k_f: gain("k_f")?,
+        k_s: gain("k_s")?,
+        k_theta: gain("k_theta")?,
+        k_omega: gain("k_omega")?,
+        m_p: gain("m_p")?,
+        m_theta: gain("m_theta")?,
+        m_omega: gain("m_omega")?,
+        delta: gain("delta")?,
+        alpha: gain("alpha")?,
+    };
+    Gains::new(parameters, vehicle).map_err(|error| refused(root, &error))
+}

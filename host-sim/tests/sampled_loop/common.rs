@@ -1,0 +1,53 @@
+//! Table I, and how to put other numbers in its place.
+
+use controller_core::gains::{GainParameters, Gains};
+use controller_core::vehicle::{Vehicle, VehicleParameters};
+use host_sim::sampled_loop::{Axis, LoopModel, Timing};
+use nalgebra::Vector3;
+
+pub const TABLE_ONE: GainParameters = GainParameters {
+    k_p: 9.0,
+    k_v: 6.0,
+    k_f: 2.0,
+    k_s: 20.0,
+    k_theta: 100.0,
+    k_omega: 0.1,
+    m_p: 2.0,
+    m_theta: 0.206,
+    m_omega: 0.045,
+    delta: 0.02,
+    alpha: 0.25,
+};
+
+/// 100 Hz, ideal rotors, no delay.
+pub const IDEAL: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
+
+pub fn vehicle() -> Vehicle {
+    let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
+    Vehicle::new(VehicleParameters { mass: 0.46, inertia, gravity: 9.81 }).unwrap()
+}
+
+pub fn model(gains: GainParameters, timing: Timing) -> LoopModel {
+    let vehicle = vehicle();
+    LoopModel::new(&vehicle, &Gains::new(gains, &vehicle).unwrap(), timing).unwrap()
+}
+
+/// Where `stable` turns false between `low`, where it holds, and `high`, where it does not.
+pub fn boundary(mut low: f64, mut high: f64, stable: impl Fn(f64) -> bool) -> f64 {
+    assert!(stable(low) && !stable(high));
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if stable(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Body axis that `axis` turns about, if it does.
+pub fn body_axis(axis: Axis) -> Option<usize> {
+    match axis {
+        Axis::Roll | Axis::LateralY => Some(0),
+        Axis::Pitch | Axis::LateralX => Some(1),
+        Axis::Yaw => Some(2),
+        Axis::Vertical => None,
+    }
+}

@@ -1,0 +1,7 @@
+//! The sampled loop analysis against models that share no code with it.
+
+mod common;
+mod margins;
+mod nonlinear;
+mod oracle;
+mod table_one;
