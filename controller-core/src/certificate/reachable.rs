@@ -31,6 +31,10 @@ pub struct Reachable {
     pub horizontal: f64,
     /// Greatest |u'|.
     pub jerk: f64,
+    /// Greatest |(u'_x, u'_y)|.
+    pub horizontal_jerk: f64,
+    /// Greatest |u'_z|.
+    pub vertical_jerk: f64,
     /// Greatest |(u''_x, u''_y)|.
     pub horizontal_snap: f64,
     /// Greatest |u''_z|.
@@ -59,6 +63,8 @@ impl Reachable {
             vertical_greatest: gravity + m_p + vertical,
             horizontal: core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration),
             jerk: math::sqrt_f64(3.0) * axis_jerk + jerk,
+            horizontal_jerk: core::f64::consts::SQRT_2 * axis_jerk + jerk,
+            vertical_jerk: axis_jerk + jerk,
             horizontal_snap: core::f64::consts::SQRT_2 * axis_snap + snap,
             vertical_snap: axis_snap + snap,
         }

@@ -1,22 +1,22 @@
 //! A bound on omega_d and omega_d' sharper than Lemma 1's. `docs/sharp-bound.md` derives it step by step.
 //!
 //! Let n = |u|, gamma the tilt of rho = u / n from the vertical, chi the angle in the plane orthogonal to rho from body x to the
-//! uphill direction, so that the roll of R_d has tan phi = tan gamma sin chi. Write w for the part of u'' orthogonal to
-//! rho, p and r for the parts of u' orthogonal to and along rho. Then, exactly,
+//! uphill direction, so that the roll of R_d has tan phi = tan gamma sin chi. Write w and p for the parts of u'' and u'
+//! orthogonal to rho, r for the part of u' along it, w_perp and p_perp for the horizontal ones among the orthogonal, and
+//! [v] = (|v| + |v_perp|) / 2, which is the greatest sin chi (x . v) over chi. Then, exactly, omega_d' = L u'' + N, with
 //!
-//! omega_d' = L u'' + N, with
+//! |L_12 u''| = |w| / n,  |L_3 u''| = |tan phi (x . w)| / n <= tan gamma [w] / n,
 //!
-//! |L u''|^2 = (|w|^2 + tan^2 phi (x . w)^2) / n^2 <= (|w|^2 + tan^2 gamma (|w| + |w_perp|)^2 / 4) / n^2,
+//! |N_12| = (p / n) sqrt(4 r^2 / n^2 + omega_3^2),  |omega_3| <= |psi'| / cos gamma + tan gamma [p] / n,
 //!
-//! |N_12| = (p / n) sqrt(4 r^2 / n^2 + omega_3^2),
-//!
-//! |N_3| <= |psi''| / cos gamma + 2 tan gamma r p / n^2 + psi'^2 tan^2 gamma + 2 |psi'| (p / n) sin gamma / cos^2 gamma
+//! |N_3| <= |psi''| / cos gamma + 2 tan gamma r [p] / n^2 + psi'^2 tan^2 gamma + 2 |psi'| (p / n) sin gamma / cos^2 gamma
 //!       + (p / n)^2 (1 + 2 tan^2 gamma) / 2,
 //!
-//! |omega_3| <= |psi'| / cos gamma + tan gamma p / n.
+//! |omega_d'|^2 <= (|L_12 u''| + |N_12|)^2 + (|L_3 u''| + |N_3|)^2.
 //!
 //! What is gained over the lemma: the yaw acceleration feels w only through tan gamma, and the tilt is bounded; p and r share
-//! one budget, p^2 + r^2 <= |u'|^2; the horizontal parts of w share another; tall n goes with tilt, n >= u_z,min / cos gamma.
+//! one budget, p^2 + r^2 <= |u'|^2; the horizontal parts of w share another; the tilting and the yawing part of omega_d' are
+//! orthogonal; tall n goes with tilt, n >= u_z,min / cos gamma.
 //!
 //! The supremum over (gamma; direction of w; split of u'; psi') is taken over cells that cover the whole range, each
 //! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. All counts are constants.
@@ -27,11 +27,13 @@ use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
 /// Cells of tan gamma between upright and the greatest tilt.
-const TILT_CELLS: u32 = 96;
-/// Cells of a quarter turn, for directions and splits.
-const ANGLE_CELLS: u32 = 32;
+const TILT_CELLS: u32 = 48;
+/// Cells of a quarter turn, for the direction of a horizontal vector.
+const ANGLE_CELLS: u32 = 24;
+/// Cells of p between zero and its greatest value, for the split of u'.
+const SPLIT_CELLS: u32 = 24;
 /// Cells of |psi'|.
-const HEADING_CELLS: u32 = 6;
+const HEADING_CELLS: u32 = 80;
 
 /// Bounds on the desired attitude's motion, and on the torque it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,11 +65,35 @@ pub fn feedforward_torque(inertia: &Vector3<f64>, velocity: f64, acceleration: f
     inertia * acceleration + differences * (0.5 * velocity * velocity)
 }
 
-/// One cell of the tilt, with each function of it at its worst end.
+/// A part of omega_d or omega_d': what tilts rho (axes 1 and 2) and what turns about it (axis 3), as magnitudes.
+#[derive(Clone, Copy)]
+struct Parts {
+    tilting: f64,
+    yawing: f64,
+}
+
+impl Parts {
+    /// |self + other|^2 at most.
+    fn square_of_sum(&self, other: &Self) -> f64 {
+        let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
+        tilting * tilting + yawing * yawing
+    }
+}
+
+/// A vector's part orthogonal to rho, divided by n: its length |v| and what it can turn the yaw by, \[v\].
+#[derive(Clone, Copy)]
+struct Tangential {
+    length: f64,
+    mixed: f64,
+}
+
+/// One cell of the tilt, with each function of it at both ends or at its worst one.
 struct Tilt {
+    /// Greatest tangent and sine, at the tilted end.
     tan: f64,
     sin: f64,
-    /// Greatest cosine, at the upright end.
+    /// Least sine and greatest cosine, at the upright end.
+    sin_least: f64,
     cos_greatest: f64,
     /// Greatest 1 / cos, at the tilted end.
     secant: f64,
@@ -82,79 +108,143 @@ impl Tilt {
         Self {
             tan: tilted_end,
             sin: tilted_end / secant,
+            sin_least: upright_end / secant_least,
             cos_greatest: 1.0 / secant_least,
             secant,
             magnitude: vertical_least * secant_least,
         }
     }
 
-    /// Greatest |L u''| over all directions of u''.
-    fn linear_part(&self, reach: &Reachable) -> f64 {
-        let mut greatest: f64 = 0.0;
-        for (least, most) in quarter_turn() {
-            // u''_h = (along, across) with along = |u''_h| cos, across = |u''_h| sin: cos worst at `least`, sin at `most`.
-            let across = reach.horizontal_snap * math::sin_f64(most);
-            let along = reach.horizontal_snap * math::cos_f64(least);
-            let uphill = self.cos_greatest * along + self.sin * reach.vertical_snap;
-            let w = math::hypot(uphill, across);
-            let mixed = 0.5 * self.tan * (w + across);
-            greatest = greatest.max(math::hypot(w, mixed));
-        }
-        greatest / self.magnitude
+    /// The tangential part of a vector whose horizontal part is at most `horizontal` long and points within `direction` of
+    /// the slope, and whose vertical part is at most `vertical`.
+    ///
+    /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
+    fn tangential(&self, horizontal: f64, vertical: f64, direction: &Direction) -> Tangential {
+        let climbing = self.sin * vertical;
+        let flattened = self.sin_least * horizontal * direction.cos_least;
+        let square = horizontal * horizontal + climbing * climbing - flattened * flattened
+            + 2.0 * self.cos_greatest * horizontal * direction.cos_greatest * climbing;
+        let length = math::sqrt_f64(square) / self.magnitude;
+        Tangential { length, mixed: 0.5 * (length + horizontal * direction.sin_greatest / self.magnitude) }
     }
 
-    /// |omega_3| for |rho'| = `direction_rate` and |psi'| = `yaw_rate`.
-    fn yaw_part(&self, direction_rate: f64, yaw_rate: f64) -> f64 {
-        yaw_rate * self.secant + self.tan * direction_rate
+    /// L u'' for a direction of u''.
+    fn linear_part(&self, reach: &Reachable, direction: &Direction) -> Parts {
+        let Tangential { length, mixed } = self.tangential(reach.horizontal_snap, reach.vertical_snap, direction);
+        Parts { tilting: length, yawing: self.tan * mixed }
     }
 
-    /// Greatest |N| over the splits of u' and of the heading's budget.
-    fn quadratic_part(&self, reach: &Reachable, bounds: &ReferenceBounds) -> f64 {
-        let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
-        let mut greatest: f64 = 0.0;
-        for cell in 0..HEADING_CELLS {
-            // psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end of its cell, psi'' at the near end.
-            let cells = f64::from(HEADING_CELLS);
-            let (near, yaw_rate) = (rate_bound * f64::from(cell) / cells, rate_bound * f64::from(cell + 1) / cells);
-            let room = second_bound * second_bound - near * near * near * near;
-            if room < 0.0 {
-                break; // no heading turns this fast within K_nu''
-            }
-            let yaw_acceleration = math::sqrt_f64(room);
-            for (least, most) in quarter_turn() {
-                let direction_rate = reach.jerk * math::cos_f64(least) / self.magnitude;
-                let stretch = reach.jerk * math::sin_f64(most) / self.magnitude;
-                let tilting = direction_rate * math::hypot(2.0 * stretch, self.yaw_part(direction_rate, yaw_rate));
-                let yawing = yaw_acceleration * self.secant
-                    + 2.0 * self.tan * stretch * direction_rate
-                    + yaw_rate * yaw_rate * self.tan * self.tan
-                    + 2.0 * yaw_rate * direction_rate * self.sin * self.secant * self.secant
-                    + 0.5 * direction_rate * direction_rate * (1.0 + 2.0 * self.tan * self.tan);
-                greatest = greatest.max(math::hypot(tilting, yawing));
-            }
-        }
-        greatest
+    /// omega_d for a direction of u' and |psi'| = `yaw_rate`.
+    fn velocity(&self, reach: &Reachable, direction: &Direction, yaw_rate: f64) -> Parts {
+        let Tangential { length, mixed } = self.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
+        Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
+    }
+
+    /// N for |psi'| and |psi''| at most those of `heading` and the share of p in u' within the cell `split`.
+    fn quadratic_part(&self, reach: &Reachable, heading: &HeadingCell, longest: f64, split: u32) -> Parts {
+        let [least, most] = [split, split + 1].map(|end| longest * f64::from(end) / f64::from(SPLIT_CELLS));
+        let stretch = math::sqrt_f64(reach.jerk * reach.jerk - least * least) / self.magnitude;
+        let length = most / self.magnitude;
+        let product =
+            greatest_product(reach.jerk * reach.jerk, least * least, most * most) / (self.magnitude * self.magnitude);
+        let mixed = 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude);
+        let HeadingCell { rate, acceleration } = *heading;
+        let yaw = rate * self.secant + self.tan * mixed;
+        let yawing = acceleration * self.secant
+            + 2.0 * self.tan * stretch * mixed
+            + rate * rate * self.tan * self.tan
+            + 2.0 * rate * length * self.sin * self.secant * self.secant
+            + 0.5 * length * length * (1.0 + 2.0 * self.tan * self.tan);
+        Parts { tilting: math::hypot(2.0 * product, length * yaw), yawing }
     }
 }
 
-/// The cells of [0, pi/2], each as (least, most).
-fn quarter_turn() -> impl Iterator<Item = (f64, f64)> {
-    let cell = core::f64::consts::FRAC_PI_2 / f64::from(ANGLE_CELLS);
-    (0..ANGLE_CELLS).map(move |i| (cell * f64::from(i), cell * f64::from(i + 1)))
+/// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
+fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
+    let x = (0.5 * total).clamp(least, most);
+    math::sqrt_f64(x * (total - x).max(0.0))
+}
+
+/// One cell of a horizontal vector's angle to the slope.
+#[derive(Clone, Copy)]
+struct Direction {
+    cos_greatest: f64,
+    cos_least: f64,
+    sin_greatest: f64,
+}
+
+impl Direction {
+    /// The cells of [0, pi/2]; the other quadrants mirror it.
+    fn quarter_turn() -> [Self; ANGLE_CELLS as usize] {
+        let cell = core::f64::consts::FRAC_PI_2 / f64::from(ANGLE_CELLS);
+        core::array::from_fn(|i| {
+            let (least, most) = (cell * i as f64, cell * (i + 1) as f64);
+            // The last cell's cosine must not come out below zero by rounding: it is squared.
+            let cos_least = math::cos_f64(most).max(0.0);
+            Self { cos_greatest: math::cos_f64(least), cos_least, sin_greatest: math::sin_f64(most) }
+        })
+    }
+}
+
+/// One cell of |psi'|, with |psi''| as large as it leaves it.
+#[derive(Clone, Copy)]
+struct HeadingCell {
+    rate: f64,
+    acceleration: f64,
+}
+
+impl HeadingCell {
+    /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end.
+    fn all(bounds: &ReferenceBounds) -> impl Iterator<Item = Self> {
+        let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
+        // No heading turns faster than K_nu'' allows.
+        let fastest = rate_bound.min(math::sqrt_f64(second_bound));
+        (0..HEADING_CELLS).map(move |cell| {
+            let [near, far] = [cell, cell + 1].map(|end| fastest * f64::from(end) / f64::from(HEADING_CELLS));
+            let room = second_bound * second_bound - near * near * near * near;
+            Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
+        })
+    }
+
+    /// The greatest |psi'| of all.
+    fn fastest(bounds: &ReferenceBounds) -> f64 {
+        Self::all(bounds).map(|cell| cell.rate).fold(0.0, f64::max)
+    }
 }
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
 pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {
     let steepest = reach.horizontal / reach.vertical_least;
+    let directions = Direction::quarter_turn();
+    let yaw_rate = HeadingCell::fastest(bounds);
+    let nothing = Parts { tilting: 0.0, yawing: 0.0 };
     let mut greatest =
         DesiredRates { angular_velocity: 0.0, angular_acceleration: 0.0, feedforward_torque: Vector3::zeros() };
     for cell in 0..TILT_CELLS {
         let ends = [cell, cell + 1].map(|end| steepest * f64::from(end) / f64::from(TILT_CELLS));
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
-        let direction_rate = reach.jerk / tilt.magnitude;
-        let velocity = math::hypot(direction_rate, tilt.yaw_part(direction_rate, f64::from(bounds.heading_rate)));
-        let acceleration = tilt.linear_part(reach) + tilt.quadratic_part(reach, bounds);
+
+        let mut velocity_square: f64 = 0.0;
+        let mut longest: f64 = 0.0;
+        for direction in &directions {
+            velocity_square = velocity_square.max(tilt.velocity(reach, direction, yaw_rate).square_of_sum(&nothing));
+            let tangential = tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
+            longest = longest.max(tangential.length * tilt.magnitude);
+        }
+        let longest = longest.min(reach.jerk);
+        let linear = directions.map(|direction| tilt.linear_part(reach, &direction));
+        let mut acceleration_square: f64 = 0.0;
+        for heading in HeadingCell::all(bounds) {
+            for split in 0..SPLIT_CELLS {
+                let quadratic = tilt.quadratic_part(reach, &heading, longest, split);
+                for linear in &linear {
+                    acceleration_square = acceleration_square.max(linear.square_of_sum(&quadratic));
+                }
+            }
+        }
+
+        let (velocity, acceleration) = (math::sqrt_f64(velocity_square), math::sqrt_f64(acceleration_square));
         let torque = feedforward_torque(inertia, velocity, acceleration);
         greatest.angular_velocity = greatest.angular_velocity.max(velocity);
         greatest.angular_acceleration = greatest.angular_acceleration.max(acceleration);

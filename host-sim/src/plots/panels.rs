@@ -3,9 +3,10 @@
 use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
 use super::record::Sample;
 use crate::claims::{
-    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, short, theorem_1_thrust,
+    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, theorem_1_thrust,
 };
 use crate::scenario::Scenario;
+use crate::table::short;
 use plotters::style::RGBColor;
 
 /// The axes' colours, x (roll), y (pitch), z (yaw).

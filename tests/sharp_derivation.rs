@@ -1,0 +1,296 @@
+//! The steps of docs/sharp-bound.md, checked one by one at random situations.
+
+mod adversary_search;
+mod random;
+
+use adversary_search::configurations::around_table_1;
+use adversary_search::{COORDINATES, Domain, Situation};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::reachable::{Reachable, half_l1_norm};
+use controller_core::mrp;
+use controller_core::reference::ReferenceBounds;
+use nalgebra::{Matrix3, Vector3};
+use rand::RngExt;
+use random::ChaCha8Rng;
+
+fn situation(rng: &mut ChaCha8Rng) -> Situation {
+    let configuration = around_table_1(rng, 3.0);
+    let code = [(); COORDINATES].map(|()| rng.random_range(-1.0..=1.0));
+    Situation::decode(&configuration, Domain::Decoupled, &code)
+}
+
+/// What the derivation speaks of, from its definitions: u, u', u'' in double precision and the axes of R_d.
+struct Geometry {
+    n: f64,
+    /// x, y, rho: R_d's columns.
+    axes: [Vector3<f64>; 3],
+    /// The parts of u' and u'' orthogonal to rho, and that of u' along it.
+    p: Vector3<f64>,
+    r: f64,
+    w: Vector3<f64>,
+    tan_gamma: f64,
+    /// Horizontal and orthogonal to rho.
+    level: Vector3<f64>,
+}
+
+impl Geometry {
+    fn new(situation: &Situation) -> Self {
+        let [u, first, second] = situation.command_and_derivatives().map(|v| v.cast::<f64>());
+        let n = u.norm();
+        let rho = u / n;
+        let r_d: Matrix3<f64> = mrp::rotation(&situation.desired().attitude).cast();
+        let axes = [r_d.column(0).into(), r_d.column(1).into(), rho];
+        let (p, w) = (first - rho * rho.dot(&first), second - rho * rho.dot(&second));
+        let slope = Vector3::new(rho.x, rho.y, 0.0);
+        let level = Vector3::z().cross(&rho) / slope.norm().max(1e-12);
+        Self { n, axes, p, r: rho.dot(&first), w, tan_gamma: slope.norm() / rho.z, level }
+    }
+
+    /// The lengths of a tangential vector and of its horizontal part, and their mean.
+    fn mixed(&self, v: &Vector3<f64>) -> f64 {
+        0.5 * (v.norm() + self.level.dot(v).abs())
+    }
+}
+
+#[test]
+fn the_exact_expression_is_the_laws_own() {
+    let mut rng = random::generator(40);
+    for _ in 0..20_000 {
+        let situation = situation(&mut rng);
+        let desired = situation.desired();
+        let Geometry { n, axes: [x, y, _], p, r, w, tan_gamma, .. } = Geometry::new(&situation);
+        let (psi_1, psi_2) =
+            (f64::from(situation.reference.heading.rate()), f64::from(situation.reference.heading.acceleration()));
+
+        // sin theta = -e3 . x, cos theta sin phi = e3 . y, cos theta cos phi = e3 . rho = cos gamma.
+        let cos_gamma = 1.0 / 1.0_f64.hypot(tan_gamma);
+        let (s_theta, s_phi_c_theta) = (-x.z, y.z);
+        let c_theta = (1.0 - s_theta * s_theta).sqrt();
+        let (s_phi, c_phi) = (s_phi_c_theta / c_theta, cos_gamma / c_theta);
+        let tan_phi = s_phi / c_phi;
+
+        let tilt_rate = p / n;
+        let tilt_acceleration = w / n - tilt_rate * (2.0 * r / n);
+        let (w_1, w_2) = (-y.dot(&tilt_rate), x.dot(&tilt_rate));
+        let w_3 = psi_1 * c_theta * c_theta / cos_gamma - tan_phi * w_2;
+        let quadratic = 2.0 * psi_1 * psi_1 * s_theta * c_theta * s_phi - 2.0 * psi_1 * s_theta * w_2
+            + 2.0 * psi_1 * c_theta * s_phi * w_1
+            - w_1 * w_2 * (1.0 + s_phi * s_phi);
+        let acceleration = Vector3::new(
+            -y.dot(&tilt_acceleration) + w_3 * w_2,
+            x.dot(&tilt_acceleration) - w_3 * w_1,
+            psi_2 * c_theta / c_phi - tan_phi * x.dot(&tilt_acceleration) + quadratic / (c_phi * c_phi),
+        );
+        let velocity = Vector3::new(w_1, w_2, w_3);
+        // The law's single precision, and cancellation among terms as large as w / n.
+        let tolerance = |scale: f64| 2e-5 * (1.0 + scale) * (1.0 + tan_gamma * tan_gamma);
+        let velocity_error = (velocity - desired.angular_velocity.cast::<f64>()).norm();
+        assert!(velocity_error < tolerance(velocity.norm()), "{velocity} {desired:?}");
+        let scale = w.norm() / n + velocity.norm_squared() + psi_1 * psi_1;
+        let error = (acceleration - desired.angular_acceleration.cast::<f64>()).norm();
+        assert!(error < tolerance(scale), "{acceleration} {desired:?}");
+    }
+}
+
+#[test]
+fn every_part_of_the_angular_acceleration_is_within_its_bound() {
+    let mut rng = random::generator(41);
+    for _ in 0..20_000 {
+        let situation = situation(&mut rng);
+        let desired = situation.desired();
+        let geometry = Geometry::new(&situation);
+        let Geometry { n, axes: [x, y, _], p, r, w, tan_gamma: tan, .. } = &geometry;
+        let heading = situation.reference.heading;
+        let (psi_1, psi_2) = (f64::from(heading.rate()).abs(), f64::from(heading.acceleration()).abs());
+        let secant = 1.0_f64.hypot(*tan);
+        let sin = tan / secant;
+        let (p_n, r_n) = (p.norm() / n, r.abs() / n);
+
+        let velocity = desired.angular_velocity.cast::<f64>();
+        let yaw = psi_1 * secant + tan * geometry.mixed(p) / n;
+        let room = 1.0 + 1e-4;
+        assert!(velocity.z.abs() <= yaw * room + 1e-5);
+
+        let acceleration = desired.angular_acceleration.cast::<f64>();
+        // tan phi = (cos theta sin phi) / (cos theta cos phi).
+        let tan_phi = y.z * secant;
+        assert!(tan_phi.abs() <= tan * room + 1e-6);
+        let linear = Vector3::new(-y.dot(w), x.dot(w), -tan_phi * x.dot(w)) / *n;
+        assert!(linear.z.abs() <= tan * geometry.mixed(w) / n * room + 1e-5);
+        let quadratic = acceleration - linear;
+        let noise = 1e-4 * (1.0 + linear.norm());
+        assert!(quadratic.xy().norm() <= p_n * (2.0 * r_n).hypot(yaw) * room + noise);
+        let yawing = psi_2 * secant
+            + 2.0 * tan * r_n * geometry.mixed(p) / n
+            + (psi_1 * tan).powi(2)
+            + 2.0 * psi_1 * p_n * sin * secant * secant
+            + 0.5 * p_n * p_n * (1.0 + 2.0 * tan * tan);
+        assert!(quadratic.z.abs() <= yawing * room + noise, "{} {yawing}", quadratic.z);
+    }
+}
+
+/// Per axis with M_p = 1: the greatest |u_f'| and |u_f''| that piecewise constant feedback of `switches` reaches.
+fn flown(rng: &mut ChaCha8Rng, k_f: f64, k_s: f64, switches: usize) -> (f64, f64) {
+    let (mut u_f, mut u_s, mut greatest) = (0.0_f64, 0.0_f64, (0.0_f64, 0.0_f64));
+    for number in 0..switches {
+        let ubar = if number % 2 == 0 { 1.0 } else { -1.0 };
+        let hold = (1.0 / k_f + 1.0 / k_s) * 8.0 * rng.random_range(0.0..1.0_f64).powi(2);
+        let steps = 400;
+        let (e_f, e_s) = ((-k_f * hold / 400.0).exp(), (-k_s * hold / 400.0).exp());
+        let across = k_f * (e_f - e_s) / (k_s - k_f);
+        for _ in 0..steps {
+            // u_f'' is greatest in the instant after a switch, so it is read with either input.
+            let difference = u_f - u_s;
+            for input in [-1.0, 1.0] {
+                greatest.1 = greatest.1.max((k_f * (k_f * difference - k_s * (u_s - input))).abs());
+            }
+            greatest.0 = greatest.0.max((k_f * difference).abs());
+            (u_f, u_s) = (ubar + e_f * (u_f - ubar) + across * (u_s - ubar), ubar + e_s * (u_s - ubar));
+        }
+    }
+    greatest
+}
+
+#[test]
+fn the_filters_reach_what_step_1_says_and_no_more() {
+    let mut rng = random::generator(42);
+    for _ in 0..200 {
+        let k_f = f64::from(random::log_uniform(&mut rng, 0.3, 30.0));
+        let k_s = f64::from(random::log_uniform(&mut rng, 0.3, 30.0)) * 1.01;
+        let half_l1 = half_l1_norm(k_f, k_s);
+        let first = 2.0 * k_f * half_l1;
+        let second = 2.0 * k_f * (k_s + k_f * half_l1 * half_l1);
+        let (found_first, found_second) = flown(&mut rng, k_f, k_s, 100);
+        assert!(found_first <= first * (1.0 + 1e-9) && found_second <= second * (1.0 + 1e-9), "{k_f} {k_s}");
+        assert!(found_first >= 0.98 * first && found_second >= 0.98 * second, "{k_f} {k_s}: {found_first} of {first}");
+    }
+}
+
+#[test]
+fn the_adversarys_reachable_set_is_the_one_the_filters_reach() {
+    // The support of the set in random directions, by its arc and by flying the extremal feedback.
+    let mut rng = random::generator(43);
+    for _ in 0..200 {
+        let k_f = f64::from(random::log_uniform(&mut rng, 0.3, 30.0));
+        let k_s = f64::from(random::log_uniform(&mut rng, 0.3, 30.0)) * 1.01;
+        let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
+        let (a, b) = (angle.cos(), angle.sin());
+        let by_arc = (0..=40_000)
+            .map(|i| {
+                let (u_f, u_s) = adversary_search::reachable_point(k_f, k_s, 1.0, f64::from(i) / 40_000.0, 1.0);
+                (a * u_f + b * u_s).abs()
+            })
+            .fold(0.0, f64::max);
+        // The support function is the L1 norm of the impulse response of a u_f + b u_s: integrate it.
+        let end = 40.0 / k_f.min(k_s);
+        let steps = 400_000;
+        let h = end / f64::from(steps);
+        let integral: f64 = (0..steps)
+            .map(|i| {
+                let t = (f64::from(i) + 0.5) * h;
+                let (e_f, e_s) = ((-k_f * t).exp(), (-k_s * t).exp());
+                (a * k_f * k_s * (e_f - e_s) / (k_s - k_f) + b * k_s * e_s).abs() * h
+            })
+            .sum();
+        assert!((by_arc - integral).abs() < 2e-3 * integral, "{k_f} {k_s} {angle}: {by_arc} {integral}");
+    }
+}
+
+/// How many of the derivation's gains are in use.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Gain {
+    ExactExpression,
+    MagnitudeGrowsWithTilt,
+    OneBudgetForTheRate,
+    OneBudgetForTheHeading,
+    CouplingByTheSineOfChi,
+    ShapeOfTheSnap,
+    PartsApart,
+}
+
+/// The derivation's bound on |omega_d'| with the gains up to `used`, at one (tilt, direction of w, split of u', psi').
+fn bound_at(reach: &Reachable, bounds: &ReferenceBounds, used: Gain, at: [f64; 4]) -> f64 {
+    let [tilt, direction, split, turning] = at;
+    let tan = tilt * reach.horizontal / reach.vertical_least;
+    let secant = tan.hypot(1.0);
+    let (sin, cos) = (tan / secant, 1.0 / secant);
+    let n = reach.vertical_least * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
+
+    let (along, across) = (reach.horizontal_snap * direction.cos(), reach.horizontal_snap * direction.sin());
+    let (w, w_perp) = if used >= Gain::ShapeOfTheSnap {
+        ((cos * along + sin * reach.vertical_snap).hypot(across), across)
+    } else {
+        (reach.horizontal_snap.hypot(reach.vertical_snap), reach.horizontal_snap)
+    };
+    let (p, r) = if used >= Gain::OneBudgetForTheRate {
+        (reach.jerk * split.cos() / n, reach.jerk * split.sin() / n)
+    } else {
+        (reach.jerk / n, reach.jerk / n)
+    };
+    let (fastest, second) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
+    let (psi_1, psi_2) = if used >= Gain::OneBudgetForTheHeading {
+        let psi_1 = turning * fastest.min(second.sqrt());
+        (psi_1, (second * second - psi_1.powi(4)).max(0.0).sqrt())
+    } else {
+        (fastest, second)
+    };
+    let by_sine = used >= Gain::CouplingByTheSineOfChi;
+    let w_mixed = if by_sine { 0.5 * (w + w_perp) } else { w } / n;
+    let p_mixed = if by_sine { 0.5 * (p + p.min(reach.horizontal_jerk / n)) } else { p };
+
+    let linear = (w / n, tan * w_mixed);
+    let quadratic = (
+        p * (2.0 * r).hypot(psi_1 * secant + tan * p_mixed),
+        psi_2 * secant
+            + 2.0 * tan * r * p_mixed
+            + (psi_1 * tan).powi(2)
+            + 2.0 * psi_1 * p * sin * secant * secant
+            + 0.5 * p * p * (1.0 + 2.0 * tan * tan),
+    );
+    if used >= Gain::PartsApart {
+        (linear.0 + quadratic.0).hypot(linear.1 + quadratic.1)
+    } else {
+        linear.0.hypot(linear.1) + quadratic.0.hypot(quadratic.1)
+    }
+}
+
+#[test]
+fn every_step_of_the_derivation_gains() {
+    const GRID: u32 = 24;
+    let configuration = adversary_search::configurations::paper();
+    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+    let gravity = f64::from(configuration.vehicle().gravity);
+    let [k_f, k_s, m_p] = [gains.k_f, gains.k_s, gains.m_p].map(f64::from);
+    let reach = Reachable::new(k_f, k_s, m_p, gravity, bounds);
+    let certificate = Certificate::new(&configuration).unwrap();
+    let printed = certificate.printed.rates.angular_acceleration;
+    let sharp = certificate.sharp.rates.angular_acceleration;
+
+    let mut before = printed;
+    println!("Lemma 1 as printed: {printed:.2}");
+    for (used, name) in [
+        (Gain::ExactExpression, "exact expression"),
+        (Gain::MagnitudeGrowsWithTilt, "n grows with the tilt"),
+        (Gain::OneBudgetForTheRate, "p and r share |u'|"),
+        (Gain::OneBudgetForTheHeading, "psi' and psi'' share K_nu''"),
+        (Gain::CouplingByTheSineOfChi, "[v] in place of |v|"),
+        (Gain::ShapeOfTheSnap, "the shape of u''"),
+        (Gain::PartsApart, "tilting and yawing apart"),
+    ] {
+        let share = |i: u32| f64::from(i) / f64::from(GRID);
+        let quarter = |i: u32| share(i) * std::f64::consts::FRAC_PI_2;
+        let mut greatest = 0.0_f64;
+        for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j))) {
+            for (k, l) in (0..=GRID).flat_map(|k| (0..=GRID).map(move |l| (k, l))) {
+                let at = [share(i), quarter(j), quarter(k), share(l)];
+                greatest = greatest.max(bound_at(&reach, bounds, used, at));
+            }
+        }
+        println!("{name}: {greatest:.2}");
+        assert!(greatest < before, "{name} gains nothing: {greatest} after {before}");
+        before = greatest;
+    }
+    println!("over cells, every quantity at its worst end: {sharp:.2}");
+    // What the cells cost: they bound the supremum that the grid samples, from the other side.
+    assert!(sharp >= before && sharp <= 1.02 * before, "{sharp} over cells, {before} on the grid");
+}
