@@ -189,6 +189,15 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         .map_or_else(|| format!("{}-tuned", scenario.name), |stem| stem.to_string_lossy().into_owned());
     scenario.name.clone_from(&name);
     let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+    // Whatever is wrong with the output shows now, not after the search.
+    if same_file(&path, &arguments.file) {
+        return Err(format!("{}: --out must be another file than the one tuned", path.display()));
+    }
+    let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
+    if path.is_dir() {
+        return Err(unwritable(io::ErrorKind::IsADirectory.into()));
+    }
+    drop(WholeFile::create(&path).map_err(unwritable)?);
     let effort = Effort { generations: arguments.generations, seed: arguments.seed };
     let tuned = match tune(&scenario, requirements, effort) {
         Ok(tuned) => tuned,
@@ -203,7 +212,7 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         }
     };
     let text = output::rewritten(&original, &tuned).map_err(|error| error.to_string())?;
-    WholeFile::write(&path, &text).map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
+    WholeFile::write(&path, &text).map_err(unwritable)?;
     let (certificate, _) = certify(&tuned.scenario).map_err(|error| error.to_string())?;
     let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
         format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
@@ -224,6 +233,11 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     }
     let _ = io::stdout().write_all(summary.as_bytes());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether both paths lead to one file that exists.
+fn same_file(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }
 
 impl TuneArguments {

@@ -6,6 +6,11 @@
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
 //! radii, margins, recovery from upside down, the file's own flight. A verdict that fails says how far it got and by how
 //! much it missed, so that the search has a slope to follow.
+//!
+//! The gain margin is asked for twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
+//! there the attitude loop's own gain dominates, and the position loop's hardly counts: alone, it would let the search
+//! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
+//! multiplied by the margin as well, which is the gain margin at the position feedback.
 
 use super::Requirements;
 use crate::certify::loop_model;
@@ -131,7 +136,7 @@ impl Judge {
             return Err((4, missing, format!("certificate: {name}")));
         }
 
-        let loops = loop_model(&scenario).map_err(|_| undefined)?;
+        let loops = loop_model(&scenario).map_err(|_| undefined.clone())?;
         for axis in Axis::ALL {
             let radius = loops.spectral_radius(axis);
             if radius >= 1.0 {
@@ -143,6 +148,16 @@ impl Judge {
             let missing = (needed.gain_margin / gain - 1.0).max((needed.delay_margin - delay) / needed.delay_margin);
             if missing > 0.0 {
                 return Err((2, missing, format!("sampled loop margin: {}", report.axis.name())));
+            }
+        }
+        let sterner = with_position_feedback(&scenario, needed.gain_margin).ok_or_else(|| undefined.clone())?;
+        let loops = loop_model(&sterner).map_err(|_| undefined)?;
+        for axis in Axis::ALL {
+            let radius = loops.spectral_radius(axis);
+            if radius >= 1.0 {
+                let what =
+                    format!("sampled loop unstable with {} times k_p and k_v: {}", needed.gain_margin, axis.name());
+                return Err((2, radius - 1.0, what));
             }
         }
 
@@ -169,6 +184,17 @@ impl Judge {
         }
         Ok(())
     }
+}
+
+/// `scenario` with k_p and k_v multiplied by `factor`, if the law is defined for them. For its sampled loops only: it
+/// has no thrust floor.
+fn with_position_feedback(scenario: &Scenario, factor: f64) -> Option<Scenario> {
+    let configuration = &scenario.configuration;
+    let own = **configuration.gains();
+    let scaled = |gain: f32| (f64::from(gain) * factor) as f32;
+    let parameters = GainParameters { k_p: scaled(own.k_p), k_v: scaled(own.k_v), ..own };
+    let gains = Gains::new(parameters, configuration.vehicle()).ok()?;
+    Some(Scenario { configuration: configuration.with_gains(gains).ok()?, ..scenario.clone() })
 }
 
 /// The recovery that height is measured in: roll -179 degrees, at rest, hovering where it starts, for `duration` s.

@@ -27,11 +27,18 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     for (key, gain) in gains {
         document["gains"][key] = value(shortest(gain));
     }
-    if let Some(floor) = configuration.thrust_floor() {
-        if !document.contains_key("control") {
-            document["control"] = Item::Table(Table::new());
+    match configuration.thrust_floor() {
+        Some(floor) => {
+            if !document.contains_key("control") {
+                document["control"] = Item::Table(Table::new());
+            }
+            document["control"]["thrust_floor"] = value(shortest(floor));
         }
-        document["control"]["thrust_floor"] = value(shortest(floor));
+        None => {
+            if let Some(control) = document.get_mut("control").and_then(Item::as_table_like_mut) {
+                control.remove("thrust_floor");
+            }
+        }
     }
     let head = format!(
         "# Tuned: height lost from upside down {} m; every margin at least {:.1} %.\n",
