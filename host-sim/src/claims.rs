@@ -271,6 +271,27 @@ mod tests {
     }
 
     #[test]
+    fn what_a_weak_vehicle_cannot_deliver_is_counted_and_fails() {
+        let text = crate::scenario::PAPER.replace("thrust_max = 7.0", "thrust_max = 4.9");
+        let weak = Scenario::parse(&text, "weak").unwrap();
+        let seen = flown(&weak, weak.timing.ticks);
+        assert!(seen.clipped > 100, "{seen:?}");
+        let failed: Vec<String> =
+            claims(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
+        assert_eq!(failed, ["thrust, vehicle's limit", "ticks clipped by the plant"]);
+    }
+
+    #[test]
+    fn steady_state_is_the_last_quarter() {
+        let paper = Scenario::paper().unwrap();
+        let (before, after) = (flown(&paper, 3000), flown(&paper, 3001));
+        assert_eq!((before.steady_position_error, before.steady_mrp_error), (0.0, 0.0));
+        assert!(after.steady_position_error > 0.0);
+        // It fell from 10 m, upside down, by what Table I's gains cannot prevent.
+        assert!((22.0..25.0).contains(&before.height_lost), "{}", before.height_lost);
+    }
+
+    #[test]
     fn numbers_are_short() {
         for (value, text) in [(0.206, "0.206"), (6.187_53, "6.188"), (2.0, "2"), (1.234e-5, "1.23e-5"), (0.0, "0")] {
             assert_eq!(short(value), text);
