@@ -9,6 +9,7 @@ pub mod certificate;
 pub mod controller;
 pub mod error;
 pub mod gains;
+pub mod governor;
 pub mod heading;
 pub mod math;
 pub mod mrp;

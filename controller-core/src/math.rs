@@ -119,6 +119,12 @@ pub fn floor(x: f64) -> f64 {
     libm::floor(x)
 }
 
+/// The angle of the point (x, y), rad in [-pi, pi], for configuration time.
+#[must_use]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
 /// e^x - 1 without cancellation near zero, for configuration time.
 #[must_use]
 pub fn exp_m1(x: f64) -> f64 {

@@ -11,6 +11,7 @@
 
 use crate::flight::Tick;
 use crate::scenario::Scenario;
+use crate::table::{aligned, short};
 use std::fmt::Write;
 
 /// Section VI: thrust, N.
@@ -18,9 +19,9 @@ pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
 /// Section VI: |torque| about each axis, N m.
 pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 /// Section VI: steady-state position error, m.
-const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
-const PUBLISHED_MRP_ERROR: f64 = 1e-4;
+pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// Relative rounding of the law's thrust: some ten operations in single precision.
 const ROUNDING: f64 = 1e-6;
 
@@ -124,7 +125,7 @@ pub fn theorem_1_thrust(scenario: &Scenario) -> (f64, f64) {
 #[must_use]
 pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
     let published = scenario.is_papers();
-    let steady = format!("steady state (last {:.4} s)", scenario.timing.duration() / 4.0);
+    let steady = format!("steady state (last {} s)", short(scenario.timing.duration() / 4.0));
     let mut claims = Vec::new();
     let mut at_most = |what: String, value: f64, limit: Option<f64>, unit: &str| {
         claims.push(Claim {
@@ -184,15 +185,9 @@ pub fn all_hold(claims: &[Claim]) -> bool {
 /// The claims as an aligned table for a terminal.
 #[must_use]
 pub fn table(claims: &[Claim]) -> String {
-    let rows: Vec<[&str; 4]> = std::iter::once(["claim", "required", "flown", "verdict"])
-        .chain(claims.iter().map(|c| [&c.claim as &str, &c.required, &c.flown, verdict(c)]))
-        .collect();
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let (first, second, third) = (width(0), width(1), width(2));
-    rows.iter().fold(String::new(), |mut text, [claim, required, flown, verdict]| {
-        let _ = writeln!(text, "{claim:first$}  {required:second$}  {flown:third$}  {verdict}");
-        text
-    })
+    let head = ["claim", "required", "flown", "verdict"].map(str::to_owned).to_vec();
+    let row = |c: &Claim| vec![c.claim.clone(), c.required.clone(), c.flown.clone(), verdict(c).to_owned()];
+    aligned(&std::iter::once(head).chain(claims.iter().map(row)).collect::<Vec<_>>())
 }
 
 /// The claims as a Markdown table.
@@ -219,20 +214,6 @@ fn within(what: &str, flown: (f64, f64), required: (f64, f64), rounding: f64) ->
     let holds = flown.0 >= required.0 * (1.0 - rounding) && flown.1 <= required.1 * (1.0 + rounding);
     let interval = |(least, greatest): (f64, f64)| format!("[{}, {}] N", short(least), short(greatest));
     Claim { claim: what.into(), required: interval(required), flown: interval(flown), holds: Some(holds) }
-}
-
-/// Four significant digits.
-fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && magnitude < 1e6 {
-        format!("{value:.0}")
-    } else if (1e-3..1e4).contains(&magnitude) {
-        let decimals = (3 - magnitude.log10().floor() as i32).max(0) as usize;
-        let text = format!("{value:.decimals$}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{value:.2e}")
-    }
 }
 
 #[cfg(test)]
@@ -287,6 +268,27 @@ mod tests {
         for flown in broken {
             assert!(!all_hold(&claims(&paper, &flown)), "{flown:?}");
         }
+    }
+
+    #[test]
+    fn what_a_weak_vehicle_cannot_deliver_is_counted_and_fails() {
+        let text = crate::scenario::PAPER.replace("thrust_max = 7.0", "thrust_max = 4.9");
+        let weak = Scenario::parse(&text, "weak").unwrap();
+        let seen = flown(&weak, weak.timing.ticks);
+        assert!(seen.clipped > 100, "{seen:?}");
+        let failed: Vec<String> =
+            claims(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
+        assert_eq!(failed, ["thrust, vehicle's limit", "ticks clipped by the plant"]);
+    }
+
+    #[test]
+    fn steady_state_is_the_last_quarter() {
+        let paper = Scenario::paper().unwrap();
+        let (before, after) = (flown(&paper, 3000), flown(&paper, 3001));
+        assert_eq!((before.steady_position_error, before.steady_mrp_error), (0.0, 0.0));
+        assert!(after.steady_position_error > 0.0);
+        // It fell from 10 m, upside down, by what Table I's gains cannot prevent.
+        assert!((22.0..25.0).contains(&before.height_lost), "{}", before.height_lost);
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl From<PlotError> for FlyError {
     }
 }
 
-/// Flies `scenario` and writes log.csv, fig1.svg, fig2.svg, flight.svg and report.md into `directory`.
+/// Flies `scenario` and writes log.csv, four figures and report.md into `directory`.
 ///
 /// The files get their names only after the whole flight and all drawings succeeded; until then nothing of an older flight
 /// in the same directory is touched.
@@ -96,8 +96,9 @@ pub fn fly(scenario: &Scenario, directory: &Path) -> Result<Vec<Claim>, FlyError
     let claims = claims::claims(scenario, &flown);
     let samples = record.samples();
     let texts = [
-        ("fig1.svg", plots::figure_1(&samples)?),
+        ("fig1.svg", plots::figure_1(scenario, &samples)?),
         ("fig2.svg", plots::figure_2(scenario, &samples)?),
+        ("first-seconds.svg", plots::first_seconds(scenario, &samples)?),
         ("flight.svg", plots::path::picture(&samples)?),
         ("report.md", report(scenario, &claims)),
     ];
@@ -125,7 +126,7 @@ fn report(scenario: &Scenario, claims: &[Claim]) -> String {
         "# {}\n\n{verdict} {} s at {} Hz, plant step {} s; configuration {}.\n\n{}\n\
          ![Position, yaw and their errors](fig1.svg)\n\n\
          ![Thrust, moments, filters and saturated feedback](fig2.svg)\n\n\
-         ![The path](flight.svg)\n\nEvery control tick is a row of [log.csv](log.csv).\n",
+         ![The first seconds](first-seconds.svg)\n\n![The path](flight.svg)\n\nEvery control tick is a row of [log.csv](log.csv).\n",
         scenario.name,
         timing.duration(),
         1e6 / timing.period_us as f64,

@@ -9,9 +9,10 @@
 //! | [`claims`] | what was claimed against what was flown |
 //! | [`log`], [`plots`] | log.csv and the figures |
 //! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
-//! | [`fly`], [`law`] | the two commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`] | the commands |
 
 pub mod actuators;
+pub mod certify;
 pub mod claims;
 pub mod flight;
 pub mod fly;
@@ -22,3 +23,5 @@ pub mod plots;
 pub mod progress;
 pub mod sampled_loop;
 pub mod scenario;
+pub mod table;
+pub mod tune;

@@ -1,10 +1,14 @@
 //! Flies scenarios on the desktop and serves the control law to other simulators.
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use host_sim::certify::certify;
 use host_sim::claims;
 use host_sim::fly::{FlyError, certification, fly};
 use host_sim::law::LawServer;
+use host_sim::log::WholeFile;
 use host_sim::scenario::Scenario;
+use host_sim::table::{percent, short};
+use host_sim::tune::{Effort, Requirements, output, tune, widest_bounds};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,13 +31,15 @@ Examples:
   host-sim                                   the paper's experiment: 40 s from upside down
   host-sim fly scenarios/circle.toml         another flight; results in flights/circle
   host-sim fly mine.toml --out results       choose where the results go
+  host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
+  host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
 
 A scenario file is TOML; scenarios/paper.toml says what can stand in it.
 
 Exit status:
   0  every claim holds (law: the input ended)
-  1  a well-posed flight whose claims fail
+  1  a well-posed run whose claims or certificate fail
   2  input that cannot be used; one line on stderr says which field and why";
 
 #[derive(Subcommand)]
@@ -46,6 +52,14 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Prove the limits of a configuration: every inequality as printed in the paper and sharp, then each rotor.
+    Certify {
+        /// Scenario file [default: the paper's, built in]
+        file: Option<PathBuf>,
+    },
+    /// Search gains: everything certifies; then the least height lost from upside down; then the greatest k_p.
+    #[command(after_help = TUNE_HELP)]
+    Tune(TuneArguments),
     /// Serve the control law alone, lock-step on standard input and output.
     #[command(after_help = LAW_HELP)]
     Law {
@@ -53,6 +67,50 @@ enum Command {
         file: Option<PathBuf>,
     },
 }
+
+#[derive(Args)]
+struct TuneArguments {
+    /// Scenario file: vehicle, limits, rotors, delay, reference; its gains are where the search starts
+    file: PathBuf,
+    /// Scenario file to write [default: <name>-tuned.toml]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Least margin of every inequality, as a fraction
+    #[arg(long, default_value_t = 0.05)]
+    margin: f64,
+    /// Least gain margin of every sampled loop, as a factor
+    #[arg(long, default_value_t = 2.0)]
+    gain_margin: f64,
+    /// Least delay margin of every sampled loop, ms
+    #[arg(long, default_value_t = 3.0)]
+    delay_margin: f64,
+    /// Greatest position error of the file's own flight in its last quarter, m
+    #[arg(long, default_value_t = 1e-3)]
+    position_error: f64,
+    /// Greatest norm of its modified Rodrigues parameters there
+    #[arg(long, default_value_t = 1e-4)]
+    mrp_error: f64,
+    /// How long a recovery from upside down may take, s; its last quarter must be still
+    #[arg(long, default_value_t = 20.0)]
+    recovery: f64,
+    /// Keep the paper's thrust T = m |u|: no thrust projection
+    #[arg(long)]
+    no_projection: bool,
+    /// Generations of each of the two stages; 48 candidates each
+    #[arg(long, default_value_t = 150)]
+    generations: u32,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Also report the largest factor by which the reference bounds could grow with these gains
+    #[arg(long)]
+    widen: bool,
+}
+
+const TUNE_HELP: &str = "\
+The height lost is the start less the lowest point of a flight from roll -179 degrees, at rest, on a hover reference
+where it starts. Printed at the end: the frontier of height lost against k_p with the inequality that limits each, and
+the answer: the greatest k_p within 5 % of the least height.";
 
 const LAW_HELP: &str = "\
 One line of 33 numbers in, one line of 4 numbers out, flushed, until end of input. SI units, rad, world z up.
@@ -66,6 +124,8 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         None => run_fly(None, None),
         Some(Command::Fly { file, out }) => run_fly(file.as_deref(), out),
+        Some(Command::Certify { file }) => run_certify(file.as_deref()),
+        Some(Command::Tune(arguments)) => run_tune(&arguments),
         Some(Command::Law { file }) => run_law(file.as_deref()),
     };
     outcome.unwrap_or_else(|message| {
@@ -109,4 +169,91 @@ fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {
     let mut server = LawServer::new(&scenario).map_err(|error| error.to_string())?;
     server.serve(io::stdin().lock(), io::stdout().lock()).map_err(|error| error.to_string())?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
+    let (text, certified) = certify(&load(file)?).map_err(|error| error.to_string())?;
+    let _ = io::stdout().write_all(text.as_bytes());
+    Ok(if certified { ExitCode::SUCCESS } else { ExitCode::from(CLAIMS_FAIL) })
+}
+
+fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
+    let requirements = arguments.requirements()?;
+    let mut scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
+    let original = std::fs::read_to_string(&arguments.file)
+        .map_err(|error| format!("{}: cannot be read: {error}", arguments.file.display()))?;
+    let name = arguments
+        .out
+        .as_deref()
+        .and_then(Path::file_stem)
+        .map_or_else(|| format!("{}-tuned", scenario.name), |stem| stem.to_string_lossy().into_owned());
+    scenario.name.clone_from(&name);
+    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+    let effort = Effort { generations: arguments.generations, seed: arguments.seed };
+    let tuned = match tune(&scenario, requirements, effort) {
+        Ok(tuned) => tuned,
+        Err(closest) => {
+            let what = closest.failed.clone().unwrap_or_default();
+            let lost = short(closest.height_lost);
+            eprintln!(
+                "error: {}: no gains meet the requirements; the closest fail in: {what} (height lost {lost} m)",
+                scenario.name
+            );
+            return Ok(ExitCode::from(CLAIMS_FAIL));
+        }
+    };
+    let text = output::rewritten(&original, &tuned).map_err(|error| error.to_string())?;
+    WholeFile::write(&path, &text).map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
+    let (certificate, _) = certify(&tuned.scenario).map_err(|error| error.to_string())?;
+    let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
+        format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
+    });
+    let mut summary = format!(
+        "{}\n{}\nheight lost {} m with k_p = {} 1/s^2\n{active}{} candidates judged; written to {}\n",
+        certificate,
+        tuned.frontier.table(),
+        short(tuned.verdict.height_lost),
+        short(tuned.verdict.position_gain),
+        tuned.judged,
+        path.display()
+    );
+    if arguments.widen {
+        let (factor, bounds) =
+            widest_bounds(&tuned.scenario.configuration, requirements.margin).map_err(|error| error.to_string())?;
+        summary += &format!("reference bounds can grow {} times, to {bounds:?}\n", short(factor));
+    }
+    let _ = io::stdout().write_all(summary.as_bytes());
+    Ok(ExitCode::SUCCESS)
+}
+
+impl TuneArguments {
+    fn requirements(&self) -> Result<Requirements, String> {
+        let positive = [
+            ("--delay-margin", self.delay_margin),
+            ("--position-error", self.position_error),
+            ("--mrp-error", self.mrp_error),
+            ("--recovery", self.recovery),
+        ];
+        if let Some((name, value)) = positive.into_iter().find(|(_, value)| value.is_nan() || *value <= 0.0) {
+            return Err(format!("{name}: must be greater than zero, found {value}"));
+        }
+        if !(0.0..1.0).contains(&self.margin) {
+            return Err(format!("--margin: must be from 0 to below 1, found {}", self.margin));
+        }
+        if !(self.gain_margin >= 1.0 && self.gain_margin.is_finite()) {
+            return Err(format!("--gain-margin: must be at least 1, found {}", self.gain_margin));
+        }
+        if self.generations == 0 {
+            return Err("--generations: must be at least 1, found 0".to_owned());
+        }
+        Ok(Requirements {
+            margin: self.margin,
+            gain_margin: self.gain_margin,
+            delay_margin: 1e-3 * self.delay_margin,
+            position_error: self.position_error,
+            mrp_error: self.mrp_error,
+            recovery: self.recovery,
+            projection: !self.no_projection,
+        })
+    }
 }

@@ -66,6 +66,19 @@ pub enum Axis {
 impl Axis {
     /// All of them, in the order of [`LoopModel::reports`].
     pub const ALL: [Self; 6] = [Self::Roll, Self::Pitch, Self::Yaw, Self::LateralX, Self::LateralY, Self::Vertical];
+
+    /// What reports call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Roll => "roll",
+            Self::Pitch => "pitch",
+            Self::Yaw => "yaw",
+            Self::LateralX => "lateral x",
+            Self::LateralY => "lateral y",
+            Self::Vertical => "vertical",
+        }
+    }
 }
 
 /// How far a stable loop is from instability, each margin alone and taken at the actuator's command.

@@ -10,7 +10,7 @@
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! Each section has a module; one that comes later adds a module, its name to [`SECTIONS`] and a field to [`Scenario`].
+//! Each section has a module; one that comes later adds a module, its name to `SECTIONS` and a field to [`Scenario`].
 //! Numbers are read in double precision and rounded once, where the law's types take them.
 
 pub mod actuation;
@@ -122,6 +122,12 @@ impl Scenario {
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         Ok(Self { name, timing, configuration, rotors, delay_steps, initial, reference, trajectory })
+    }
+
+    /// From a tick to the moment its wrench acts, s.
+    #[must_use]
+    pub fn delay(&self) -> f64 {
+        self.delay_steps as f64 * self.timing.step()
     }
 
     /// Whether `other` is the same flight, whatever its name.

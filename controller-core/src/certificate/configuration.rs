@@ -42,9 +42,34 @@ impl Configuration {
     pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
         let field = "control.thrust_floor";
         require_positive(floor, field)?;
-        let least = self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration);
+        let least = self.greatest_thrust_floor();
         require(floor <= least, field, Reason::NotBelow(least))?;
         Ok(Self { thrust_floor: Some(floor), ..self })
+    }
+
+    /// The same vehicle, limits and rotors with other gains and without projection.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_gains(&self, gains: Gains) -> Result<Self, ParameterError> {
+        let configuration = Self::new(self.vehicle, self.limits, gains, self.bounds)?;
+        Ok(Self { rotors: self.rotors.clone(), ..configuration })
+    }
+
+    /// The same for references within other bounds.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and as [`Self::with_thrust_floor`] if there is a floor.
+    pub fn with_bounds(&self, bounds: ReferenceBounds) -> Result<Self, ParameterError> {
+        let configuration = Self::new(self.vehicle, self.limits, self.gains, bounds)?;
+        let configuration = Self { rotors: self.rotors.clone(), ..configuration };
+        self.thrust_floor.map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
+    }
+
+    /// m (g - M_p - K_a3), N: the greatest floor the thrust projection may have.
+    #[must_use]
+    pub fn greatest_thrust_floor(&self) -> f32 {
+        self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration)
     }
 
     /// Carries the certificate to the rotors.

@@ -99,7 +99,8 @@ fn each_line_gets_one_line_even_without_a_final_newline() {
     let text = String::from_utf8(output).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 5);
-    assert_eq!(lines[0].split(' ').map(|word| word.parse::<f32>().unwrap()).count(), 4);
+    let wrench: Result<Vec<f32>, _> = lines[0].split(' ').map(str::parse).collect();
+    assert_eq!(wrench.unwrap().len(), 4);
     assert!(lines[1..4].iter().all(|line| line.starts_with("error: ")));
     assert!(!lines[4].starts_with("error"));
 }

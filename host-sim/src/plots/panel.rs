@@ -2,8 +2,9 @@
 //!
 //! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also dashed.
 
+use super::FINE;
+use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
-use plotters::coord::{Shift, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -32,12 +33,14 @@ pub enum Scale {
 
 /// A line through the samples.
 pub struct Curve {
-    /// Its name in the legend.
+    /// Its name in the legend; none, no entry.
     pub label: String,
     /// Its colour.
     pub color: RGBColor,
     /// Dashed: something asked for rather than flown.
     pub dashed: bool,
+    /// Pixels; a curve that others may cover is wider, so that its rim shows.
+    pub width: u32,
     /// (s, the panel's unit).
     pub points: Vec<(f64, f64)>,
 }
@@ -75,10 +78,14 @@ impl Panel {
     /// # Errors
     /// As the backend's.
     pub fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
-        area.draw(&Text::new(self.title, (14, 10), ("sans-serif", 17).into_font().style(FontStyle::Bold).color(&INK)))?;
+        area.draw(&Text::new(
+            self.title,
+            (14 * FINE, 10 * FINE),
+            font(17).into_font().style(FontStyle::Bold).color(&INK),
+        ))?;
         self.draw_legend(area)?;
         let (low, high) = self.vertical_range();
-        let chart_area = area.margin(58, 6, 8, 22);
+        let chart_area = area.margin(58 * FINE, 6 * FINE, 8 * FINE, 22 * FINE);
         match self.scale {
             Scale::Linear => self.draw_chart(&chart_area, low..high, &|value| format_linear(*value, high - low)),
             Scale::Log => self.draw_chart(&chart_area, (low..high).log_scale(), &|value| format_decade(*value)),
@@ -87,14 +94,14 @@ impl Panel {
 
     /// A row of line samples with names, between title and chart, where no data can be.
     fn draw_legend<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
-        const SAMPLE: i32 = 26;
-        const CHARACTER: i32 = 8;
-        let mut x = 16;
-        for curve in &self.curves {
-            draw_dashes(area, x, x + SAMPLE, 43, curve)?;
-            x += SAMPLE + 6;
-            area.draw(&Text::new(curve.label.as_str(), (x, 35), ("sans-serif", 14).into_font().color(&INK)))?;
-            x += CHARACTER * curve.label.chars().count() as i32 + 18;
+        const SAMPLE: i32 = 26 * FINE;
+        const CHARACTER: i32 = 8 * FINE;
+        let mut x = 16 * FINE;
+        for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
+            draw_dashes(area, x, x + SAMPLE, 43 * FINE, curve)?;
+            x += SAMPLE + 6 * FINE;
+            area.draw(&Text::new(curve.label.as_str(), (x, 35 * FINE), font(14).into_font().color(&INK)))?;
+            x += CHARACTER * curve.label.chars().count() as i32 + 18 * FINE;
         }
         Ok(())
     }
@@ -112,17 +119,18 @@ impl Panel {
     {
         let end = self.end();
         let mut chart = ChartBuilder::on(area)
-            .x_label_area_size(38)
-            .y_label_area_size(64)
+            .x_label_area_size(38 * FINE)
+            .y_label_area_size(64 * FINE)
             .build_cartesian_2d(0.0..end, vertical)?;
-        let axis = ("sans-serif", 13).into_font().color(&INK);
+        let axis = font(13).into_font().color(&INK);
         chart
             .configure_mesh()
-            .bold_line_style(GRID)
+            .bold_line_style(GRID.stroke_width(FINE as u32))
             .light_line_style(TRANSPARENT)
-            .axis_style(INK)
+            .axis_style(INK.stroke_width(FINE as u32))
+            .set_all_tick_mark_size(5 * FINE)
             .label_style(axis.clone())
-            .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
+            .axis_desc_style(font(14).into_font().color(&INK))
             .x_labels(9)
             .y_labels(7)
             .x_label_formatter(&|value| format_linear(*value, end))
@@ -130,29 +138,64 @@ impl Panel {
             .x_desc("time [s]")
             .y_desc(self.quantity)
             .draw()?;
-        for bound in &self.bounds {
+        for (index, bound) in self.bounds.iter().enumerate() {
             let line = [(0.0, bound.value), (end, bound.value)];
-            chart.draw_series(DashedLineSeries::new(line, 7, 5, bound.color.stroke_width(1)))?;
-            let below = self.bounds.iter().any(|other| other.value > bound.value) && bound.value < 0.0;
-            let anchor = Pos::new(HPos::Right, if below { VPos::Top } else { VPos::Bottom });
-            let style = ("sans-serif", 12).into_font().color(&bound.color).pos(anchor);
-            let text = EmptyElement::at((end, bound.value))
-                + Text::new(bound.label.clone(), (-6, if below { 3 } else { -3 }), style);
+            chart.draw_series(DashedLineSeries::new(
+                line,
+                7 * FINE,
+                5 * FINE,
+                bound.color.stroke_width(FINE as u32),
+            ))?;
+            // Outside the bound; inside, where another one lies just outside.
+            let up = (bound.value >= 0.0) != self.is_inner(bound);
+            let (side, gap) = if up { (VPos::Bottom, -3 * FINE) } else { (VPos::Top, 3 * FINE) };
+            let style = font(12).into_font().color(&bound.color).pos(Pos::new(HPos::Right, side));
+            let left = 6 * FINE + LABEL_WIDTH * self.crowd(index) as i32;
+            let text = EmptyElement::at((end, bound.value)) + Text::new(bound.label.clone(), (-left, gap), style);
             chart.plotting_area().draw(&text)?;
         }
         for curve in &self.curves {
-            let points = thinned(&curve.points, end);
+            let style = curve.color.stroke_width(curve.width * FINE as u32);
+            let mut points = thinned(&curve.points, end);
+            if self.scale == Scale::Log {
+                points.iter_mut().for_each(|point| point.1 = point.1.max(LEAST_ON_LOG));
+            }
             if curve.dashed {
-                chart.draw_series(DashedLineSeries::new(points, 6, 4, curve.color.stroke_width(2)))?;
+                chart.draw_series(DashedLineSeries::new(points, 6 * FINE, 4 * FINE, style))?;
             } else {
-                chart.draw_series(LineSeries::new(points, curve.color.stroke_width(2)))?;
+                chart.draw_series(LineSeries::new(points, style))?;
             }
         }
         Ok(())
     }
 
+    /// Whether two bounds lie so close that their labels would touch.
+    fn close(&self, a: &Bound, b: &Bound) -> bool {
+        let (low, high) = self.vertical_range();
+        self.scale == Scale::Linear && (a.value - b.value).abs() < 0.06 * (high - low)
+    }
+
+    /// Whether another bound lies close by, further from zero.
+    fn is_inner(&self, bound: &Bound) -> bool {
+        self.bounds.iter().any(|other| self.close(other, bound) && other.value.abs() > bound.value.abs())
+    }
+
+    /// How many labels before this one stand in its place.
+    fn crowd(&self, index: usize) -> usize {
+        let Some(bound) = self.bounds.get(index) else { return 0 };
+        let same_side = |other: &&Bound| self.close(other, bound) && self.is_inner(other) == self.is_inner(bound);
+        self.bounds.iter().take(index).filter(same_side).count()
+    }
+
+    /// The end of the time axis: one sample after the last, so that a flight of 40 s ends at 40.
     fn end(&self) -> f64 {
-        self.curves.iter().filter_map(|curve| curve.points.last()).fold(1e-3, |end, point| end.max(point.0))
+        let end_of = |curve: &Curve| match curve.points.as_slice() {
+            [.., before, last] => 2.0 * last.0 - before.0,
+            [only] => only.0,
+            [] => 0.0,
+        };
+        // A hair more, so that rounding does not take the last label away.
+        self.curves.iter().map(end_of).fold(1e-3, f64::max) * (1.0 + 1e-9)
     }
 
     /// What holds all curves and bounds, with room for the bounds' labels.
@@ -176,8 +219,15 @@ impl Panel {
     }
 }
 
-/// Below this a number on a logarithmic axis is as good as zero.
-const LEAST_ON_LOG: f64 = 1e-8;
+/// The one typeface, at a size in pixels.
+fn font(size: i32) -> (&'static str, i32) {
+    ("sans-serif", size * FINE)
+}
+
+/// Below this an error on a logarithmic axis is single precision's noise, and drawn as this.
+const LEAST_ON_LOG: f64 = 1e-7;
+/// Room for the label of a bound, pixels.
+const LABEL_WIDTH: i32 = 124 * FINE;
 
 /// A horizontal sample of the curve's line in a legend.
 fn draw_dashes<DB: DrawingBackend>(
@@ -187,12 +237,12 @@ fn draw_dashes<DB: DrawingBackend>(
     y: i32,
     curve: &Curve,
 ) -> DrawingResult<DB> {
-    let style = curve.color.stroke_width(2);
-    let dash = if curve.dashed { 6 } else { to - from };
+    let style = curve.color.stroke_width(curve.width * FINE as u32);
+    let dash = if curve.dashed { 6 * FINE } else { to - from };
     let mut x = from;
     while x < to {
         area.draw(&PathElement::new(vec![(x, y), ((x + dash).min(to), y)], style))?;
-        x += dash + 4;
+        x += dash + 4 * FINE;
     }
     Ok(())
 }
@@ -239,9 +289,6 @@ fn format_decade(value: f64) -> String {
         .collect();
     format!("10{raised}")
 }
-
-/// The horizontal axis' type, for readers of signatures.
-pub type TimeAxis = RangedCoordf64;
 
 #[cfg(test)]
 mod tests {

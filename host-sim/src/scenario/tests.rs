@@ -1,1 +1,80 @@
+//! Whole files: what they become, and which defaults fill the gaps. tests/cli.rs holds the table of malformed ones.
 
+use super::*;
+use nalgebra::Vector3;
+
+/// The paper's file without the section that starts with `head`.
+fn without(head: &str) -> String {
+    let (before, rest) = PAPER.split_once(head).unwrap();
+    let after = rest.find("\n[").map_or("", |end| &rest[end..]);
+    format!("{before}{after}")
+}
+
+#[test]
+fn the_built_in_file_is_the_papers_experiment() {
+    let paper = Scenario::paper().unwrap();
+    let (vehicle, gains) = (paper.configuration.vehicle(), paper.configuration.gains());
+    assert_eq!((vehicle.mass, vehicle.gravity), (0.46, 9.81));
+    assert_eq!((gains.k_p, gains.k_v, gains.k_f, gains.k_s), (9.0, 6.0, 2.0, 20.0));
+    assert_eq!((gains.k_theta, gains.k_omega, gains.m_p), (100.0, 0.1, 2.0));
+    assert_eq!((gains.m_theta, gains.m_omega, gains.delta, gains.alpha), (0.206, 0.045, 0.02, 0.25));
+    assert_eq!(paper.initial.position, Vector3::new(5.0, 5.0, 10.0));
+    // Roll of -179 degrees: the thrust axis points down.
+    let q = paper.initial.attitude;
+    assert!((1.0 - 2.0 * (q.i * q.i + q.j * q.j) + (1.0_f64.to_radians()).cos()).abs() < 1e-12);
+    assert!((paper.initial.yaw().to_degrees() - 100.0).abs() < 1e-9);
+    let start = paper.trajectory.at(0);
+    assert!((start.position - Vector3::new(-2.0, 1.0, 5.5)).norm() < 1e-6);
+    let frequency = 2.0 * std::f32::consts::PI / 15.0;
+    assert!((paper.trajectory.bounds().vertical_acceleration - frequency * frequency).abs() < 1e-5);
+    assert!(paper.is_papers());
+}
+
+#[test]
+fn sections_left_out_take_their_defaults() {
+    let paper = Scenario::paper().unwrap();
+    for head in ["[control]", "[plant]"] {
+        assert!(Scenario::parse(&without(head), "f").unwrap().flies_like(&paper), "{head}");
+    }
+    let placed = Scenario::parse(&without("[initial]"), "f").unwrap();
+    assert!((placed.initial.position - Vector3::new(-2.0, 1.0, 5.5)).norm() < 1e-6);
+    assert_eq!((placed.initial.velocity, placed.initial.angular_velocity), (Vector3::zeros(), Vector3::zeros()));
+    assert_eq!(placed.initial.attitude.w, 1.0);
+    for head in ["[vehicle]", "[limits]", "[gains]", "[reference]"] {
+        let name = head.trim_matches(['[', ']']);
+        let error = Scenario::parse(&without(head), "f").err().unwrap();
+        assert_eq!(error.what, format!("{name}: missing, must be a section"));
+    }
+}
+
+#[test]
+fn any_number_that_differs_makes_another_flight() {
+    let paper = Scenario::paper().unwrap();
+    for (from, to) in [
+        ("duration = 40.0", "duration = 39.0"),
+        ("mass = 0.460", "mass = 0.461"),
+        ("thrust_max = 7.0", "thrust_max = 7.1"),
+        ("k_p = 9.0", "k_p = 9.1"),
+        ("rate = 100.0", "rate = 200.0"),
+        ("step = 0.001", "step = 0.002"),
+        ("euler_deg = [-179.0", "euler_deg = [-178.0"),
+        ("center = [-3.0", "center = [-3.1"),
+        ("rate = 0.0,", "rate = 0.1,"),
+        ("rate = 100.0", "rate = 100.0\nthrust_floor = 1.0"),
+    ] {
+        assert!(PAPER.contains(from), "{from}");
+        let other = Scenario::parse(&PAPER.replace(from, to), "f").unwrap();
+        assert!(!other.is_papers() && !other.flies_like(&paper), "{to}");
+    }
+    assert!(Scenario::parse(&PAPER.replace("name = \"paper\"", "name = \"x\""), "f").unwrap().is_papers());
+}
+
+#[test]
+fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
+    let with = |floor: &str| Scenario::parse(&PAPER.replace("rate = 100.0", &format!("thrust_floor = {floor}")), "f");
+    let (least, _) = crate::claims::theorem_1_thrust(&with("1.0").unwrap());
+    assert_eq!(least, 1.0);
+    for bad in ["0.0", "-1", "4.0"] {
+        assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");
+    }
+}

@@ -1,0 +1,107 @@
+//! Where the command must be for the averages to come out on a moving point.
+//!
+//! Averages with mean delay d and variance sigma^2 turn e^(i w t) into H(w) e^(i w (t-d)), H = 1 - w^2 sigma^2/2 + ..., and
+//! a parabola q into q - d q' + (d^2 + sigma^2) q''/2. Inverted, with L = d plus the age of what is known of the point:
+//!
+//! - a point on a circle, a = i w v in the horizontal plane: ahead = (v/w) (g sin(wL) + i (1 - g cos(wL))), feed =
+//!   g e^(i w L) v, with g = 1/H, or as much as the acceleration bound allows: then the circle comes out smaller, in phase;
+//! - what else accelerates it, along its path or vertically: ahead = v L + a (L^2 - sigma^2)/2, feed = v + a L.
+//!
+//! As w -> 0 the first becomes the second. Motions that change otherwise within d (a second or so) come out smoothed.
+
+use crate::math;
+use nalgebra::{Vector2, Vector3};
+
+/// Turns slower than this, rad/s, are parabolas to within single precision.
+const SLOWEST: f32 = 1e-2;
+
+/// Speeds squared below this, m^2/s^2, have no direction to turn.
+const STILL: f32 = 1e-6;
+
+/// The share of the acceleration bound that following a circle may take; the rest is for getting onto it.
+const CIRCLING_SHARE: f32 = 0.9;
+
+/// What the averages and the bounds do to a moving point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lead {
+    /// d, s.
+    pub delay: f32,
+    /// sigma^2, s^2.
+    pub variance: f32,
+    /// The horizontal acceleration there is, m/s^2.
+    pub acceleration: f32,
+}
+
+impl Lead {
+    /// How far ahead of where a point was `age` seconds ago the command must be (m), and how fast it must move (m/s).
+    pub fn of(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>, age: f32) -> (Vector3<f32>, Vector3<f32>) {
+        let lead = self.delay + age;
+        let spread = 0.5 * (lead * lead - self.variance);
+        let (v, a) = (velocity.xy(), acceleration.xy());
+        let speed_squared = v.norm_squared();
+        let turning = v.x * a.y - v.y * a.x;
+        if speed_squared < STILL || turning.abs() <= SLOWEST * speed_squared {
+            return (velocity * lead + acceleration * spread, velocity + acceleration * lead);
+        }
+        // Faster than 1/sigma the averages leave too little of a circle to make up for.
+        let fastest = 1.0 / math::sqrt(self.variance);
+        let rate = (turning / speed_squared).min(fastest).max(-fastest);
+        let x = rate * rate * self.variance;
+        let needed = math::sqrt(speed_squared) * rate.abs();
+        let gain = (1.0 + 0.5 * x + 0.125 * x * x).min(CIRCLING_SHARE * self.acceleration / needed);
+        let (sin, cos) = math::sin_cos_turns(phase(rate * lead));
+        let sideways = Vector2::new(-v.y, v.x);
+        let along = v * (v.dot(&a) / speed_squared);
+        let ahead = (v * (gain * sin) + sideways * (1.0 - gain * cos)) / rate + along * spread;
+        let feed = (v * cos + sideways * sin) * gain + along * lead;
+        let rise = (velocity.z * lead + acceleration.z * spread, velocity.z + acceleration.z * lead);
+        (Vector3::new(ahead.x, ahead.y, rise.0), Vector3::new(feed.x, feed.y, rise.1))
+    }
+}
+
+/// An angle of a few radians as a phase.
+fn phase(angle: f32) -> u64 {
+    const PER_RADIAN: f32 = 4_294_967_296.0 / core::f32::consts::TAU;
+    ((angle * PER_RADIAN) as i64 as u64) << 32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEAD: Lead = Lead { delay: 1.1, variance: 0.19, acceleration: 2.5 };
+
+    #[test]
+    fn a_slow_turn_is_nearly_a_parabola() {
+        let velocity = Vector3::new(1.0, -2.0, 0.5);
+        let sideways = |rate: f32| Vector3::new(2.0, 1.0, 0.1) * rate;
+        let (turn, feed) = LEAD.of(&velocity, &sideways(0.0101), 0.2);
+        let (parabola, along) = LEAD.of(&velocity, &sideways(0.0099), 0.2);
+        // The third order of the turn, |v| w^2 L^3 / 6, and what 2e-4 rad/s make.
+        assert!((turn - parabola).norm() < 5e-4 && (feed - along).norm() < 1e-3, "{turn} {parabola}");
+    }
+
+    #[test]
+    fn the_command_for_a_circle_is_that_circle_ahead_and_larger() {
+        let rate = 0.9;
+        let velocity = Vector3::new(0.0, rate, 0.0);
+        let acceleration = Vector3::new(-rate * rate, 0.0, 0.0);
+        let (ahead, feed) = LEAD.of(&velocity, &acceleration, 0.0);
+        let gain = (0.5 * rate * rate * LEAD.variance).exp();
+        let (sin, cos) = (rate * LEAD.delay).sin_cos();
+        let there = Vector3::new(1.0, 0.0, 0.0) + ahead;
+        assert!((there - Vector3::new(cos, sin, 0.0) * gain).norm() < 2e-3, "{there}");
+        assert!((feed - Vector3::new(-sin, cos, 0.0) * (gain * rate)).norm() < 2e-3, "{feed}");
+    }
+
+    #[test]
+    fn absurd_feed_forward_makes_finite_targets() {
+        for velocity in [0.0, 1e-30, 1e-3, 1e6] {
+            for acceleration in [0.0, 1e-30, 1.0, 1e6] {
+                let (ahead, feed) =
+                    LEAD.of(&Vector3::new(velocity, 0.0, velocity), &Vector3::new(1.0, acceleration, 0.0), 0.5);
+                assert!(ahead.norm().is_finite() && feed.norm().is_finite());
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What may be asked of the governor.
+
+use crate::error::InputError;
+use crate::reference::DERIVATIVE_RANGE;
+use crate::state::check_vector;
+use nalgebra::Vector3;
+
+/// The greatest magnitude of a setpoint's or a starting position's component, m.
+pub const POSITION_RANGE: f32 = 1e7;
+
+/// Where to be, or how to move. World frame, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// Go to a point (m) and rest there. Valid until replaced.
+    Position(Vector3<f32>),
+    /// Move at a velocity (m/s), cut to the speed limits. Ends in a smooth stop if not renewed in time.
+    Velocity(Vector3<f32>),
+    /// Follow a moving point. Between setpoints it is extrapolated; if they cease, its last position sent is gone to.
+    PositionVelocityAcceleration {
+        /// m.
+        position: Vector3<f32>,
+        /// m/s.
+        velocity: Vector3<f32>,
+        /// m/s^2.
+        acceleration: Vector3<f32>,
+    },
+}
+
+/// Which way to point. World frame, counter-clockwise from x seen from above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Turn {
+    /// As asked before: an angle on the way is still turned to, a rate still runs out.
+    Keep,
+    /// Turn to an angle, the shorter way round; any real number of radians is an angle.
+    Angle {
+        /// rad.
+        angle: f32,
+        /// How fast that angle itself turns, rad/s; dropped if not renewed in time.
+        rate: f32,
+    },
+    /// Keep turning, rad/s. Ends in a smooth stop if not renewed in time.
+    Rate(f32),
+}
+
+/// One setpoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setpoint {
+    /// Position, velocity, or both with feed-forward.
+    pub motion: Motion,
+    /// Heading.
+    pub turn: Turn,
+}
+
+impl Setpoint {
+    /// Checks that every field is finite and in range.
+    pub(super) fn check(&self) -> Result<(), InputError> {
+        match &self.motion {
+            Motion::Position(position) => check_vector(position, POSITION_RANGE, "setpoint.position")?,
+            Motion::Velocity(velocity) => check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?,
+            Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
+                check_vector(position, POSITION_RANGE, "setpoint.position")?;
+                check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?;
+                check_vector(acceleration, DERIVATIVE_RANGE, "setpoint.acceleration")?;
+            }
+        }
+        let (angle, rate) = match self.turn {
+            Turn::Keep => (0.0, 0.0),
+            Turn::Angle { angle, rate } => (angle, rate),
+            Turn::Rate(rate) => (0.0, rate),
+        };
+        check_vector(&Vector3::new(angle, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw")?;
+        check_vector(&Vector3::new(rate, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw_rate")
+    }
+}

@@ -1,0 +1,209 @@
+//! The governor as a whole: times, arrivals, refusals. Streams by the thousand are in `tests/governor_campaign.rs`.
+
+use super::*;
+use crate::heading::Heading;
+use nalgebra::Vector2;
+
+/// Bounds a small quadrotor certifies.
+pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
+    horizontal_acceleration: 2.5,
+    vertical_acceleration: 0.5,
+    jerk: 4.0,
+    snap: 10.0,
+    heading_rate: 1.3,
+    heading_second_derivative: 1.8,
+};
+
+/// Xorshift, for tests that repeat to the bit.
+pub(super) struct Random(u64);
+
+impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    /// In [0, 1).
+    pub(super) fn unit(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as f32 / 16_777_216.0
+    }
+
+    /// In [-1, 1).
+    pub(super) fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+}
+
+const PERIOD: f32 = 0.01;
+
+fn hover(heading: Heading) -> Reference {
+    let zero = Vector3::zeros();
+    Reference { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading }
+}
+
+fn governor() -> Governor {
+    Governor::new(TYPICAL, GovernorLimits::default(), PERIOD, &hover(Heading::FORWARD)).unwrap()
+}
+
+fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
+    Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
+}
+
+/// Seconds until at rest, and the last reference.
+fn run(governor: &mut Governor) -> (f32, Reference) {
+    let mut ticks = 0;
+    loop {
+        let reference = governor.tick();
+        assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+        ticks += 1;
+        if governor.at_rest() {
+            return (ticks as f32 * PERIOD, reference);
+        }
+        assert!(ticks < 20_000, "no rest: {reference:?}");
+    }
+}
+
+#[test]
+fn ten_metres_take_less_than_six_and_a_half_seconds() {
+    for (target, most) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
+        let mut governor = governor();
+        governor.accept(&go_to(target, 0.0, 0.0)).unwrap();
+        let (time, last) = run(&mut governor);
+        assert_eq!(last.position, Vector3::new(target, 0.0, 0.0));
+        assert!(time < most, "{target} m took {time} s");
+    }
+}
+
+#[test]
+fn a_half_turn_takes_less_than_four_seconds_and_stays_on_its_shorter_side() {
+    for (angle, side) in [(3.1, 1.0), (-3.1, -1.0), (3.3, -1.0), (-40.0 * core::f32::consts::TAU + 2.0, 1.0)] {
+        let mut governor = governor();
+        let setpoint = Setpoint { turn: Turn::Angle { angle, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) };
+        governor.accept(&setpoint).unwrap();
+        assert!((0..30).map(|_| governor.tick().heading.rate() * side).last().unwrap() > 0.1);
+        let (time, last) = run(&mut governor);
+        let (sin, cos) = f64::from(angle).sin_cos();
+        let miss = last.heading.direction() - Vector2::new(cos as f32, sin as f32);
+        // Rounding of the components and of an angle of 250 rad (the target's own, in f32, is exact).
+        assert!(miss.norm() < 5e-7 && time < 4.0, "{time} s, off by {}", miss.norm());
+    }
+}
+
+#[test]
+fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
+    let mut governor = governor();
+    let setpoint = Setpoint { motion: Motion::Velocity(Vector3::new(1.0, -2.0, 0.3)), turn: Turn::Rate(0.4) };
+    for _ in 0..600 {
+        governor.accept(&setpoint).unwrap();
+        governor.tick();
+    }
+    let reference = governor.tick();
+    // One unit of length a tick is the resolution of a velocity.
+    assert!((reference.velocity - Vector3::new(1.0, -2.0, 0.3)).norm() < 1e-6);
+    assert!((reference.heading.rate() - 0.4).abs() < 1e-6);
+    let (time, last) = run(&mut governor);
+    assert!(time < 0.5 + 2.0 + 2.5 && last.velocity == Vector3::zeros(), "stopped after {time} s");
+}
+
+#[test]
+fn a_moving_point_is_followed_without_lag() {
+    let mut governor = governor();
+    let (velocity, acceleration) = (Vector3::new(0.5, -0.2, 0.1), Vector3::new(0.1, -0.04, 0.0));
+    let mut worst: f32 = 0.0;
+    for tick in 0..1_500 {
+        let time = tick as f32 * PERIOD;
+        if tick % 2 == 0 {
+            let position = velocity * time + acceleration * (0.5 * time * time);
+            let velocity = velocity + acceleration * time;
+            let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
+            governor.accept(&Setpoint { motion, turn: Turn::Angle { angle: 0.3 * time, rate: 0.3 } }).unwrap();
+        }
+        let reference = governor.tick();
+        let time = time + PERIOD;
+        if tick > 1_000 {
+            let expected = velocity * time + acceleration * (0.5 * time * time);
+            worst = worst.max((reference.position - expected).norm());
+            let (sin, cos) = (0.3 * time).sin_cos();
+            worst = worst.max((reference.heading.direction() - Vector2::new(cos, sin)).norm());
+        }
+    }
+    assert!(worst < 2e-5, "lags by {worst}");
+}
+
+#[test]
+fn a_point_on_a_circle_is_followed_in_phase() {
+    // The last needs a command of 1.27 m radius, beyond the bound: it comes out at 0.9 x 0.79 of its size.
+    for (rate, most) in [(0.4, 0.001), (0.8, 0.005), (0.5 * core::f32::consts::PI, 0.3)] {
+        let mut governor = governor();
+        let mut worst: f32 = 0.0;
+        for tick in 0..3_000 {
+            let (sin, cos) = (rate * PERIOD * tick as f32).sin_cos();
+            let out = Vector3::new(cos, sin, 0.0);
+            if tick > 2_000 {
+                worst = worst.max((governor.smoother.knot().position - out).norm());
+            }
+            if tick % 2 == 0 {
+                let velocity = Vector3::new(-sin, cos, 0.0) * rate;
+                let acceleration = -out * (rate * rate);
+                let motion = Motion::PositionVelocityAcceleration { position: out, velocity, acceleration };
+                governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+            }
+            governor.tick();
+        }
+        assert!(worst < most, "{worst} m off at {rate} rad/s");
+    }
+}
+
+#[test]
+fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
+    let mut governor = governor();
+    governor.accept(&go_to(1.0, 2.0, 3.0)).unwrap();
+    governor.tick();
+    let before = governor.clone();
+    let nan = f32::NAN;
+    for (setpoint, field) in [
+        (go_to(0.0, nan, 0.0), "setpoint.position"),
+        (Setpoint { motion: Motion::Velocity(Vector3::new(nan, 0.0, 0.0)), turn: Turn::Keep }, "setpoint.velocity"),
+        (Setpoint { turn: Turn::Angle { angle: nan, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw"),
+        (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),
+    ] {
+        assert_eq!(governor.accept(&setpoint), Err(InputError::NotFinite { field }));
+    }
+    let far = Err(InputError::OutOfRange { field: "setpoint.position" });
+    assert_eq!(governor.accept(&go_to(2e7, 0.0, 0.0)), far);
+    assert_eq!(governor, before);
+}
+
+#[test]
+fn a_reference_in_motion_is_taken_over_where_it_is_and_stopped() {
+    let mut start = hover(Heading::new(Vector2::new(0.6, -0.8), 0.9, -0.5).unwrap());
+    start.position = Vector3::new(3.0, -2.0, 7.0);
+    start.velocity = Vector3::new(8.0, 1.0, -0.5);
+    start.acceleration = Vector3::new(-1.0, 1.0, 0.2);
+    start.jerk = Vector3::new(0.5, 1.0, -0.1);
+    start.snap = Vector3::new(1.0, -2.0, 0.3);
+    let mut governor = Governor::new(TYPICAL, GovernorLimits::default(), PERIOD, &start).unwrap();
+    let first = governor.tick();
+    assert!((first.position - start.position - start.velocity * PERIOD).norm() < 1e-3);
+    assert!((first.acceleration - start.acceleration).norm() < 0.02 && (first.snap - start.snap).norm() < 1.0);
+    assert!((first.heading.acceleration() + 0.5).abs() < 0.05);
+    let (time, _) = run(&mut governor);
+    assert!(time < 12.0);
+}
+
+#[test]
+fn a_reference_about_to_leave_its_bounds_is_refused_and_the_governor_goes_on() {
+    let mut governor = governor();
+    governor.accept(&go_to(1.0, 0.0, 0.0)).unwrap();
+    let before = governor.clone();
+    let mut outward = hover(Heading::FORWARD);
+    outward.acceleration.x = 2.5;
+    outward.jerk.x = 1.0;
+    assert!(matches!(governor.restart(&outward), Err(GovernorError::NoWayOn { .. })));
+    let turning = hover(Heading::new(Vector2::new(1.0, 0.0), 1.3, 0.6).unwrap());
+    let refused = Err(GovernorError::NoWayOn { field: "initial.heading.acceleration" });
+    assert_eq!(governor.restart(&turning), refused);
+    assert_eq!(governor, before);
+}

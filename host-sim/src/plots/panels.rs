@@ -1,0 +1,177 @@
+//! The eight panels: which curves, against which bounds.
+
+use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
+use super::record::Sample;
+use crate::claims::{
+    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, theorem_1_thrust,
+};
+use crate::scenario::Scenario;
+use crate::table::short;
+use plotters::style::RGBColor;
+
+/// The axes' colours, x (roll), y (pitch), z (yaw).
+const AXES: [RGBColor; 3] = [BLUE, VERMILION, GREEN];
+
+/// Position on each axis, with its reference.
+#[must_use]
+pub fn position(samples: &[Sample]) -> Panel {
+    Panel {
+        title: "Position",
+        quantity: "position [m]",
+        scale: Scale::Linear,
+        curves: vec![
+            flown(samples, "x", AXES[0], |s| s.position.x),
+            flown(samples, "y", AXES[1], |s| s.position.y),
+            flown(samples, "z", AXES[2], |s| s.position.z),
+            desired(samples, "reference", |s| s.desired_position.x),
+            desired(samples, "", |s| s.desired_position.y),
+            desired(samples, "", |s| s.desired_position.z),
+        ],
+        bounds: vec![],
+    }
+}
+
+/// Yaw without jumps, with its reference.
+#[must_use]
+pub fn yaw(samples: &[Sample]) -> Panel {
+    Panel {
+        title: "Yaw",
+        quantity: "yaw [°]",
+        scale: Scale::Linear,
+        curves: vec![flown(samples, "yaw", BLUE, |s| s.yaw), desired(samples, "reference", |s| s.desired_yaw)],
+        bounds: vec![],
+    }
+}
+
+/// |p - p_d|; for the paper's scenario with the level it reaches.
+#[must_use]
+pub fn position_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    let published = bound(PUBLISHED_POSITION_ERROR, format!("published, steady state: {PUBLISHED_POSITION_ERROR} m"));
+    Panel {
+        title: "Position error norm",
+        quantity: "|p − p_d| [m]",
+        scale: Scale::Log,
+        curves: vec![curve(samples, "position error", BLUE, |s| s.position_error)],
+        bounds: scenario.is_papers().then_some(published).into_iter().collect(),
+    }
+}
+
+/// |theta~|; for the paper's scenario with the level it reaches.
+#[must_use]
+pub fn mrp_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    let published = bound(PUBLISHED_MRP_ERROR, format!("published, steady state: {PUBLISHED_MRP_ERROR}"));
+    Panel {
+        title: "MRP error norm",
+        quantity: "|ϑ| [–]",
+        scale: Scale::Log,
+        curves: vec![curve(samples, "MRP error", BLUE, |s| s.mrp_error)],
+        bounds: scenario.is_papers().then_some(published).into_iter().collect(),
+    }
+}
+
+/// Thrust between the published bounds (the paper's scenario) or Theorem 1's (any other), and the vehicle's limit.
+#[must_use]
+pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    let (name, (least, greatest)) =
+        if scenario.is_papers() { ("published", PUBLISHED_THRUST) } else { ("Theorem 1", theorem_1_thrust(scenario)) };
+    let limit = f64::from(scenario.configuration.limits().thrust_max);
+    Panel {
+        title: "Thrust",
+        quantity: "thrust [N]",
+        scale: Scale::Linear,
+        curves: vec![curve(samples, "T", BLUE, |s| s.thrust)],
+        bounds: vec![
+            bound(least, format!("{name}: {} N", short(least))),
+            bound(greatest, format!("{name}: {} N", short(greatest))),
+            bound(limit, format!("limit: {} N", short(limit))),
+        ],
+    }
+}
+
+/// Torques with the published bound of each axis (the paper's scenario) or the vehicle's limits (any other).
+#[must_use]
+pub fn moments(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    Panel {
+        title: "Moments",
+        quantity: "torque [N m]",
+        scale: Scale::Linear,
+        curves: vec![
+            curve(samples, "roll", AXES[0], |s| s.torque.x),
+            curve(samples, "pitch", AXES[1], |s| s.torque.y),
+            curve(samples, "yaw", AXES[2], |s| s.torque.z),
+        ],
+        bounds: moment_bounds(scenario),
+    }
+}
+
+/// Equal bounds are drawn once.
+fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
+    let limits = scenario.configuration.limits().torque_max.map(f64::from);
+    let values = if scenario.is_papers() { PUBLISHED_TORQUE } else { limits.into() };
+    let equal = values.iter().all(|value| *value == values[0]);
+    let named = if equal { [("limit", INK); 3] } else { [("roll", AXES[0]), ("pitch", AXES[1]), ("yaw", AXES[2])] };
+    let both = |(value, (name, color)): (f64, (&str, RGBColor))| {
+        [
+            Bound { value, label: format!("{name} {}", short(value)), color },
+            Bound { value: -value, label: format!("{name} −{}", short(value)), color },
+        ]
+    };
+    values.into_iter().zip(named).take(if equal { 1 } else { 3 }).flat_map(both).collect()
+}
+
+/// |ubar_p|, |u_f|, |u_s| below sqrt(3) M_p.
+#[must_use]
+pub fn filters(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    let level = 3f64.sqrt() * f64::from(scenario.configuration.gains().m_p);
+    let feedback = curve(samples, "|ū_p|", BLUE, |s| s.filter_norms.x);
+    Panel {
+        title: "Saturated position feedback and its filters",
+        quantity: "norm [m/s²]",
+        scale: Scale::Linear,
+        curves: vec![
+            // The filter u_s follows within a twentieth of a second and would hide it.
+            Curve { width: 5, ..feedback },
+            curve(samples, "|u_f|", VERMILION, |s| s.filter_norms.y),
+            curve(samples, "|u_s|", GREEN, |s| s.filter_norms.z),
+        ],
+        bounds: vec![bound(level, format!("√3 M_p = {level:.3}"))],
+    }
+}
+
+/// |s_theta| below M_theta, |s_omega| below M_omega.
+#[must_use]
+pub fn feedbacks(scenario: &Scenario, samples: &[Sample]) -> Panel {
+    let gains = scenario.configuration.gains();
+    let (m_theta, m_omega) = (gains.m_theta, gains.m_omega);
+    Panel {
+        title: "Saturated attitude and rate feedback",
+        quantity: "norm [N m]",
+        scale: Scale::Linear,
+        curves: vec![
+            curve(samples, "|s_ϑ|", BLUE, |s| s.feedback_norms.0),
+            curve(samples, "|s_ω|", VERMILION, |s| s.feedback_norms.1),
+        ],
+        bounds: vec![
+            Bound { value: f64::from(m_theta), label: format!("M_ϑ = {m_theta}"), color: BLUE },
+            Bound { value: f64::from(m_omega), label: format!("M_ω = {m_omega}"), color: VERMILION },
+        ],
+    }
+}
+
+fn bound(value: f64, label: String) -> Bound {
+    Bound { value, label, color: INK }
+}
+
+fn curve(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f64) -> Curve {
+    let points = samples.iter().map(|sample| (sample.time, get(sample))).collect();
+    Curve { label: label.to_owned(), color, dashed: false, width: 2, points }
+}
+
+/// A curve that shows beneath its reference once the two agree.
+fn flown(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f64) -> Curve {
+    Curve { width: 3, ..curve(samples, label, color, get) }
+}
+
+fn desired(samples: &[Sample], label: &str, get: fn(&Sample) -> f64) -> Curve {
+    Curve { dashed: true, width: 1, ..curve(samples, label, INK, get) }
+}

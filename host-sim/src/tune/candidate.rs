@@ -1,0 +1,197 @@
+//! One candidate: gains from a point of the search space, and a verdict on them.
+//!
+//! A point holds the natural logarithms of the nine gains that matter and of the thrust floor as a fraction of its greatest
+//! admissible value. delta and alpha stay as the file has them: they are about noise, not about performance.
+//!
+//! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
+//! radii, margins, recovery from upside down, the file's own flight. A verdict that fails says how far it got and by how
+//! much it missed, so that the search has a slope to follow.
+
+use super::Requirements;
+use crate::certify::loop_model;
+use crate::claims::Flown;
+use crate::flight::Flight;
+use crate::plant::{BodyState, attitude_from_euler};
+use crate::sampled_loop::Axis;
+use crate::scenario::Scenario;
+use crate::scenario::timing::Timing;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::inequality::Inequality;
+use controller_core::gains::{GainParameters, Gains};
+use controller_core::heading::Heading;
+use controller_core::reference::hover::Hover;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Coordinates of the search space.
+pub const DIMENSIONS: usize = 10;
+
+/// A point of it.
+pub type Point = [f64; DIMENSIONS];
+
+/// Greatest position error in the last quarter of a recovery, m.
+const STILL_POSITION: f64 = 0.01;
+/// Greatest norm of the modified Rodrigues parameters there.
+const STILL_MRP: f64 = 1e-3;
+
+/// What a candidate showed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// How far from acceptable: the number of the test that failed counted from the end, plus how much it missed by. Zero
+    /// for an accepted candidate.
+    pub violation: f64,
+    /// Which test failed, in words.
+    pub failed: Option<String>,
+    /// Height lost in the recovery, m.
+    pub height_lost: f64,
+    /// k_p, 1/s^2.
+    pub position_gain: f64,
+    /// The inequality with the least margin.
+    pub tightest: Option<Inequality>,
+}
+
+impl Verdict {
+    /// Whether every requirement is met.
+    #[must_use]
+    pub fn accepted(&self) -> bool {
+        self.violation == 0.0
+    }
+}
+
+/// Judges candidates for one scenario.
+pub struct Judge {
+    scenario: Scenario,
+    recovery: Scenario,
+    requirements: Requirements,
+}
+
+impl Judge {
+    /// A judge for the vehicle, rotors, timing and reference of `scenario`.
+    #[must_use]
+    pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
+        Self { recovery: recovery(scenario, requirements.recovery), scenario: scenario.clone(), requirements }
+    }
+
+    /// The file's own gains as a point: where the search starts.
+    #[must_use]
+    pub fn start(&self) -> Point {
+        let g = self.scenario.configuration.gains();
+        let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, 0.5];
+        values.map(|value| f64::from(value).ln())
+    }
+
+    /// The scenario with the gains of `point`, if the law is defined for them.
+    #[must_use]
+    pub fn scenario(&self, point: &Point) -> Option<Scenario> {
+        let configuration = &self.scenario.configuration;
+        let [k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, floor] = point.map(|x| x.exp() as f32);
+        let GainParameters { delta, alpha, .. } = **configuration.gains();
+        let parameters = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
+        let gains = Gains::new(parameters, configuration.vehicle()).ok()?;
+        let configuration = configuration.with_gains(gains).ok()?;
+        let configuration = if self.requirements.projection {
+            let floor = floor.min(1.0 - self.requirements.margin as f32) * configuration.greatest_thrust_floor();
+            configuration.with_thrust_floor(floor).ok()?
+        } else {
+            configuration
+        };
+        Some(Scenario { configuration, ..self.scenario.clone() })
+    }
+
+    /// Puts `point` through the tests.
+    #[must_use]
+    pub fn judge(&self, point: &Point) -> Verdict {
+        let mut verdict = Verdict {
+            violation: 0.0,
+            failed: None,
+            height_lost: f64::INFINITY,
+            position_gain: point[0].exp(),
+            tightest: None,
+        };
+        let Err((tests_left, missed, what)) = self.run(point, &mut verdict) else {
+            return verdict;
+        };
+        // Squeezed into (0, 1), so that a later test is always nearer to acceptance than an earlier one.
+        verdict.violation = f64::from(tests_left) + missed.max(1e-9) / (1.0 + missed.max(1e-9));
+        verdict.failed = Some(what);
+        verdict
+    }
+
+    fn run(&self, point: &Point, verdict: &mut Verdict) -> Result<(), (u8, f64, String)> {
+        let needed = &self.requirements;
+        let undefined = (5, 1.0, "the law is undefined for these gains".to_owned());
+        let scenario = self.scenario(point).ok_or(undefined.clone())?;
+
+        let certificate = Certificate::new(&scenario.configuration).map_err(|_| undefined.clone())?;
+        verdict.tightest = certificate.tightest();
+        let missing: f64 =
+            certificate.inequalities().map(|inequality| (needed.margin - inequality.margin()).max(0.0)).sum();
+        if missing > 0.0 {
+            let name = verdict.tightest.map_or("", |inequality| inequality.name);
+            return Err((4, missing, format!("certificate: {name}")));
+        }
+
+        let loops = loop_model(&scenario).map_err(|_| undefined)?;
+        for axis in Axis::ALL {
+            let radius = loops.spectral_radius(axis);
+            if radius >= 1.0 {
+                return Err((3, radius - 1.0 + 1.0, format!("sampled loop unstable: {}", axis.name())));
+            }
+        }
+        for report in loops.reports() {
+            let (gain, delay) = report.margins.map_or((1.0, 0.0), |margins| (margins.gain_up, margins.delay));
+            let missing = (needed.gain_margin / gain - 1.0).max((needed.delay_margin - delay) / needed.delay_margin);
+            if missing > 0.0 {
+                return Err((2, missing, format!("sampled loop margin: {}", report.axis.name())));
+            }
+        }
+
+        let recovery = Scenario { configuration: scenario.configuration.clone(), ..self.recovery.clone() };
+        let flown = fly(&recovery).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
+        verdict.height_lost = flown.height_lost;
+        let restless =
+            (flown.steady_position_error / STILL_POSITION - 1.0).max(flown.steady_mrp_error / STILL_MRP - 1.0);
+        let restless = restless.max(flown.clipped as f64);
+        if restless > 0.0 {
+            return Err((1, restless, "recovery: not still at the end, or a clipped command".to_owned()));
+        }
+
+        let flown = fly(&scenario).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
+        let beyond = (flown.steady_position_error / needed.position_error - 1.0)
+            .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
+            .max(flown.clipped as f64);
+        if beyond > 0.0 {
+            return Err((
+                0,
+                beyond,
+                "the file's flight: errors beyond those asked for, or a clipped command".to_owned(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The recovery that height is measured in: roll -179 degrees, at rest, hovering where it starts, for `duration` s.
+#[must_use]
+pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
+    let rest = Vector3::zeros();
+    let attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, 0.0);
+    let initial = BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest };
+    let timing = Timing { ticks: (duration / scenario.timing.period()) as u64, ..scenario.timing };
+    let mut recovery = Scenario { name: "recovery".to_owned(), initial, timing, ..scenario.clone() };
+    if let Ok(hover) = Hover::new(Vector3::zeros(), Heading::FORWARD) {
+        recovery.trajectory = Arc::new(hover);
+    }
+    recovery
+}
+
+/// Flies a whole scenario; none if it cannot be flown to its end.
+#[must_use]
+pub fn fly(scenario: &Scenario) -> Option<Flown> {
+    let mut flight = Flight::new(scenario).ok()?;
+    let mut flown = Flown::new(scenario);
+    for _ in 0..scenario.timing.ticks {
+        flown.observe(&flight.tick().ok()?);
+    }
+    Some(flown)
+}

@@ -1,0 +1,129 @@
+//! Differential evolution with feasibility first.
+//!
+//! For each member x of the population a trial is made from three others, x_a + F (x_b - x_c), coordinates taken over with
+//! probability [`CROSSOVER`] (DE/rand/1/bin; half of the time x_a is the best member, which is faster and still
+//! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
+//! one nearer to acceptance wins, of two that are the one nearer to the goal.
+
+use super::candidate::{DIMENSIONS, Judge, Point, Verdict};
+use super::frontier::Frontier;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// Members of the population.
+const POPULATION: usize = 48;
+/// Probability with which a coordinate comes from the mutant.
+const CROSSOVER: f64 = 0.8;
+/// Spread of the first population around the file's gains, in natural logarithms.
+const SPREAD: f64 = 2.0;
+
+/// What the search is after.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// The least height lost.
+    Height,
+    /// The greatest k_p among those that lose at most this height, m.
+    PositionGain {
+        /// The height, m.
+        height_at_most: f64,
+    },
+}
+
+impl Goal {
+    /// (violation, cost), to be compared in this order: less is better.
+    fn rank(&self, verdict: &Verdict) -> (f64, f64) {
+        match self {
+            Self::Height => (verdict.violation, verdict.height_lost),
+            Self::PositionGain { height_at_most } => {
+                let above = (verdict.height_lost / height_at_most - 1.0).max(0.0);
+                let violation = if verdict.accepted() { above } else { 1e3 + verdict.violation };
+                (violation, -verdict.position_gain)
+            }
+        }
+    }
+
+    fn better(&self, a: &Verdict, b: &Verdict) -> bool {
+        self.rank(a) < self.rank(b)
+    }
+}
+
+/// The population.
+pub struct Evolution {
+    members: Vec<(Point, Verdict)>,
+    random: ChaCha8Rng,
+    judged: u64,
+}
+
+impl Evolution {
+    /// The first population, scattered around the file's own gains.
+    #[must_use]
+    pub fn new(judge: &Judge, seed: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let start = judge.start();
+        let mut points = vec![start];
+        points.resize_with(POPULATION, || start.map(|x| x + SPREAD * (random.random::<f64>() - 0.5)));
+        let members = judge_all(judge, points);
+        Self { members, random, judged: POPULATION as u64 }
+    }
+
+    /// One generation towards `goal`; accepted candidates go into `frontier` as well.
+    pub fn generation(&mut self, judge: &Judge, goal: Goal, frontier: &mut Frontier) {
+        let best = self.leader(goal);
+        let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
+        let trials = judge_all(judge, trials);
+        self.judged += trials.len() as u64;
+        for ((point, verdict), member) in trials.into_iter().zip(&mut self.members) {
+            if verdict.accepted() {
+                frontier.offer(&point, &verdict);
+            }
+            if goal.better(&verdict, &member.1) {
+                *member = (point, verdict);
+            }
+        }
+    }
+
+    /// The best accepted member, if there is one.
+    #[must_use]
+    pub fn best(&self, goal: Goal) -> Option<(Point, Verdict)> {
+        let best = self.members[self.leader(goal)].clone();
+        best.1.accepted().then_some(best)
+    }
+
+    /// The verdict nearest to acceptance.
+    #[must_use]
+    pub fn closest(&self) -> Verdict {
+        self.members[self.leader(Goal::Height)].1.clone()
+    }
+
+    /// Candidates judged so far.
+    #[must_use]
+    pub fn judged(&self) -> u64 {
+        self.judged
+    }
+
+    fn leader(&self, goal: Goal) -> usize {
+        let indices = 1..self.members.len();
+        indices.fold(0, |best, i| if goal.better(&self.members[i].1, &self.members[best].1) { i } else { best })
+    }
+
+    fn trial(&mut self, parent: usize, best: usize) -> Point {
+        let count = self.members.len();
+        let [a, b, c] = [(); 3].map(|()| self.random.random_range(0..count));
+        let base = if self.random.random::<bool>() { best } else { a };
+        let scale = self.random.random_range(0.4..0.9);
+        let forced = self.random.random_range(0..DIMENSIONS);
+        let mut trial = self.members[parent].0;
+        for (index, coordinate) in trial.iter_mut().enumerate() {
+            if index == forced || self.random.random::<f64>() < CROSSOVER {
+                let difference = self.members[b].0[index] - self.members[c].0[index];
+                *coordinate = self.members[base].0[index] + scale * difference;
+            }
+        }
+        trial
+    }
+}
+
+fn judge_all(judge: &Judge, points: Vec<Point>) -> Vec<(Point, Verdict)> {
+    points.into_par_iter().map(|point| (point, judge.judge(&point))).collect()
+}

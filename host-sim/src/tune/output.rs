@@ -1,0 +1,47 @@
+//! The tuned scenario as a file: the original text with its gains, thrust floor and name replaced, comments kept.
+
+use super::Tuned;
+use crate::table::short;
+use toml_edit::{DocumentMut, Item, Table, TomlError, value};
+
+/// `original` with the tuned gains, headed by what they achieve.
+///
+/// # Errors
+/// If `original` is no TOML; a text that was read as a scenario is.
+pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
+    let mut document: DocumentMut = original.parse()?;
+    let configuration = &tuned.scenario.configuration;
+    let g = configuration.gains();
+    document["name"] = value(tuned.scenario.name.as_str());
+    let gains = [
+        ("k_p", g.k_p),
+        ("k_v", g.k_v),
+        ("k_f", g.k_f),
+        ("k_s", g.k_s),
+        ("k_theta", g.k_theta),
+        ("k_omega", g.k_omega),
+        ("m_p", g.m_p),
+        ("m_theta", g.m_theta),
+        ("m_omega", g.m_omega),
+    ];
+    for (key, gain) in gains {
+        document["gains"][key] = value(shortest(gain));
+    }
+    if let Some(floor) = configuration.thrust_floor() {
+        if !document.contains_key("control") {
+            document["control"] = Item::Table(Table::new());
+        }
+        document["control"]["thrust_floor"] = value(shortest(floor));
+    }
+    let head = format!(
+        "# Tuned: height lost from upside down {} m; every margin at least {:.1} %.\n",
+        short(tuned.verdict.height_lost),
+        100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
+    );
+    Ok(head + &document.to_string())
+}
+
+/// The double with the fewest digits that rounds to `single`, so that the file reads like the number that flies.
+fn shortest(single: f32) -> f64 {
+    single.to_string().parse().unwrap_or(f64::from(single))
+}

@@ -1,0 +1,130 @@
+//! 100,000 random and adversarial setpoint streams against the reference governor.
+//!
+//! Each stream has its own bounds, limits, tick rate and start: at rest, on a circle or an oscillation inside the bounds,
+//! or wherever another governor was when it was interrupted. Setpoints then come at 50 Hz or as the adversary likes, for a
+//! few seconds, and end in a constant one. Checked at every tick, in double precision and without allowance:
+//!
+//! - every bound of Omega_r;
+//! - that position to snap and psi to psi'' are one motion: each derivative integrates to the one below. Between ticks
+//!   the reference is a spline with linear snap, so Euler and Maclaurin's corrected trapezoids are exact and the
+//!   tolerance is the rounding of the numbers compared;
+//! - that snap and psi'' move no faster than their ramps allow.
+//!
+//! And in the end: at rest, exactly on the setpoint; if it started from rest, without having passed it or turned back.
+
+#[path = "governor_campaign/adversary.rs"]
+mod adversary;
+#[path = "governor_campaign/case.rs"]
+mod case;
+#[path = "governor_campaign/witness.rs"]
+mod witness;
+
+use adversary::Adversary;
+use case::{Case, Random};
+use controller_core::governor::{Governor, Motion, Setpoint, Turn};
+use controller_core::prelude::{Vector2, Vector3};
+use core::f32::consts::PI;
+use witness::{Approach, Tally, Witness};
+
+const STREAMS: u64 = 100_000;
+/// No arrival takes longer, s; the slowest bounds drawn need most of it.
+const PATIENCE: f32 = 150.0;
+
+fn fly(seed: u64, tally: &mut Tally) {
+    let mut random = Random::new(seed);
+    let case = Case::draw(&mut random);
+    let adversary = Adversary::draw(&mut random, &case);
+    let resting = case.resting(&mut random);
+    let mut start = resting;
+    let mut governor = Governor::new(case.bounds, case.limits, case.period, &resting).unwrap();
+    if !matches!(adversary, Adversary::Constant) && random.below(3) > 0 {
+        let interrupted = random.below(2) == 0;
+        start = if interrupted { case.interrupted(&mut random, governor.clone()) } else { case.orbiting(&mut random) };
+        *(if interrupted { &mut tally.interrupted } else { &mut tally.orbiting }) += 1;
+        if governor.restart(&start).is_err() {
+            // Counted, and flown from rest instead.
+            tally.refused[usize::from(interrupted)] += 1;
+            start = resting;
+        }
+    }
+    // The longest take-over lasts three and a half windows.
+    let crossing = if start == resting { 0 } else { 4 * case.windows()[0] + 2 };
+    let mut witness = Witness { case: &case, last: start, crossing };
+    let busy =
+        if matches!(adversary, Adversary::Constant) { 0 } else { (random.between(1.0, 5.0) / case.period) as u32 };
+    for tick in 0..busy {
+        let now = witness.last;
+        adversary.send(tick, &mut random, &mut governor, &now, case.period);
+        witness.see(governor.tick(), tally);
+    }
+    let size = random.sized(1e-3, 20.0);
+    let target = witness.last.position + random.vector(size);
+    let angle = random.between(-PI, PI);
+    let ending = random.below(8);
+    if ending == 0 {
+        governor.stop();
+    } else if ending == 1 && busy > 0 {
+        // Silence: what was sent last runs out or is arrived at, unless it is a million metres away.
+        let motion = Motion::Velocity(random.vector(2.0));
+        governor.accept(&Setpoint { motion, turn: Turn::Rate(0.5) }).unwrap();
+    } else {
+        let turn = Turn::Angle { angle, rate: 0.0 };
+        governor.accept(&Setpoint { motion: Motion::Position(target), turn }).unwrap();
+    }
+    let mut approach = (busy == 0 && start == resting && ending > 1).then(|| Approach {
+        from: start.position.map(f64::from),
+        to: target.map(f64::from),
+        along: 0.0,
+        aside: {
+            let (horizontal, vertical) = (case.bounds.horizontal_acceleration, case.bounds.vertical_acceleration);
+            3.0_f64.sqrt() / 65_536.0 * f64::from((horizontal / vertical).max(vertical / horizontal))
+        },
+    });
+    let mut time = 0.0;
+    while !governor.at_rest() {
+        let reference = governor.tick();
+        witness.see(reference, tally);
+        if let Some(approach) = &mut approach {
+            approach.see(&reference.position);
+        }
+        time += case.period;
+        assert!(time < PATIENCE, "no arrival: {reference:?} for {target}");
+    }
+    tally.longest = tally.longest.max(time);
+    if ending > 1 {
+        let there = governor.tick();
+        // A length unit is a 65,536th part or less of the acceleration bound times period squared: 4e-8 m at the coarsest.
+        let miss = (there.position - target).abs();
+        assert!(miss.iter().zip(&target).all(|(miss, to)| *miss <= 4e-8 + f32::EPSILON * to.abs()), "off by {miss}");
+        let (sin, cos) = angle.sin_cos();
+        assert!((there.heading.direction() - Vector2::new(cos, sin)).norm() < 1e-6);
+        assert_eq!((there.velocity, there.heading.rate()), (Vector3::zeros(), 0.0));
+    }
+}
+
+#[test]
+fn a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive() {
+    let threads = std::thread::available_parallelism().map_or(2, usize::from).min(8) as u64;
+    let tally = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads)
+            .map(|thread| {
+                scope.spawn(move || {
+                    let mut tally = Tally::default();
+                    for seed in (thread..STREAMS).step_by(threads as usize) {
+                        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| fly(seed, &mut tally)));
+                        assert!(outcome.is_ok(), "stream {seed} failed");
+                    }
+                    tally
+                })
+            })
+            .collect();
+        workers.into_iter().map(|worker| worker.join().unwrap()).fold(Tally::default(), |all, one| all.merged(&one))
+    });
+    let Tally { ticks, orbiting, interrupted, refused, .. } = tally;
+    println!("{ticks} ticks; {orbiting} starts on orbits, {interrupted} mid-way; {refused:?} refused");
+    println!("nearest to the bounds (shares): {:.4?}; longest arrival {:.1} s", tally.nearest, tally.longest);
+    // States that can go on inside the bounds, as all of these did, are taken over.
+    assert_eq!(refused, [0, 0]);
+    // Adversaries that stay far inside prove nothing.
+    assert!(tally.nearest.iter().all(|nearest| *nearest > 0.99), "{:?}", tally.nearest);
+}

@@ -1,0 +1,142 @@
+//! Who watches the reference: bounds, continuity and approach, in double precision.
+
+use crate::case::Case;
+use controller_core::prelude::{Reference, Vector3};
+
+/// How near to its bounds the streams of a thread came (as shares, take-overs apart), and how they fared.
+#[derive(Clone, Copy, Default)]
+pub struct Tally {
+    pub ticks: u64,
+    /// Starts in motion: on orbits, and where another governor was.
+    pub orbiting: u64,
+    pub interrupted: u64,
+    /// Of these, what was refused.
+    pub refused: [u64; 2],
+    pub nearest: [f64; 6],
+    pub longest: f32,
+}
+
+impl Tally {
+    pub fn merged(mut self, other: &Self) -> Self {
+        self.ticks += other.ticks;
+        self.orbiting += other.orbiting;
+        self.interrupted += other.interrupted;
+        for (refused, theirs) in self.refused.iter_mut().zip(other.refused) {
+            *refused += theirs;
+        }
+        self.longest = self.longest.max(other.longest);
+        for (nearest, theirs) in self.nearest.iter_mut().zip(other.nearest) {
+            *nearest = nearest.max(theirs);
+        }
+        self
+    }
+}
+
+/// Watches one stream from tick to tick.
+pub struct Witness<'a> {
+    pub case: &'a Case,
+    pub last: Reference,
+    /// Ticks left of a take-over, whose polynomials have corners within ticks.
+    pub crossing: u32,
+}
+
+impl Witness<'_> {
+    pub fn see(&mut self, next: Reference, tally: &mut Tally) {
+        self.bounds(&next, tally);
+        self.continuity(&next);
+        self.last = next;
+        self.crossing = self.crossing.saturating_sub(1);
+        tally.ticks += 1;
+    }
+
+    pub fn bounds(&self, next: &Reference, tally: &mut Tally) {
+        let b = &self.case.bounds;
+        let [a, j, s] = [next.acceleration, next.jerk, next.snap].map(|vector| vector.map(f64::from));
+        let (rate, turning) = (f64::from(next.heading.rate()), f64::from(next.heading.acceleration()));
+        let shares = [
+            a.xy().norm() / f64::from(b.horizontal_acceleration),
+            a.z.abs() / f64::from(b.vertical_acceleration),
+            j.norm() / f64::from(b.jerk),
+            s.norm() / f64::from(b.snap),
+            rate.abs() / f64::from(b.heading_rate),
+            (turning * turning + rate.powi(4)).sqrt() / f64::from(b.heading_second_derivative),
+        ];
+        for (share, nearest) in shares.iter().zip(&mut tally.nearest) {
+            assert!(*share <= 1.0, "outside by {shares:?}: {next:?}");
+            if self.crossing == 0 {
+                *nearest = nearest.max(*share);
+            }
+        }
+    }
+
+    pub fn continuity(&self, next: &Reference) {
+        let last = &self.last;
+        let (b, t) = (&self.case.bounds, f64::from(self.case.period));
+        let double = |vector: Vector3<f32>| vector.map(f64::from);
+        let [p0, v0, a0, j0, s0] = [last.position, last.velocity, last.acceleration, last.jerk, last.snap].map(double);
+        let [p1, v1, a1, j1, s1] = [next.position, next.velocity, next.acceleration, next.jerk, next.snap].map(double);
+        let rounding = f64::from(f32::EPSILON);
+        // Within one tick of a take-over snap strays from a line between its ends by at most twice its bound.
+        let stray = if self.crossing > 0 { 2.0 * f64::from(b.snap) } else { 0.0 };
+        // Its polynomials' coefficients sum, in magnitude, to 1, 7, 31 and 120 from position to jerk, times an amplitude over
+        // its duration; jerk is at least a 64th of that sum where it matters.
+        let acceleration = f64::from(b.horizontal_acceleration + b.vertical_acceleration);
+        let span = 4.0 * f64::from(self.case.windows()[0]) * t;
+        let fades = if self.crossing > 0 { 1.0 } else { 0.0 };
+        let near = |excess: Vector3<f64>, scale: f64, fade: f64, order: i32, what: &str| {
+            let room = 4.0 * rounding * (scale + fades * fade + 1e-3) + stray * t.powi(order);
+            assert!(excess.norm() <= room, "{what}: {excess} beyond {room:e}\n{last:?}\n{next:?}");
+        };
+        let (jerk, snap) = (f64::from(b.jerk), f64::from(b.snap));
+        near(j1 - j0 - (s0 + s1) * (t / 2.0), jerk + t * snap, 16.0 * jerk, 1, "jerk");
+        let corrected = (j0 + j1) * (t / 2.0) - (s1 - s0) * (t * t / 12.0);
+        near(a1 - a0 - corrected, acceleration + t * jerk, 8.0 * acceleration, 2, "acceleration");
+        let corrected = (a0 + a1) * (t / 2.0) - (j1 - j0) * (t * t / 12.0);
+        near(v1 - v0 - corrected, v0.norm() + t * acceleration, 2.0 * acceleration * span, 3, "velocity");
+        let corrected = (v0 + v1) * (t / 2.0) - (a1 - a0) * (t * t / 12.0) + (s1 - s0) * (t.powi(4) / 720.0);
+        near(p1 - p0 - corrected, p0.norm() + t * v0.norm(), acceleration * span * span, 4, "position");
+        let [h0, h1] = [last.heading, next.heading];
+        let [d0, d1] = [h0.direction(), h1.direction()].map(|direction| direction.map(f64::from));
+        let [r0, r1, w0, w1] = [h0.rate(), h1.rate(), h0.acceleration(), h1.acceleration()].map(f64::from);
+        let second = f64::from(b.heading_second_derivative);
+        let excess = r1 - r0 - (w0 + w1) * (t / 2.0);
+        let room = 4.0 * rounding * (f64::from(b.heading_rate) + t * second + 1e-3);
+        assert!(excess.abs() <= room, "heading rate: {excess:e} beyond {room:e}");
+        let turned = (d0.x * d1.y - d0.y * d1.x).atan2(d0.dot(&d1));
+        let excess = turned - (r0 + r1) * (t / 2.0) + (w1 - w0) * (t * t / 12.0);
+        // Sine and cosine carry absolute errors of 1.2e-7 each.
+        assert!(excess.abs() <= 8.0 * rounding, "heading: {excess:e}");
+        let ramp = |bound: f32, ramp: f32| 2.0 * f64::from(bound * self.case.period / ramp) * (1.0 + 1e-6);
+        if self.crossing == 0 {
+            let most = ramp(b.snap, self.case.limits.snap_ramp);
+            assert!((s1 - s0).norm() <= most, "snap jumps by {} > {most}", (s1 - s0).norm());
+        }
+        let most = ramp(b.heading_second_derivative, self.case.limits.heading_ramp);
+        // A take-over may have less time for psi'' than the ramp.
+        assert!(self.crossing > 0 || (w1 - w0).abs() <= most, "psi'' jumps by {}", w1 - w0);
+    }
+}
+
+/// Whether a point travels along the segment without turning back or passing its end.
+pub struct Approach {
+    pub from: Vector3<f64>,
+    pub to: Vector3<f64>,
+    pub along: f64,
+    /// Greatest distance from the segment, relative to its length. Commands are cut to whole units, of which an
+    /// acceleration bound has at least 65,536 where it is greatest: each tick may point aside by one on each axis.
+    pub aside: f64,
+}
+
+impl Approach {
+    pub fn see(&mut self, position: &Vector3<f32>) {
+        let path = self.to - self.from;
+        let (length, travelled) = (path.norm(), position.map(f64::from) - self.from);
+        let along = travelled.dot(&path) / length;
+        // The rounding of positions of up to 50 m, twice, and of the command's whole units.
+        let room = 2e-5;
+        assert!(along >= self.along - room, "turns back at {along} after {}", self.along);
+        assert!(along <= length + room, "overshoots: {along} of {length}");
+        assert!((travelled - path * (along / length)).norm() <= room + self.aside * length, "leaves the segment");
+        self.along = self.along.max(along);
+    }
+}

@@ -1,0 +1,75 @@
+//! The paper's experiment, flown: every figure that Section VI claims, and the sharper ones this project aims at.
+
+use host_sim::claims::{Flown, all_hold, claims, table, theorem_1_thrust};
+use host_sim::flight::Flight;
+use host_sim::scenario::Scenario;
+
+fn flown(scenario: &Scenario) -> Flown {
+    let mut flight = Flight::new(scenario).unwrap();
+    let mut flown = Flown::new(scenario);
+    for _ in 0..scenario.timing.ticks {
+        flown.observe(&flight.tick().unwrap());
+    }
+    flown
+}
+
+#[test]
+fn the_papers_experiment_meets_every_published_figure() {
+    let scenario = Scenario::paper().unwrap();
+    let flown = flown(&scenario);
+    assert_eq!(flown.ticks, 4000);
+    assert!(flown.steady_position_error < 1e-3 && flown.steady_mrp_error < 1e-4, "{flown:?}");
+    assert!(flown.thrust.0 >= 3.51 && flown.thrust.1 <= 6.19, "{flown:?}");
+    for (torque, bound) in flown.torque.into_iter().zip([0.29, 0.33, 0.48]) {
+        assert!(torque <= bound, "{flown:?}");
+    }
+    assert_eq!(flown.clipped, 0);
+    assert!(flown.filter <= 2.0);
+    let claims = claims(&scenario, &flown);
+    assert!(all_hold(&claims), "{}", table(&claims));
+}
+
+#[test]
+fn it_tracks_several_times_closer_than_published() {
+    let flown = flown(&Scenario::paper().unwrap());
+    assert!(flown.steady_position_error < 3e-4, "{:e} m", flown.steady_position_error);
+    assert!(flown.steady_mrp_error < 1e-5, "{:e}", flown.steady_mrp_error);
+}
+
+#[test]
+fn a_flight_is_the_same_every_time() {
+    let scenario = Scenario::paper().unwrap();
+    assert_eq!(flown(&scenario), flown(&scenario));
+}
+
+#[test]
+fn a_finer_plant_step_does_not_change_what_was_flown() {
+    let scenario = Scenario::paper().unwrap();
+    let mut fine = scenario.clone();
+    fine.timing.steps_per_tick *= 4;
+    let (coarse, fine) = (flown(&scenario), flown(&fine));
+    assert!((coarse.thrust.1 - fine.thrust.1).abs() < 1e-5, "{coarse:?} {fine:?}");
+    for (a, b) in coarse.torque.into_iter().zip(fine.torque) {
+        assert!((a - b).abs() < 1e-5, "{coarse:?} {fine:?}");
+    }
+    assert!((coarse.height_lost - fine.height_lost).abs() < 1e-4, "{coarse:?} {fine:?}");
+}
+
+#[test]
+fn every_scenario_of_the_collection_flies_within_its_claims() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios");
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let scenario = Scenario::load(&entry.unwrap().path()).unwrap();
+        let flown = flown(&scenario);
+        let claims = claims(&scenario, &flown);
+        assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
+        assert!(flown.steady_position_error < 0.01, "{}: {} m", scenario.name, flown.steady_position_error);
+        let (least, greatest) = theorem_1_thrust(&scenario);
+        assert!(least > 0.0 && greatest < f64::from(scenario.configuration.limits().thrust_max));
+        names.push(scenario.name);
+    }
+    for name in ["paper", "hover", "circle", "waypoints"] {
+        assert!(names.iter().any(|found| found == name), "{name} is missing");
+    }
+}
