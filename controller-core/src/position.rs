@@ -76,15 +76,15 @@ impl FilterTransition {
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
-        // move the filters' bandwidth. The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the
+        // move the filters' bandwidth. The limit does nothing in exact arithmetic; it keeps rounding from leaking past the
         // level, to the bit.
         let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
             let step = self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f);
-            (u_f + step).clamp(-level, level)
+            math::limit(u_f + step, level)
         });
         let intermediate = state
             .intermediate
-            .zip_map(feedback, |u_s, ubar| (u_s + self.intermediate_towards_input * (ubar - u_s)).clamp(-level, level));
+            .zip_map(feedback, |u_s, ubar| math::limit(u_s + self.intermediate_towards_input * (ubar - u_s), level));
         FilterState { filtered, intermediate }
     }
 }
