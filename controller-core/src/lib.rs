@@ -1,6 +1,11 @@
 //! Robust global position and heading tracking on SE(3) by saturated hybrid feedback.
 #![no_std]
 #![deny(unsafe_code)]
+// A tick has no way to panic; nor has configuration.
+#![cfg_attr(
+    not(test),
+    deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)
+)]
 
 pub mod allocation;
 pub mod attitude;

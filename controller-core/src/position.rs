@@ -15,7 +15,7 @@
 //! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
 
 use crate::error::{ParameterError, Reason, require, require_positive};
-use crate::gains::Gains;
+use crate::gains::{GainParameters, Gains};
 use crate::math;
 use crate::reference::Reference;
 use crate::state::State;
@@ -38,12 +38,12 @@ impl FilterState {
 /// The exact solution of the filters over one period with their input held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterTransition {
-    /// Weight of u_f in the next u_f: e^(-k_f h).
-    filtered: f32,
-    /// Weight of u_s in the next u_f: k_f (e^(-k_f h) - e^(-k_s h)) / (k_s - k_f).
-    intermediate: f32,
-    /// Weight of u_s in the next u_s: e^(-k_s h).
-    memory: f32,
+    /// Weight of u_s - u_f in u_f's step: k_f (e^(-k_f h) - e^(-k_s h)) / (k_s - k_f).
+    towards_intermediate: f32,
+    /// Weight of ubar_p - u_f in u_f's step: what is left of 1 - e^(-k_f h).
+    towards_input: f32,
+    /// Weight of ubar_p - u_s in u_s' step: 1 - e^(-k_s h).
+    intermediate_towards_input: f32,
 }
 
 impl FilterTransition {
@@ -59,27 +59,52 @@ impl FilterTransition {
         let longest = Self::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
         let (k_f, k_s, h) = (f64::from(gains.k_f), f64::from(gains.k_s), f64::from(period));
-        let (slow, fast) = (math::exp(-k_f * h), math::exp(-k_s * h));
+        let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
         let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
-        Ok(Self { filtered: slow as f32, intermediate: (k_f * h * mixed) as f32, memory: fast as f32 })
+        let towards_intermediate = k_f * h * mixed;
+        Ok(Self {
+            towards_intermediate: towards_intermediate as f32,
+            towards_input: (-math::exp_m1(-k_f * h) - towards_intermediate) as f32,
+            intermediate_towards_input: -math::exp_m1(-k_s * h) as f32,
+        })
     }
 
     /// The filters' states one period later, with `feedback` held. Every component stays within ±`level`.
     #[inline]
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
-        let to_input = 1.0 - self.filtered - self.intermediate;
-        // The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the level, to the bit.
+        // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
+        // move the filters' bandwidth. The limit does nothing in exact arithmetic; it keeps rounding from leaking past the
+        // level, to the bit.
         let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
-            (self.filtered * u_f + self.intermediate * u_s + to_input * ubar).clamp(-level, level)
+            let step = self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f);
+            math::limit(u_f + step, level)
         });
         let intermediate = state
             .intermediate
-            .zip_map(feedback, |u_s, ubar| (self.memory * u_s + (1.0 - self.memory) * ubar).clamp(-level, level));
+            .zip_map(feedback, |u_s, ubar| math::limit(u_s + self.intermediate_towards_input * (ubar - u_s), level));
         FilterState { filtered, intermediate }
     }
+}
+
+/// The position law's constants, with the reciprocals a tick would otherwise divide for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionLaw {
+    k_p: f32,
+    k_v: f32,
+    k_f: f32,
+    k_s: f32,
+    m_p: f32,
+    /// 1 / k_f, s.
+    second_lag: f32,
+    /// 1 / k_s, s.
+    first_lag: f32,
+    /// 1 / M_p, s^2/m.
+    per_level: f32,
+    /// g, m/s^2.
+    gravity: f32,
 }
 
 /// What the position law asks of the attitude, with the quantities it went through.
@@ -103,36 +128,38 @@ pub struct PositionCommand {
     pub snap_command: Vector3<f32>,
 }
 
-/// Evaluates the law at one instant; the filters are read, not advanced.
-#[inline]
-#[must_use]
-pub fn command(
-    gains: &Gains,
-    gravity: f32,
-    state: &State,
-    reference: &Reference,
-    filter: &FilterState,
-) -> PositionCommand {
-    let (k_f, k_s, m_p) = (gains.k_f, gains.k_s, gains.m_p);
-    let FilterState { filtered: u_f, intermediate: u_s } = filter;
+impl PositionLaw {
+    /// For `gains` under `gravity`, m/s^2.
+    #[must_use]
+    pub fn new(gains: &Gains, gravity: f32) -> Self {
+        let GainParameters { k_p, k_v, k_f, k_s, m_p, .. } = **gains;
+        Self { k_p, k_v, k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, per_level: 1.0 / m_p, gravity }
+    }
 
-    let position_error = state.position - reference.position;
-    let velocity_error = state.velocity - reference.velocity;
-    let z_1 = position_error + velocity_error * (1.0 / k_f + 1.0 / k_s) + u_f * (1.0 / (k_s * k_f));
-    let z_2 = velocity_error + u_f * (1.0 / k_f) + u_s * (1.0 / k_s);
-    let per_level = 1.0 / m_p;
-    let feedback = (z_1 * gains.k_p + z_2 * gains.k_v).map(|s| -m_p * math::tanh(s * per_level));
+    /// Evaluates the law at one instant; the filters are read, not advanced.
+    #[inline]
+    #[must_use]
+    pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
+        let Self { k_f, k_s, m_p, second_lag, first_lag, per_level, .. } = *self;
+        let FilterState { filtered: u_f, intermediate: u_s } = filter;
 
-    let filtered_rate = (u_s - u_f) * k_f;
-    let intermediate_rate = (feedback - u_s) * k_s;
-    PositionCommand {
-        position_error,
-        velocity_error,
-        z_1,
-        z_2,
-        feedback,
-        acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, gravity),
-        jerk_command: filtered_rate + reference.jerk,
-        snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+        let position_error = state.position - reference.position;
+        let velocity_error = state.velocity - reference.velocity;
+        let z_1 = position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag);
+        let z_2 = velocity_error + u_f * second_lag + u_s * first_lag;
+        let feedback = (z_1 * self.k_p + z_2 * self.k_v).map(|s| -m_p * math::tanh(s * per_level));
+
+        let filtered_rate = (u_s - u_f) * k_f;
+        let intermediate_rate = (feedback - u_s) * k_s;
+        PositionCommand {
+            position_error,
+            velocity_error,
+            z_1,
+            z_2,
+            feedback,
+            acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, self.gravity),
+            jerk_command: filtered_rate + reference.jerk,
+            snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+        }
     }
 }

@@ -201,6 +201,29 @@ fn the_heading_turns_the_shorter_way_and_half_a_turn_counter_clockwise() {
 }
 
 #[test]
+fn two_equal_points_in_a_row_are_a_wait_and_the_legs_around_it_do_not_feel_its_length() {
+    let (here, there) = ([0.0, 0.0, 1.0], [3.0, 0.0, 1.0]);
+    let with_wait = |wait: f64| {
+        Waypoints::new(&[
+            waypoint(0.0, here, 0.0),
+            waypoint(5.0, there, 90.0),
+            waypoint(5.0 + wait, there, 90.0),
+            waypoint(10.0 + wait, here, 0.0),
+        ])
+        .unwrap()
+    };
+    let (short, long) = (with_wait(1.0), with_wait(1e6));
+    for time in [5.0, 5.3, 5.99] {
+        let reference = long.at(micros(time));
+        assert_eq!(reference.position.as_slice(), there.map(|x| x as f32));
+        assert_eq!((reference.velocity.norm(), reference.snap.norm(), reference.heading.rate()), (0.0, 0.0, 0.0));
+    }
+    assert_eq!(short.at(micros(2.5)), long.at(micros(2.5)));
+    assert_eq!(short.bounds(), long.bounds());
+    assert!(short.bounds().horizontal_acceleration < 1.2, "{:?}", short.bounds());
+}
+
+#[test]
 fn a_single_waypoint_is_a_hover() {
     let waypoints = Waypoints::new(&[waypoint(0.0, [1.0, 2.0, 3.0], -90.0)]).unwrap();
     let reference = waypoints.at(12_345);
@@ -295,8 +318,8 @@ fn malformed_points_are_refused_by_name() {
     assert_eq!(with(7, |p| p.position[2] = f64::INFINITY), ("reference.points[7].position", Reason::NotFinite));
     assert_eq!(with(7, |p| p.position[2] = -1e16), ("reference.points[7].position", Reason::NotBelow(1e15)));
     assert_eq!(with(9, |p| p.heading = f64::NAN), ("reference.points[9].heading_deg", Reason::NotFinite));
-    // Ten metres in a tenth of a millisecond.
-    let fast = with(2, |p| (p.time, p.position) = (1.0001, [10.0, 0.0, 0.0]));
+    // A metre in ten milliseconds.
+    let fast = refusal(&[good(0), waypoint(0.01, [1.0, 0.0, 0.0], 0.0)]);
     assert_eq!(fast, ("reference.points (jerk)", Reason::NotBelow(1e6)));
 }
 

@@ -8,7 +8,7 @@ use host_sim::scenario::Scenario;
 use std::hint::black_box;
 use std::time::Instant;
 
-const REPETITIONS: usize = 400;
+const REPETITIONS: usize = 1500;
 const FLIGHTS_PER_REPETITION: u64 = 1;
 /// What the project asks for, simulated seconds per second.
 const REQUIRED: f64 = 10_000.0;

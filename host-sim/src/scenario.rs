@@ -10,7 +10,7 @@
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! Each section has a module; one that comes later adds a module, its name to [`SECTIONS`] and a field to [`Scenario`].
+//! Each section has a module; one that comes later adds a module, its name to `SECTIONS` and a field to [`Scenario`].
 //! Numbers are read in double precision and rounded once, where the law's types take them.
 
 pub mod actuation;

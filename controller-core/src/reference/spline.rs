@@ -48,6 +48,13 @@ pub(super) struct Span {
     pub difference: Vector4<f64>,
 }
 
+impl Span {
+    /// Whether it leads from a point to the same point.
+    pub fn waits(&self) -> bool {
+        self.difference == Vector4::zeros()
+    }
+}
+
 /// Four equations carried over from earlier segments, then a segment's five.
 const CARRIED: usize = 4;
 const ROWS: usize = CARRIED + 5;

@@ -1,17 +1,16 @@
 //! Polynomials through given points, smooth to snap.
 //!
-//! At rest before the first point and after the last; through the others without stopping, on the path of degree 9 that
-//! minimises the squared fifth derivative (`reference::spline`). A heading belongs to every point; between two points it
+//! At rest before the first point, after the last, and between two equal points in a row, which is how to wait; through
+//! the others without stopping, on the path of degree 9 that minimises the squared fifth derivative between one rest
+//! and the next (`reference::spline`). A heading belongs to every point; between two points it
 //! turns the shorter way round, an exact half turn counter-clockwise, as smoothly as the position moves.
 //!
 //! World frame; m, s, rad. Bounds come from the polynomials' convex hulls (`reference::bernstein`), so they hold at every
 //! instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points lie a
 //! hundred times further out than its curve does.
 //!
-//! What it cannot do: choose the times, wait (two equal points in a row are passed, not stopped at), or keep the path
-//! from overshooting between points. Legs of very different duration overshoot most, because bending a long one costs
-//! little: 20 s between two equal points, with legs of 3 m in 5 s before and after, swing out by 11 m. About 10 kB in
-//! memory.
+//! What it cannot do: choose the times, or keep the path from overshooting between points. Legs of very different
+//! duration overshoot most, because bending a long one costs little. About 10 kB in memory.
 
 use super::segment::{Anchor, Segment, Suprema};
 use super::spline::{self, Derivatives, REST, Span};
@@ -143,11 +142,16 @@ fn connect(knots: &[Knot]) -> heapless::Vec<Segment, { spline::SEGMENTS }> {
     for (knot, next) in pairs() {
         let _ = spans.push(knot.span(next));
     }
-    let inner = spline::solve(&spans);
-    let ends = inner.iter().chain(core::iter::once::<&Derivatives>(&REST));
+    let mut ends: heapless::Vec<Derivatives, { spline::SEGMENTS }> = heapless::Vec::new();
+    // Between two waits, or the ends, one spline that starts and stops at rest; a wait is a run of its own.
+    for run in spans.chunk_by(|span, next| !span.waits() && !next.waits()) {
+        for end in spline::solve(run).into_iter().chain(core::iter::once(REST)) {
+            let _ = ends.push(end);
+        }
+    }
     let mut segments = heapless::Vec::new();
     let mut start = &REST;
-    for (((knot, next), span), end) in pairs().zip(&spans).zip(ends) {
+    for (((knot, next), span), end) in pairs().zip(&spans).zip(&ends) {
         let times = (knot.time_us, next.time_us);
         let _ = segments.push(Segment::new(times, knot.anchor(), span.difference, start, end));
         start = end;
