@@ -2,6 +2,7 @@
 //! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
 
 use controller_core::certificate::Certificate;
+use controller_core::gains::{GainParameters, Gains};
 use host_sim::flight::Flight;
 use host_sim::plant::attitude_from_euler;
 use host_sim::scenario::Scenario;
@@ -175,21 +176,25 @@ fn they_recover_from_upside_down_and_then_hold_still() {
             assert_within_the_certificate(name, &shown);
             let (before, last) = shown.end();
             assert!(last.position < 1e-4 && last.mrp < 1e-5, "{name} {angles:?}: {last:?}");
-            // A limit cycle would neither shrink nor be this small; what is left is single precision.
-            let still = |value: f64, earlier: f64, rounding: f64| value <= earlier.max(rounding);
-            assert!(still(last.position, before.position, 2e-6), "{name} {angles:?}: {before:?} {last:?}");
-            assert!(still(last.mrp, before.mrp, 1e-6), "{name} {angles:?}: {before:?} {last:?}");
+            // Not growing. Thrust (length of u, mass, share of a rotor, its speed, squared) and direction (the measured
+            // attitude) carry some sixteen roundings of single precision, half an EPSILON of gravity each: with them the
+            // position may rest, or wander, as far away as the position feedback takes to make up for them.
+            let k_p = f64::from(scenario.configuration.gains().k_p);
+            let rounding = 16.0 * 0.5 * f64::from(f32::EPSILON) * 9.81 / k_p;
+            assert!(last.position <= before.position.max(rounding), "{name} {angles:?}: {before:?} {last:?}");
+            assert!(last.mrp <= before.mrp.max(1e-6), "{name} {angles:?}: {before:?} {last:?}");
         }
     }
 }
 
 #[test]
-fn with_table_ones_gains_the_same_rotors_saturate_and_leave_the_certificate() {
-    let table_1 = *Scenario::paper().unwrap().configuration.gains();
+fn with_ten_times_table_ones_attitude_feedback_the_same_rotors_saturate() {
+    let table_1 = **Scenario::paper().unwrap().configuration.gains();
     for name in VEHICLES {
         let mut scenario = recovery(&vehicle(name), 10.0);
-        let certified = scenario.configuration.clone();
-        scenario.configuration = certified.with_gains(table_1).unwrap();
+        let gains = GainParameters { m_theta: 10.0 * table_1.m_theta, ..table_1 };
+        let gains = Gains::new(gains, scenario.configuration.vehicle()).unwrap();
+        scenario.configuration = scenario.configuration.with_gains(gains).unwrap();
         assert!(!Certificate::new(&scenario.configuration).unwrap().holds());
         assert!(flown(&scenario).saturated > 0, "{name}");
     }
