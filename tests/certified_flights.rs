@@ -1,4 +1,4 @@
-//! Certified configurations flown: not one sample of the wrench beyond its bound. And the other way round: configurations
+//! Certified configurations flown: not one sample of thrust, torque or rotor command beyond its bound. And the other way round: configurations
 //! that the adversary beats do go beyond their limits, so this check can fail.
 
 mod adversary_search;
@@ -9,6 +9,7 @@ use adversary_search::Domain;
 use adversary_search::configurations::{around_table_1, limited};
 use adversary_search::search::{Objective, Worst, worst};
 use body::Body;
+use controller_core::allocation::{Mixer, QuadX, Rotors};
 use controller_core::certificate::configuration::{Certified, Configuration};
 use controller_core::certificate::{Certificate, Form};
 use controller_core::controller::Controller;
@@ -23,7 +24,7 @@ use std::f64::consts::TAU;
 /// How far the limits of a certified configuration are above what it needs, relative: next to nothing.
 const MARGIN: f64 = 1e-3;
 /// Length of one flight, s.
-const DURATION: f64 = 4.0;
+const DURATION: f64 = 3.0;
 
 /// A circle with a heave, flown with a turning or swinging heading, as hard as the bounds allow.
 struct Motion {
@@ -83,6 +84,15 @@ impl Motion {
 
 /// A random configuration whose limits are what the certificate asks for, and next to nothing more.
 fn certified(rng: &mut ChaCha8Rng, spread: f32) -> Certified {
+    loop {
+        let limited = tightly_limited(rng, spread);
+        if let Some(rotors) = fitting_rotors(&limited, rng) {
+            return Certified::new(limited.with_rotors(rotors).unwrap()).unwrap();
+        }
+    }
+}
+
+fn tightly_limited(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
     let loose = around_table_1(rng, spread);
     let Form { torque, inequalities, .. } = Certificate::new(&loose).unwrap().sharp;
     let thrust_max =
@@ -90,13 +100,37 @@ fn certified(rng: &mut ChaCha8Rng, spread: f32) -> Certified {
     let thrust_max = thrust_max.map(|inequality| inequality.required).fold(0.0, f64::max);
     let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains(), *loose.bounds());
     let tight = limited(vehicle, gains, bounds, thrust_max * (1.0 + MARGIN), &(torque * (1.0 + MARGIN)));
-    let tight = if rng.random_bool(0.5) {
+    if rng.random_bool(0.5) {
         let least = vehicle.mass * (vehicle.gravity - gains.m_p - bounds.vertical_acceleration);
         tight.with_thrust_floor(least * rng.random_range(0.05..0.99)).unwrap()
     } else {
         tight
+    }
+}
+
+/// Four rotors whose ranges are what the certificate asks of them, and next to nothing more; none where the torque is too
+/// great for the weight.
+fn fitting_rotors(configuration: &Configuration, rng: &mut ChaCha8Rng) -> Option<Rotors> {
+    // Where torque takes a rotor below zero, longer levers and more drag make the torque cheaper.
+    let mut arm = random::log_uniform(rng, 0.05, 0.5);
+    let mut drag = random::log_uniform(rng, 0.02, 0.2);
+    let coefficient = 1e-5_f32;
+    let quad = |arm: f32, drag: f32, [least, greatest]: [f64; 2]| {
+        let [speed_min, speed_max] = [least, greatest].map(|thrust| (thrust / f64::from(coefficient)).sqrt() as f32);
+        let drag_coefficient = drag * coefficient;
+        Rotors::quad_x(QuadX { arm, thrust_coefficient: coefficient, drag_coefficient, speed_min, speed_max }).unwrap()
     };
-    Certified::new(tight).unwrap()
+    while arm < 10.0 {
+        let unlimited = configuration.clone().with_rotors(quad(arm, drag, [0.0, 1e5])).unwrap();
+        let demands = Certificate::new(&unlimited).unwrap().rotors;
+        let least = demands.iter().map(|report| report.demand.least).fold(f64::INFINITY, f64::min);
+        let greatest = demands.iter().map(|report| report.demand.greatest).fold(0.0, f64::max);
+        if least > 0.0 {
+            return Some(quad(arm, drag, [least * (1.0 - MARGIN), greatest * (1.0 + MARGIN)]));
+        }
+        (arm, drag) = (2.5 * arm, 2.5 * drag);
+    }
+    None
 }
 
 /// Flies and hands every wrench to `watch`.
@@ -141,21 +175,35 @@ fn in_the_worst_state(configuration: &Configuration, found: &Worst, period: f64)
 }
 
 /// The greatest share of its bounds that a flight uses; more than one is beyond.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Usage {
     thrust: f64,
     torque: Vector3<f64>,
+    rotor: f64,
 }
 
 impl Usage {
-    fn watch(&mut self, wrench: &Wrench, form: &Form) {
+    fn watch(&mut self, wrench: &Wrench, certified: &Certified) {
+        let Certificate { sharp, rotors, .. } = certified.certificate();
         let thrust = f64::from(wrench.thrust);
-        self.thrust = self.thrust.max(thrust / form.thrust.greatest).max(form.thrust.least / thrust);
-        self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&form.torque));
+        self.thrust = self.thrust.max(thrust / sharp.thrust.greatest).max(sharp.thrust.least / thrust);
+        self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
+
+        let allocation = Mixer::new(certified.configuration().rotors().unwrap()).allocate(wrench).unwrap();
+        assert!(allocation.is_exact(), "{allocation:?}");
+        for (thrust, report) in allocation.thrusts.iter().zip(rotors) {
+            let thrust = f64::from(*thrust);
+            self.rotor = self.rotor.max(thrust / report.demand.greatest).max(report.demand.least / thrust);
+        }
+    }
+
+    fn sup(&self, other: &Self) -> Self {
+        let (thrust, rotor) = (self.thrust.max(other.thrust), self.rotor.max(other.rotor));
+        Self { thrust, torque: self.torque.sup(&other.torque), rotor }
     }
 
     fn greatest(&self) -> f64 {
-        self.thrust.max(self.torque.max())
+        self.thrust.max(self.torque.max()).max(self.rotor)
     }
 }
 
@@ -166,7 +214,6 @@ fn two_hundred_certified_configurations_never_leave_their_bounds() {
     for number in 0..200 {
         let certified = certified(&mut rng, if number % 2 == 0 { 2.0 } else { 6.0 });
         let configuration = certified.configuration();
-        let form = &certified.certificate().sharp;
         let period = f64::from(random::log_uniform(&mut rng, 1e-3, 2e-2));
         let motion = Motion::within(configuration.bounds(), &mut rng);
         assert!((0..100).all(|i| configuration.bounds().contain(&motion.at(0.07 * f64::from(i)), 1e-5)));
@@ -181,7 +228,7 @@ fn two_hundred_certified_configurations_never_leave_their_bounds() {
                 |t| motion.at(t),
                 period,
                 |wrench| {
-                    usage.watch(wrench, form);
+                    usage.watch(wrench, &certified);
                 },
             );
         }
@@ -189,11 +236,10 @@ fn two_hundred_certified_configurations_never_leave_their_bounds() {
         let found = worst(configuration, Domain::Reachable, Objective::Torque(number % 3), 2, &mut rng);
         let (controller, body) = in_the_worst_state(configuration, &found, period);
         let reference = found.situation.reference;
-        fly(configuration, controller, body, |_| reference, period, |wrench| usage.watch(wrench, form));
+        fly(configuration, controller, body, |_| reference, period, |wrench| usage.watch(wrench, &certified));
 
-        assert!(usage.greatest() <= 1.0, "configuration {number}: {usage:?} of {form:?} for {configuration:?}");
-        closest.thrust = closest.thrust.max(usage.thrust);
-        closest.torque = closest.torque.sup(&usage.torque);
+        assert!(usage.greatest() <= 1.0, "configuration {number}: {usage:?} of {:?}", certified.certificate());
+        closest = closest.sup(&usage);
     }
     println!("closest to the bounds: {closest:?}");
 }

@@ -5,9 +5,11 @@ mod random;
 
 use adversary_search::configurations::around_table_1;
 use adversary_search::{COORDINATES, Domain, Situation};
-use controller_core::certificate::Certificate;
 use controller_core::certificate::reachable::{Reachable, half_l1_norm};
+use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate};
+use controller_core::gains::{GainParameters, Gains};
 use controller_core::mrp;
+use controller_core::position::{FilterState, FilterTransition};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
@@ -293,4 +295,35 @@ fn every_step_of_the_derivation_gains() {
     println!("over cells, every quantity at its worst end: {sharp:.2}");
     // What the cells cost: they bound the supremum that the grid samples, from the other side.
     assert!(sharp >= before && sharp <= 1.02 * before, "{sharp} over cells, {before} on the grid");
+}
+
+#[test]
+fn rounding_takes_the_laws_own_filters_hardly_beyond_step_1() {
+    // Rounding adds up over the settling time, so it counts most at fast ticks and slow filters.
+    let mut rng = random::generator(44);
+    let mut furthest = 0.0_f64;
+    for _ in 0..300 {
+        let period = random::log_uniform(&mut rng, 2.5e-4, 2e-2);
+        let [k_f, k_s] = [(); 2].map(|()| random::log_uniform(&mut rng, 0.2, 40.0));
+        let parameters = GainParameters { k_f, k_s, ..random::PAPER_GAINS };
+        let gains = Gains::new(parameters, &random::paper_vehicle()).unwrap();
+        let transition = FilterTransition::new(&gains, period).unwrap();
+        let (k_f, k_s, level) = (f64::from(k_f), f64::from(k_s), f64::from(gains.m_p));
+        let half_l1 = half_l1_norm(k_f, k_s);
+        let bounds = (2.0 * half_l1 * level, 2.0 * k_f * level * (k_s + k_f * half_l1 * half_l1));
+
+        let settling = (20.0 / (k_f.min(k_s) * f64::from(period))) as usize;
+        let mut filter = FilterState::ZERO;
+        for ubar in [gains.m_p, -gains.m_p, gains.m_p] {
+            for _ in 0..settling {
+                filter = transition.advance(&filter, &Vector3::repeat(ubar), gains.m_p);
+                let (u_f, u_s) = (f64::from(filter.filtered.x), f64::from(filter.intermediate.x));
+                let second = |input: f64| (k_f * (k_f * (u_f - u_s) - k_s * (u_s - input))).abs();
+                let greatest = second(level).max(second(-level));
+                furthest = furthest.max((u_f - u_s).abs() / bounds.0 - 1.0).max(greatest / bounds.1 - 1.0);
+            }
+        }
+    }
+    println!("beyond step 1, relative: {furthest:.1e}");
+    assert!(furthest < 0.2 * ARITHMETIC_ALLOWANCE, "{furthest:e}");
 }

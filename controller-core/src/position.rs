@@ -38,12 +38,12 @@ impl FilterState {
 /// The exact solution of the filters over one period with their input held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterTransition {
-    /// Weight of u_f in the next u_f: e^(-k_f h).
-    filtered: f32,
-    /// Weight of u_s in the next u_f: k_f (e^(-k_f h) - e^(-k_s h)) / (k_s - k_f).
-    intermediate: f32,
-    /// Weight of u_s in the next u_s: e^(-k_s h).
-    memory: f32,
+    /// Weight of u_s - u_f in u_f's step: k_f (e^(-k_f h) - e^(-k_s h)) / (k_s - k_f).
+    towards_intermediate: f32,
+    /// Weight of ubar_p - u_f in u_f's step: what is left of 1 - e^(-k_f h).
+    towards_input: f32,
+    /// Weight of ubar_p - u_s in u_s' step: 1 - e^(-k_s h).
+    intermediate_towards_input: f32,
 }
 
 impl FilterTransition {
@@ -59,25 +59,32 @@ impl FilterTransition {
         let longest = Self::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
         let (k_f, k_s, h) = (f64::from(gains.k_f), f64::from(gains.k_s), f64::from(period));
-        let (slow, fast) = (math::exp(-k_f * h), math::exp(-k_s * h));
+        let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
         let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
-        Ok(Self { filtered: slow as f32, intermediate: (k_f * h * mixed) as f32, memory: fast as f32 })
+        let towards_intermediate = k_f * h * mixed;
+        Ok(Self {
+            towards_intermediate: towards_intermediate as f32,
+            towards_input: (-math::exp_m1(-k_f * h) - towards_intermediate) as f32,
+            intermediate_towards_input: -math::exp_m1(-k_s * h) as f32,
+        })
     }
 
     /// The filters' states one period later, with `feedback` held. Every component stays within ±`level`.
     #[inline]
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
-        let to_input = 1.0 - self.filtered - self.intermediate;
-        // The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the level, to the bit.
+        // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
+        // move the filters' bandwidth. The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the
+        // level, to the bit.
         let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
-            (self.filtered * u_f + self.intermediate * u_s + to_input * ubar).clamp(-level, level)
+            let step = self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f);
+            (u_f + step).clamp(-level, level)
         });
         let intermediate = state
             .intermediate
-            .zip_map(feedback, |u_s, ubar| (self.memory * u_s + (1.0 - self.memory) * ubar).clamp(-level, level));
+            .zip_map(feedback, |u_s, ubar| (u_s + self.intermediate_towards_input * (ubar - u_s)).clamp(-level, level));
         FilterState { filtered, intermediate }
     }
 }
