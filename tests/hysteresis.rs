@@ -28,7 +28,7 @@ fn normal(rng: &mut ChaCha8Rng) -> Vector3<f64> {
 /// How often m* changes in each of the flights of two seconds from exact half turns.
 fn changes_of_sign(delta: f32) -> Vec<u32> {
     let vehicle = random::paper_vehicle();
-    let gains = Gains::new(GainParameters { delta, ..random::PAPER_GAINS }, &vehicle).unwrap();
+    let gains = Gains::new(GainParameters { delta, ..GainParameters::TABLE_1 }, &vehicle).unwrap();
     let hover = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap();
     let reference = hover.at(0);
     let mut rng = random::generator(10);
@@ -54,7 +54,7 @@ fn changes_of_sign(delta: f32) -> Vec<u32> {
 
 #[test]
 fn noise_at_a_half_turn_changes_the_lift_at_most_once_a_flight() {
-    let changes = changes_of_sign(random::PAPER_GAINS.delta);
+    let changes = changes_of_sign(GainParameters::TABLE_1.delta);
     println!("delta = 0.02: {} changes in {FLIGHTS} flights", changes.iter().sum::<u32>());
     assert!(changes.iter().all(|&changes| changes <= 1), "{changes:?}");
 }

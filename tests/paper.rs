@@ -1,6 +1,7 @@
 //! The paper's experiment, flown: every figure that Section VI claims, and the sharper ones this project aims at.
 
-use host_sim::claims::{Flown, all_hold, claims, table, theorem_1_thrust};
+use controller_core::certificate::Certificate;
+use host_sim::claims::{Flown, all_hold, claims, table};
 use host_sim::flight::Flight;
 use host_sim::scenario::Scenario;
 
@@ -65,8 +66,8 @@ fn every_scenario_of_the_collection_flies_within_its_claims() {
         let claims = claims(&scenario, &flown);
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
         assert!(flown.steady_position_error < 0.01, "{}: {} m", scenario.name, flown.steady_position_error);
-        let (least, greatest) = theorem_1_thrust(&scenario);
-        assert!(least > 0.0 && greatest < f64::from(scenario.configuration.limits().thrust_max));
+        let thrust = Certificate::new(&scenario.configuration).unwrap().sharp.thrust;
+        assert!(thrust.least > 0.0 && thrust.greatest < f64::from(scenario.configuration.limits().thrust_max));
         names.push(scenario.name);
     }
     for name in ["paper", "hover", "circle", "waypoints"] {

@@ -305,7 +305,7 @@ fn rounding_takes_the_laws_own_filters_hardly_beyond_step_1() {
     for _ in 0..300 {
         let period = random::log_uniform(&mut rng, 2.5e-4, 2e-2);
         let [k_f, k_s] = [(); 2].map(|()| random::log_uniform(&mut rng, 0.2, 40.0));
-        let parameters = GainParameters { k_f, k_s, ..random::PAPER_GAINS };
+        let parameters = GainParameters { k_f, k_s, ..GainParameters::TABLE_1 };
         let gains = Gains::new(parameters, &random::paper_vehicle()).unwrap();
         let transition = FilterTransition::new(&gains, period).unwrap();
         let (k_f, k_s, level) = (f64::from(k_f), f64::from(k_s), f64::from(gains.m_p));

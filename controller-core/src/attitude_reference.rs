@@ -132,7 +132,7 @@ fn from_half_angles(yaw: (f32, f32), pitch: (f32, f32), roll: (f32, f32)) -> Qua
         cy * sp * cr + sy * cp * sr,
         sy * cp * cr - cy * sp * sr,
     );
-    product / math::sqrt(product.norm_squared())
+    product * (1.0 / math::sqrt(product.norm_squared()))
 }
 
 #[cfg(test)]

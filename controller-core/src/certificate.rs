@@ -211,19 +211,6 @@ mod tests {
         let vehicle = Vehicle::new(VehicleParameters { mass: 0.46, inertia, gravity: 9.81 }).unwrap();
         let torque_max = Vector3::repeat(0.5);
         let limits = Limits::new(LimitParameters { thrust_max: 7.0, torque_max }, &vehicle).unwrap();
-        let table_1 = GainParameters {
-            k_p: 9.0,
-            k_v: 6.0,
-            k_f: 2.0,
-            k_s: 20.0,
-            k_theta: 100.0,
-            k_omega: 0.1,
-            m_p: 2.0,
-            m_theta: 0.206,
-            m_omega: 0.045,
-            delta: 0.02,
-            alpha: 0.25,
-        };
         let f = 0.418_879_02_f32;
         let swing = core::f32::consts::PI * f;
         let bounds = ReferenceBounds {
@@ -234,7 +221,7 @@ mod tests {
             heading_rate: swing,
             heading_second_derivative: swing * swing,
         };
-        Configuration::new(vehicle, limits, Gains::new(table_1, &vehicle).unwrap(), bounds).unwrap()
+        Configuration::new(vehicle, limits, Gains::new(GainParameters::TABLE_1, &vehicle).unwrap(), bounds).unwrap()
     }
 
     #[test]

@@ -43,7 +43,7 @@ use crate::certificate::configuration::Certified;
 use crate::error::{InputError, ParameterError};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
-use crate::position::{self, FilterState, FilterTransition};
+use crate::position::{FilterState, FilterTransition, PositionLaw};
 use crate::projection::projected_thrust;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -108,6 +108,7 @@ pub struct Diagnostics {
 pub struct Controller {
     vehicle: Vehicle,
     gains: Gains,
+    position_law: PositionLaw,
     transition: FilterTransition,
     switching_scalar: f32,
     thrust_floor: Option<f32>,
@@ -142,7 +143,8 @@ impl Controller {
     fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(&gains, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
-        Ok(Self { vehicle, gains, transition, switching_scalar, thrust_floor, memory: Memory::RESET })
+        let position_law = PositionLaw::new(&gains, vehicle.gravity);
+        Ok(Self { vehicle, gains, position_law, transition, switching_scalar, thrust_floor, memory: Memory::RESET })
     }
 
     /// Changes the time by which the next steps advance the filters, s.
@@ -183,7 +185,7 @@ impl Controller {
             return Err(InputError::FallsTooFast);
         }
 
-        let command = position::command(&self.gains, self.vehicle.gravity, state, reference, &self.memory.filter);
+        let command = self.position_law.command(state, reference, &self.memory.filter);
         let desired = attitude_reference(
             &command.acceleration_command,
             &command.jerk_command,

@@ -31,6 +31,23 @@ pub struct GainParameters {
     pub alpha: f32,
 }
 
+impl GainParameters {
+    /// The paper's Table I.
+    pub const TABLE_1: Self = Self {
+        k_p: 9.0,
+        k_v: 6.0,
+        k_f: 2.0,
+        k_s: 20.0,
+        k_theta: 100.0,
+        k_omega: 0.1,
+        m_p: 2.0,
+        m_theta: 0.206,
+        m_omega: 0.045,
+        delta: 0.02,
+        alpha: 0.25,
+    };
+}
+
 /// Gains for which the law is defined. Reads like its [`GainParameters`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains(GainParameters);

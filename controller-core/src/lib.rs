@@ -10,10 +10,10 @@
 //! Once per control tick, from left to right:
 //!
 //! ```text
-//!                                            State ──┐
-//! setpoints ─> governor ─> Reference ────────────────┴> position ─> attitude_reference ─> path_lifting ─> attitude ─> Wrench
-//!     or a Trajectory (hover, harmonic, waypoints) ──┘                                                         │
-//!                                                                          rotor commands <─ allocation <──────┘
+//!                                   State ─┐
+//! setpoints ─> governor ─┐                 ├─> position ─> attitude_reference ─> path_lifting ─> attitude ─> Wrench
+//! hover, harmonic, … ────┴─> Reference ────┘                                                                   │
+//!                                                                  rotor commands <─ allocation <──────────────┘
 //! ```
 //!
 //! and once, before flight:
@@ -112,12 +112,17 @@
 //! | Table I is for continuous time and ideal actuators | at 100 Hz it survives 8.5 ms of rotor lag, not a sample of delay; `host_sim::sampled_loop` says so for any gains (docs/sampled-loop.md) | `host_sim::sampled_loop` | host-sim/tests/sampled_loop/table_one.rs: `rotor_lag_costs_the_roll_loop_its_stability_at_8_5_milliseconds`, `no_attitude_loop_survives_a_sample_of_delay` |
 //! | the filters are differential equations | their input is held between ticks, so they are advanced exactly, not by Euler steps | [`position::FilterTransition::advance`] | tests/independent_law.rs: `memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks` |
 //! | references lie in Omega_r by assumption | setpoints become such references in the governor | [`governor::Governor`] | tests/governor_campaign.rs: `a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive` |
-//! | the proof for V_2 has k_theta where the fall across jumps needs gamma_theta, and its flow part drops a term in Delta | V_2 is claimed to fall for bounded body-rate errors, in continuous time, with a correspondingly larger a / b; with held inputs V_1 and V_2 are not monotone | proof only | tests/lyapunov/attitude.rs, tests/lyapunov/held_inputs.rs: all their tests |
+//! | the proof for V_2 has k_theta where the fall across jumps needs gamma_theta, and its flow part drops a term in Delta | V_2 is claimed to fall for bounded body-rate errors, in continuous time, with an a / b that allows for the dropped term; with held inputs V_2 is not monotone | proof only | tests/lyapunov/attitude.rs, tests/lyapunov/held_inputs.rs: all their tests |
 //! | T = m \|u\| at every attitude | the same; with a thrust floor, an option, T = max(m u . R e3, floor) | [`projection`] | projection.rs: `the_perturbation_is_never_larger_than_the_papers`, `upside_down_it_commands_the_floor` |
 //! | its vehicle's inertia exceeds the triangle inequality of rigid bodies by 3.1 % | moments are accepted up to [`vehicle::Vehicle::INERTIA_ALLOWANCE`] beyond it | [`vehicle::Vehicle::new`] | tests/cli.rs: `malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output` |
 #![no_std]
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
+// A tick has no way to panic; nor has configuration.
+#![cfg_attr(
+    not(test),
+    deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)
+)]
 
 pub mod allocation;
 pub mod attitude;

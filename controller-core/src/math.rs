@@ -71,6 +71,19 @@ pub fn tanh(x: f32) -> f32 {
     (2.0 * a * q / (a * a + q * q)).clamp(-1.0, 1.0)
 }
 
+/// `x` held within ±`level`. Unlike the standard clamp it cannot panic, whatever the level.
+#[inline]
+#[must_use]
+pub fn limit(x: f32, level: f32) -> f32 {
+    if x > level {
+        level
+    } else if x < -level {
+        -level
+    } else {
+        x
+    }
+}
+
 /// e^x, for configuration time (not used in a tick).
 #[must_use]
 pub fn exp(x: f64) -> f64 {

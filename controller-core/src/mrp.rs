@@ -26,7 +26,7 @@ pub fn rotation(q: &Quaternion<f32>) -> Matrix3<f32> {
 #[inline]
 #[must_use]
 pub fn from_quaternion(q: &Quaternion<f32>) -> Vector3<f32> {
-    q.imag() / (1.0 + q.w)
+    q.imag() * (1.0 / (1.0 + q.w))
 }
 
 /// The shadow parameters of the same rotation, Upsilon(theta), theta not zero.

@@ -15,7 +15,7 @@
 //! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
 
 use crate::error::{ParameterError, Reason, require, require_positive};
-use crate::gains::Gains;
+use crate::gains::{GainParameters, Gains};
 use crate::math;
 use crate::reference::Reference;
 use crate::state::State;
@@ -76,17 +76,35 @@ impl FilterTransition {
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
-        // move the filters' bandwidth. The clamp does nothing in exact arithmetic; it keeps rounding from leaking past the
+        // move the filters' bandwidth. The limit does nothing in exact arithmetic; it keeps rounding from leaking past the
         // level, to the bit.
         let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
             let step = self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f);
-            (u_f + step).clamp(-level, level)
+            math::limit(u_f + step, level)
         });
         let intermediate = state
             .intermediate
-            .zip_map(feedback, |u_s, ubar| (u_s + self.intermediate_towards_input * (ubar - u_s)).clamp(-level, level));
+            .zip_map(feedback, |u_s, ubar| math::limit(u_s + self.intermediate_towards_input * (ubar - u_s), level));
         FilterState { filtered, intermediate }
     }
+}
+
+/// The position law's constants, with the reciprocals a tick would otherwise divide for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionLaw {
+    k_p: f32,
+    k_v: f32,
+    k_f: f32,
+    k_s: f32,
+    m_p: f32,
+    /// 1 / k_f, s.
+    second_lag: f32,
+    /// 1 / k_s, s.
+    first_lag: f32,
+    /// 1 / M_p, s^2/m.
+    per_level: f32,
+    /// g, m/s^2.
+    gravity: f32,
 }
 
 /// What the position law asks of the attitude, with the quantities it went through.
@@ -110,36 +128,38 @@ pub struct PositionCommand {
     pub snap_command: Vector3<f32>,
 }
 
-/// Evaluates the law at one instant; the filters are read, not advanced.
-#[inline]
-#[must_use]
-pub fn command(
-    gains: &Gains,
-    gravity: f32,
-    state: &State,
-    reference: &Reference,
-    filter: &FilterState,
-) -> PositionCommand {
-    let (k_f, k_s, m_p) = (gains.k_f, gains.k_s, gains.m_p);
-    let FilterState { filtered: u_f, intermediate: u_s } = filter;
+impl PositionLaw {
+    /// For `gains` under `gravity`, m/s^2.
+    #[must_use]
+    pub fn new(gains: &Gains, gravity: f32) -> Self {
+        let GainParameters { k_p, k_v, k_f, k_s, m_p, .. } = **gains;
+        Self { k_p, k_v, k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, per_level: 1.0 / m_p, gravity }
+    }
 
-    let position_error = state.position - reference.position;
-    let velocity_error = state.velocity - reference.velocity;
-    let z_1 = position_error + velocity_error * (1.0 / k_f + 1.0 / k_s) + u_f * (1.0 / (k_s * k_f));
-    let z_2 = velocity_error + u_f * (1.0 / k_f) + u_s * (1.0 / k_s);
-    let per_level = 1.0 / m_p;
-    let feedback = (z_1 * gains.k_p + z_2 * gains.k_v).map(|s| -m_p * math::tanh(s * per_level));
+    /// Evaluates the law at one instant; the filters are read, not advanced.
+    #[inline]
+    #[must_use]
+    pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
+        let Self { k_f, k_s, m_p, second_lag, first_lag, per_level, .. } = *self;
+        let FilterState { filtered: u_f, intermediate: u_s } = filter;
 
-    let filtered_rate = (u_s - u_f) * k_f;
-    let intermediate_rate = (feedback - u_s) * k_s;
-    PositionCommand {
-        position_error,
-        velocity_error,
-        z_1,
-        z_2,
-        feedback,
-        acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, gravity),
-        jerk_command: filtered_rate + reference.jerk,
-        snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+        let position_error = state.position - reference.position;
+        let velocity_error = state.velocity - reference.velocity;
+        let z_1 = position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag);
+        let z_2 = velocity_error + u_f * second_lag + u_s * first_lag;
+        let feedback = (z_1 * self.k_p + z_2 * self.k_v).map(|s| -m_p * math::tanh(s * per_level));
+
+        let filtered_rate = (u_s - u_f) * k_f;
+        let intermediate_rate = (feedback - u_s) * k_s;
+        PositionCommand {
+            position_error,
+            velocity_error,
+            z_1,
+            z_2,
+            feedback,
+            acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, self.gravity),
+            jerk_command: filtered_rate + reference.jerk,
+            snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+        }
     }
 }

@@ -46,7 +46,7 @@ impl State {
         let field = "state.attitude";
         let length = math::sqrt(self.attitude.norm_squared());
         if (length - 1.0).abs() <= UNIT_TOLERANCE {
-            Ok(self.attitude / length)
+            Ok(self.attitude * (1.0 / length))
         } else if self.attitude.coords.iter().all(|component| component.is_finite()) {
             Err(InputError::NotARotation { field })
         } else {

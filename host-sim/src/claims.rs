@@ -1,6 +1,7 @@
 //! What a flight claims, what it showed, and whether the two agree.
 //!
-//! Every flight claims Theorem 1's thrust interval, the file's limits and the box of the filters:
+//! Every flight claims Theorem 1's thrust interval, the file's limits, the box of the filters, and the sharp bounds of its
+//! certificate on thrust, torques and rotors, which hold whether or not they fit the limits:
 //!
 //! ```text
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
@@ -12,6 +13,7 @@
 use crate::flight::Tick;
 use crate::scenario::Scenario;
 use crate::table::{aligned, short};
+use controller_core::certificate::{Certificate, Form};
 use std::fmt::Write;
 
 /// Section VI: thrust, N.
@@ -22,8 +24,8 @@ pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
 pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
-/// Relative rounding of the law's thrust: some ten operations in single precision.
-const ROUNDING: f64 = 1e-6;
+/// Extremes of no value at all.
+const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// The extremes of a flight, gathered tick by tick.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +39,8 @@ pub struct Flown {
     pub thrust: (f64, f64),
     /// Greatest commanded |torque| about each body axis, N m.
     pub torque: [f64; 3],
+    /// Least and greatest thrust commanded of each rotor, N; empty without rotors.
+    pub rotors: Vec<(f64, f64)>,
     /// Greatest component of u_f and u_s, m/s^2.
     pub filter: f64,
     /// Ticks at which the plant clipped a command.
@@ -74,8 +78,9 @@ impl Flown {
             last_sign: None,
             start_height: None,
             ticks: 0,
-            thrust: (f64::INFINITY, f64::NEG_INFINITY),
+            thrust: NOTHING_YET,
             torque: [0.0; 3],
+            rotors: Vec::new(),
             filter: 0.0,
             clipped: 0,
             lift_changes: 0,
@@ -95,6 +100,12 @@ impl Flown {
             *greatest = greatest.max(f64::from(torque.abs()));
         }
         self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
+        // While the first command is on its way there is none.
+        self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), NOTHING_YET);
+        for (extremes, thrust) in self.rotors.iter_mut().zip(&tick.rotor_thrusts) {
+            let thrust = f64::from(*thrust);
+            *extremes = (extremes.0.min(thrust), extremes.1.max(thrust));
+        }
         self.clipped += u64::from(tick.clipping.any());
         self.lift_changes += u64::from(self.last_sign.is_some_and(|sign| sign != diagnostics.lift_sign));
         self.last_sign = Some(diagnostics.lift_sign);
@@ -108,17 +119,11 @@ impl Flown {
     }
 }
 
-/// Theorem 1's least and greatest thrust, N, for the scenario's vehicle, gains and reference; with a thrust floor, that is
-/// the least.
+/// Theorem 1's least and greatest thrust, N; with a thrust floor, that is the least. None where the certificate is undefined.
 #[must_use]
-pub fn theorem_1_thrust(scenario: &Scenario) -> (f64, f64) {
-    let bounds = scenario.trajectory.bounds();
-    let configuration = &scenario.configuration;
-    let (mass, gravity) = (f64::from(configuration.vehicle().mass), f64::from(configuration.vehicle().gravity));
-    let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
-    let m_p = f64::from(configuration.gains().m_p);
-    let least = configuration.thrust_floor().map_or(mass * (gravity - m_p - vertical), f64::from);
-    (least, mass * (3.0_f64.sqrt() * m_p + horizontal.hypot(vertical + gravity)))
+pub fn theorem_1_thrust(scenario: &Scenario) -> Option<(f64, f64)> {
+    let thrust = Certificate::new(&scenario.configuration).ok()?.printed.thrust;
+    Some((thrust.least, thrust.greatest))
 }
 
 /// The claims about a flight of `scenario` that showed `flown`.
@@ -126,54 +131,73 @@ pub fn theorem_1_thrust(scenario: &Scenario) -> (f64, f64) {
 pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
     let published = scenario.is_papers();
     let steady = format!("steady state (last {} s)", short(scenario.timing.duration() / 4.0));
-    let mut claims = Vec::new();
-    let mut at_most = |what: String, value: f64, limit: Option<f64>, unit: &str| {
-        claims.push(Claim {
-            claim: what,
-            required: limit.map_or(String::new(), |limit| format!("<= {}{unit}", short(limit))),
-            flown: format!("{}{unit}", short(value)),
-            holds: limit.map(|limit| value <= limit),
-        });
-    };
-    at_most(
-        format!("position error, {steady}"),
-        flown.steady_position_error,
-        published.then_some(PUBLISHED_POSITION_ERROR),
-        " m",
-    );
-    at_most(format!("MRP error, {steady}"), flown.steady_mrp_error, published.then_some(PUBLISHED_MRP_ERROR), "");
-    for (axis, (value, limit)) in ["x", "y", "z"].into_iter().zip(flown.torque.into_iter().zip(PUBLISHED_TORQUE)) {
-        if published {
-            at_most(format!("|torque {axis}|, published bound"), value, Some(limit), " N m");
-        }
-    }
-    let limits = scenario.configuration.limits().torque_max;
-    for (axis, (value, limit)) in ["x", "y", "z"].into_iter().zip(flown.torque.into_iter().zip(limits.iter())) {
-        at_most(format!("|torque {axis}|, vehicle's limit"), value, Some(f64::from(*limit)), " N m");
-    }
-    at_most(
-        "thrust, vehicle's limit".into(),
-        flown.thrust.1,
-        Some(f64::from(scenario.configuration.limits().thrust_max)),
-        " N",
-    );
-    at_most(
-        "|u_f|, |u_s| per axis, M_p".into(),
-        flown.filter,
-        Some(f64::from(scenario.configuration.gains().m_p)),
-        " m/s^2",
-    );
-    at_most("ticks clipped by the plant".into(), flown.clipped as f64, Some(0.0), "");
-    at_most("changes of m*".into(), flown.lift_changes as f64, None, "");
-    at_most("height lost".into(), flown.height_lost, None, " m");
-
-    let (least, greatest) = theorem_1_thrust(scenario);
-    let theorem = within("thrust, Theorem 1", flown.thrust, (least, greatest), ROUNDING);
-    claims.insert(2, theorem);
+    let mut claims = vec![
+        at_most(
+            format!("position error, {steady}"),
+            flown.steady_position_error,
+            published.then_some(PUBLISHED_POSITION_ERROR),
+            " m",
+        ),
+        at_most(format!("MRP error, {steady}"), flown.steady_mrp_error, published.then_some(PUBLISHED_MRP_ERROR), ""),
+    ];
     if published {
-        claims.insert(2, within("thrust, published bound", flown.thrust, PUBLISHED_THRUST, 0.0));
+        claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST));
+        claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE));
+    }
+    if let Ok(certificate) = Certificate::new(&scenario.configuration) {
+        claims.extend(bounds(&certificate, flown));
+    }
+    let limits = scenario.configuration.limits();
+    let thrust_max = Some(f64::from(limits.thrust_max));
+    claims.push(at_most("thrust, vehicle's limit".to_owned(), flown.thrust.1, thrust_max, " N"));
+    claims.extend(torques("vehicle's limit", &flown.torque, limits.torque_max.map(f64::from).as_ref()));
+    let m_p = f64::from(scenario.configuration.gains().m_p);
+    claims.extend([
+        at_most("|u_f|, |u_s| per axis, M_p".to_owned(), flown.filter, Some(m_p), " m/s^2"),
+        at_most("ticks with a clipped command".to_owned(), flown.clipped as f64, Some(0.0), ""),
+        at_most("changes of m*".to_owned(), flown.lift_changes as f64, None, ""),
+        at_most("height lost".to_owned(), flown.height_lost, None, " m"),
+    ]);
+    claims
+}
+
+/// What the certificate bounds. Its bounds hold for every configuration, whether or not they fit the limits.
+fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
+    let interval = |form: &Form| (form.thrust.least, form.thrust.greatest);
+    let (printed, sharp) = (&certificate.printed, &certificate.sharp);
+    let mut claims = vec![
+        within("thrust, Theorem 1".to_owned(), flown.thrust, interval(printed)),
+        within("thrust, sharp bound".to_owned(), flown.thrust, interval(sharp)),
+    ];
+    claims.extend(torques("sharp bound", &flown.torque, sharp.torque.as_ref()));
+    for (report, flown) in certificate.rotors.iter().zip(&flown.rotors) {
+        let demand = &report.demand;
+        claims.push(within(format!("rotor {}, sharp bound", demand.rotor), *flown, (demand.least, demand.greatest)));
     }
     claims
+}
+
+fn torques(what: &str, flown: &[f64; 3], limits: &[f64; 3]) -> Vec<Claim> {
+    let axes = ["x", "y", "z"].into_iter().zip(flown.iter().zip(limits));
+    let claim = |(axis, (value, limit)): (&str, (&f64, &f64))| {
+        at_most(format!("|torque {axis}|, {what}"), *value, Some(*limit), " N m")
+    };
+    axes.map(claim).collect()
+}
+
+fn at_most(claim: String, value: f64, limit: Option<f64>, unit: &str) -> Claim {
+    Claim {
+        claim,
+        required: limit.map_or(String::new(), |limit| format!("<= {}{unit}", short(limit))),
+        flown: format!("{}{unit}", short(value)),
+        holds: limit.map(|limit| value <= limit),
+    }
+}
+
+fn within(claim: String, flown: (f64, f64), required: (f64, f64)) -> Claim {
+    let interval = |(least, greatest): (f64, f64)| format!("[{}, {}] N", short(least), short(greatest));
+    let holds = flown.0 >= required.0 && flown.1 <= required.1;
+    Claim { claim, required: interval(required), flown: interval(flown), holds: Some(holds) }
 }
 
 /// Whether every claim that has a verdict holds.
@@ -210,12 +234,6 @@ fn verdict(claim: &Claim) -> &'static str {
     }
 }
 
-fn within(what: &str, flown: (f64, f64), required: (f64, f64), rounding: f64) -> Claim {
-    let holds = flown.0 >= required.0 * (1.0 - rounding) && flown.1 <= required.1 * (1.0 + rounding);
-    let interval = |(least, greatest): (f64, f64)| format!("[{}, {}] N", short(least), short(greatest));
-    Claim { claim: what.into(), required: interval(required), flown: interval(flown), holds: Some(holds) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,7 +250,7 @@ mod tests {
 
     #[test]
     fn theorem_1_gives_the_papers_published_interval() {
-        let (least, greatest) = theorem_1_thrust(&Scenario::paper().unwrap());
+        let (least, greatest) = theorem_1_thrust(&Scenario::paper().unwrap()).unwrap();
         assert!((least - 3.51).abs() < 0.005 && (greatest - 6.19).abs() < 0.005, "{least} {greatest}");
     }
 
@@ -278,7 +296,7 @@ mod tests {
         assert!(seen.clipped > 100, "{seen:?}");
         let failed: Vec<String> =
             claims(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
-        assert_eq!(failed, ["thrust, vehicle's limit", "ticks clipped by the plant"]);
+        assert_eq!(failed, ["thrust, vehicle's limit", "ticks with a clipped command"]);
     }
 
     #[test]

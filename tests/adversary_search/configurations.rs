@@ -50,7 +50,7 @@ pub fn around_table_1(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
     let vehicle = Vehicle::new(VehicleParameters { mass, inertia, gravity: 9.81 }).unwrap();
 
     let mut around = |value: f32| value * random::log_uniform(rng, 1.0 / spread, spread);
-    let table = random::PAPER_GAINS;
+    let table = GainParameters::TABLE_1;
     let parameters = GainParameters {
         k_p: around(table.k_p),
         k_v: around(table.k_v),

@@ -23,24 +23,9 @@ pub fn paper_vehicle() -> Vehicle {
     Vehicle::new(VehicleParameters { mass: 0.460, inertia, gravity: 9.81 }).unwrap()
 }
 
-/// The gains of the paper's Table I.
-pub const PAPER_GAINS: GainParameters = GainParameters {
-    k_p: 9.0,
-    k_v: 6.0,
-    k_f: 2.0,
-    k_s: 20.0,
-    k_theta: 100.0,
-    k_omega: 0.1,
-    m_p: 2.0,
-    m_theta: 0.206,
-    m_omega: 0.045,
-    delta: 0.02,
-    alpha: 0.25,
-};
-
 /// Table I, validated for `vehicle`.
 pub fn paper_gains(vehicle: &Vehicle) -> Gains {
-    Gains::new(PAPER_GAINS, vehicle).unwrap()
+    Gains::new(GainParameters::TABLE_1, vehicle).unwrap()
 }
 
 /// From palm-sized to agricultural, on the Moon or on Jupiter.

@@ -126,7 +126,7 @@ impl Tilt {
         let flattened = self.sin_least * horizontal * direction.cos_least;
         let square = horizontal * horizontal + climbing * climbing - flattened * flattened
             + 2.0 * self.cos_greatest * horizontal * direction.cos_greatest * climbing;
-        let length = math::sqrt_f64(square) / self.magnitude;
+        let length = math::sqrt_f64(square.max(0.0)) / self.magnitude;
         Tangential { length, mixed: 0.5 * (length + horizontal * direction.sin_greatest / self.magnitude) }
     }
 
@@ -163,7 +163,7 @@ impl Tilt {
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
 fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
-    let x = (0.5 * total).clamp(least, most);
+    let x = (0.5 * total).max(least).min(most);
     math::sqrt_f64(x * (total - x).max(0.0))
 }
 

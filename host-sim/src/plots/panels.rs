@@ -72,19 +72,21 @@ pub fn mrp_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
 /// Thrust between the published bounds (the paper's scenario) or Theorem 1's (any other), and the vehicle's limit.
 #[must_use]
 pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
-    let (name, (least, greatest)) =
-        if scenario.is_papers() { ("published", PUBLISHED_THRUST) } else { ("Theorem 1", theorem_1_thrust(scenario)) };
+    let (name, interval) = if scenario.is_papers() {
+        ("published", Some(PUBLISHED_THRUST))
+    } else {
+        ("Theorem 1", theorem_1_thrust(scenario))
+    };
     let limit = f64::from(scenario.configuration.limits().thrust_max);
+    let ends = interval.into_iter().flat_map(|(least, greatest)| [least, greatest]);
+    let mut bounds: Vec<Bound> = ends.map(|end| bound(end, format!("{name}: {} N", short(end)))).collect();
+    bounds.push(bound(limit, format!("limit: {} N", short(limit))));
     Panel {
         title: "Thrust",
         quantity: "thrust [N]",
         scale: Scale::Linear,
         curves: vec![curve(samples, "T", BLUE, |s| s.thrust)],
-        bounds: vec![
-            bound(least, format!("{name}: {} N", short(least))),
-            bound(greatest, format!("{name}: {} N", short(greatest))),
-            bound(limit, format!("limit: {} N", short(limit))),
-        ],
+        bounds,
     }
 }
 

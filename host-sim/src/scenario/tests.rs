@@ -72,8 +72,8 @@ fn any_number_that_differs_makes_another_flight() {
 #[test]
 fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     let with = |floor: &str| Scenario::parse(&PAPER.replace("rate = 100.0", &format!("thrust_floor = {floor}")), "f");
-    let (least, _) = crate::claims::theorem_1_thrust(&with("1.0").unwrap());
-    assert_eq!(least, 1.0);
+    let (least, _) = crate::claims::theorem_1_thrust(&with("1.0").unwrap()).unwrap();
+    assert!(least < 1.0 && least > 0.999, "{least}");
     for bad in ["0.0", "-1", "4.0"] {
         assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");
     }

@@ -5,20 +5,6 @@ use controller_core::vehicle::{Vehicle, VehicleParameters};
 use host_sim::sampled_loop::{Axis, LoopModel, Timing};
 use nalgebra::Vector3;
 
-pub const TABLE_ONE: GainParameters = GainParameters {
-    k_p: 9.0,
-    k_v: 6.0,
-    k_f: 2.0,
-    k_s: 20.0,
-    k_theta: 100.0,
-    k_omega: 0.1,
-    m_p: 2.0,
-    m_theta: 0.206,
-    m_omega: 0.045,
-    delta: 0.02,
-    alpha: 0.25,
-};
-
 /// 100 Hz, ideal rotors, no delay.
 pub const IDEAL: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
 

@@ -1,6 +1,6 @@
 //! Margins: exactly there, and not earlier, an eigenvalue of the written-out loop leaves the unit circle.
 
-use crate::common::{IDEAL, TABLE_ONE, model, vehicle};
+use crate::common::{IDEAL, model, vehicle};
 use crate::oracle;
 use controller_core::gains::GainParameters;
 use host_sim::sampled_loop::{Axis, Timing};
@@ -41,7 +41,7 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
             k_s: random.scale(0.5, 300.0) as f32,
             k_theta: (16.0 * inertia * frequency * frequency) as f32,
             k_omega: (2.0 * inertia * frequency * random.scale(0.1, 3.0)) as f32,
-            ..TABLE_ONE
+            ..GainParameters::TABLE_1
         };
         for (axis, count) in Axis::ALL.into_iter().zip(&mut checked) {
             let Some(margins) = model(gains, timing).report(axis).margins else { continue };
@@ -89,7 +89,7 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
 fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     // J s^2 + k_omega s + k_theta / 16: |L| = 1 at w, phase left atan(k_omega w / (k_theta / 16)), half a sample held.
     let timing = Timing { period: 1e-4, ..IDEAL };
-    let margins = model(TABLE_ONE, timing).report(Axis::Roll).margins.unwrap();
+    let margins = model(GainParameters::TABLE_1, timing).report(Axis::Roll).margins.unwrap();
     let (inertia, k_omega, spring) = (2.24e-3_f64, 0.1_f64, 6.25_f64);
     let squared =
         (k_omega.powi(2) + (k_omega.powi(4) + 4.0 * (spring * inertia).powi(2)).sqrt()) / (2.0 * inertia.powi(2));
@@ -102,6 +102,6 @@ fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
 
 #[test]
 fn an_unstable_loop_has_no_margins() {
-    let report = model(TABLE_ONE, Timing { delay_samples: 1.0, ..IDEAL }).report(Axis::Roll);
+    let report = model(GainParameters::TABLE_1, Timing { delay_samples: 1.0, ..IDEAL }).report(Axis::Roll);
     assert!(report.spectral_radius > 1.0 && report.margins.is_none());
 }

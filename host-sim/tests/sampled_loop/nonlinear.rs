@@ -4,7 +4,8 @@
 //! theta = tan(angle / 4),  tau = -(1 + theta^2) / 4 s(k_theta theta) - s(k_omega rate),  s(x) = M x / sqrt(M^2 + x^2)
 //! ```
 
-use crate::common::{IDEAL, TABLE_ONE, body_axis, model, vehicle};
+use crate::common::{IDEAL, body_axis, model, vehicle};
+use controller_core::gains::GainParameters;
 use host_sim::sampled_loop::{Axis, Timing};
 use std::collections::VecDeque;
 
@@ -29,8 +30,12 @@ fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize
         for _ in 0..ticks {
             peak = peak.max(angle.abs());
             let mrp = (angle / 4.0).tan();
-            let attitude = saturated(f64::from(TABLE_ONE.k_theta) * mrp, f64::from(TABLE_ONE.m_theta));
-            let damping = saturated(f64::from(TABLE_ONE.k_omega) * rate, f64::from(TABLE_ONE.m_omega));
+            let attitude =
+                saturated(f64::from(GainParameters::TABLE_1.k_theta) * mrp, f64::from(GainParameters::TABLE_1.m_theta));
+            let damping = saturated(
+                f64::from(GainParameters::TABLE_1.k_omega) * rate,
+                f64::from(GainParameters::TABLE_1.m_omega),
+            );
             commands.push_front(-0.25 * (1.0 + mrp * mrp) * attitude - damping);
             commands.pop_back();
             for substep in 0..SUBSTEPS {
@@ -55,7 +60,7 @@ fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize
 fn five_milliseconds_of_lag_settle_from_any_angle() {
     let timing = Timing { rotor_lag: 0.005, ..IDEAL };
     for axis in ATTITUDE {
-        assert!(model(TABLE_ONE, timing).spectral_radius(axis) < 1.0);
+        assert!(model(GainParameters::TABLE_1, timing).spectral_radius(axis) < 1.0);
         for start in [0.01, 0.5, 3.0] {
             let last = peaks(axis, timing, start, 1.0, 10)[9];
             assert!(last < 1e-6, "{axis:?} from {start}: {last:e} rad left");
@@ -65,7 +70,7 @@ fn five_milliseconds_of_lag_settle_from_any_angle() {
 
 /// From a small and from a large angle the same oscillation remains, rad.
 fn limit_cycle(axis: Axis, timing: Timing) -> f64 {
-    assert!(model(TABLE_ONE, timing).spectral_radius(axis) > 1.0);
+    assert!(model(GainParameters::TABLE_1, timing).spectral_radius(axis) > 1.0);
     let ends = [1e-3, 1.0].map(|start| {
         let peaks = peaks(axis, timing, start, 5.0, 40);
         assert!((peaks[39] / peaks[38] - 1.0).abs() < 0.01, "{axis:?} {timing:?} not settled: {peaks:?}");
@@ -101,7 +106,7 @@ fn small_motions_grow_and_shrink_at_the_predicted_rate() {
             // (9 samples at most) and for what a peak between two samples hides (4 %).
             let peaks = peaks(axis, timing, 1e-60, 1.0, 5);
             let flown = (peaks[4] / peaks[1]).ln() / 300.0;
-            let predicted = model(TABLE_ONE, timing).spectral_radius(axis).ln();
+            let predicted = model(GainParameters::TABLE_1, timing).spectral_radius(axis).ln();
             let tolerance = (9.0 * predicted.abs() + 0.04) / 300.0;
             assert!((flown - predicted).abs() < tolerance, "{axis:?} {timing:?}: {flown} against {predicted}");
         }

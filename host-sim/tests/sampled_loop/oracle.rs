@@ -2,7 +2,7 @@
 //!
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
-use crate::common::{IDEAL, TABLE_ONE, body_axis, model, vehicle};
+use crate::common::{IDEAL, body_axis, model, vehicle};
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
@@ -126,7 +126,7 @@ pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: Timing, gain:
 
 #[test]
 fn the_law_here_is_the_slope_of_the_law_that_flies() {
-    let gains = Gains::new(TABLE_ONE, &vehicle()).unwrap();
+    let gains = Gains::new(GainParameters::TABLE_1, &vehicle()).unwrap();
     let hover = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
     let fly = |axis: Axis, thrust_floor: Option<f32>, x: Motion| -> f64 {
         // A tilt forward turns about +y, a tilt to the left about -x.
@@ -172,7 +172,7 @@ fn the_law_here_is_the_slope_of_the_law_that_flies() {
                 filtered: -x.filtered,
                 intermediate: -x.intermediate,
             };
-            let (expected, _) = law(axis, &TABLE_ONE, x);
+            let (expected, _) = law(axis, &GainParameters::TABLE_1, x);
             let moves = match body_axis(axis) {
                 // Positions and filters do not belong to an attitude loop, nor angles to the vertical one.
                 Some(_) if matches!(axis, Axis::Roll | Axis::Pitch | Axis::Yaw) => x.angle + x.rate != 0.0,
@@ -196,8 +196,16 @@ fn the_law_here_is_the_slope_of_the_law_that_flies() {
 
 #[test]
 fn spectral_radii_agree_with_eigenvalues_of_the_written_out_loop() {
-    let other = GainParameters { k_p: 2.0, k_v: 3.0, k_f: 12.0, k_s: 11.0, k_theta: 3.0, k_omega: 0.03, ..TABLE_ONE };
-    for gains in [TABLE_ONE, other] {
+    let other = GainParameters {
+        k_p: 2.0,
+        k_v: 3.0,
+        k_f: 12.0,
+        k_s: 11.0,
+        k_theta: 3.0,
+        k_omega: 0.03,
+        ..GainParameters::TABLE_1
+    };
+    for gains in [GainParameters::TABLE_1, other] {
         for (period, rotor_lag, delay_samples) in [
             (0.01, 0.0, 0.0),
             (0.01, 0.005, 0.0),
@@ -221,7 +229,7 @@ fn spectral_radii_agree_with_eigenvalues_of_the_written_out_loop() {
 
 #[test]
 fn the_oracle_needs_no_lag_to_be_small() {
-    let ideal = spectral_radius(Axis::Roll, &TABLE_ONE, IDEAL, 1.0);
-    let nearly = spectral_radius(Axis::Roll, &TABLE_ONE, Timing { rotor_lag: 1e-5, ..IDEAL }, 1.0);
+    let ideal = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, IDEAL, 1.0);
+    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, Timing { rotor_lag: 1e-5, ..IDEAL }, 1.0);
     assert!((ideal - nearly).abs() < 1e-3);
 }

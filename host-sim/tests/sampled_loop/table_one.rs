@@ -1,22 +1,22 @@
 //! What the analysis says about the paper's own gains at 100 Hz.
 
-use crate::common::{IDEAL, TABLE_ONE, boundary, model, vehicle};
+use crate::common::{IDEAL, boundary, model, vehicle};
 use controller_core::error::{ParameterError, Reason};
-use controller_core::gains::Gains;
+use controller_core::gains::{GainParameters, Gains};
 use host_sim::sampled_loop::{Axis, LoopModel, Timing};
 
 fn radius(axis: Axis, timing: Timing) -> f64 {
-    model(TABLE_ONE, timing).spectral_radius(axis)
+    model(GainParameters::TABLE_1, timing).spectral_radius(axis)
 }
 
 #[test]
 fn ideal_actuators_are_stable_and_the_attitude_loop_is_fast() {
-    for report in model(TABLE_ONE, IDEAL).reports() {
+    for report in model(GainParameters::TABLE_1, IDEAL).reports() {
         assert!(report.spectral_radius < 1.0, "{report:?}");
     }
-    let frequency = model(TABLE_ONE, IDEAL).attitude_frequency(0);
+    let frequency = model(GainParameters::TABLE_1, IDEAL).attitude_frequency(0);
     assert!((frequency - 52.8).abs() < 0.05, "{frequency} rad/s");
-    let crossover = model(TABLE_ONE, IDEAL).report(Axis::Roll).margins.unwrap().crossover;
+    let crossover = model(GainParameters::TABLE_1, IDEAL).report(Axis::Roll).margins.unwrap().crossover;
     assert!((crossover - 62.9).abs() < 0.05, "{crossover} rad/s");
 }
 
@@ -26,7 +26,7 @@ fn without_lag_and_delay_the_attitude_loop_is_the_held_double_integrator() {
     // sqrt(1 + A/2 - B); a gain of 2 / B puts one at -1.
     for (axis, inertia) in [(Axis::Roll, 2.24e-3), (Axis::Pitch, 2.9e-3), (Axis::Yaw, 5.3e-3)] {
         let (a, b) = (6.25e-4 / inertia, 1e-3 / inertia);
-        let report = model(TABLE_ONE, IDEAL).report(axis);
+        let report = model(GainParameters::TABLE_1, IDEAL).report(axis);
         // The gains and the inertia are in single precision.
         assert!((report.spectral_radius - f64::sqrt(1.0 + 0.5 * a - b)).abs() < 1e-7, "{report:?}");
         let gain_up = report.margins.unwrap().gain_up;
@@ -51,7 +51,7 @@ fn no_attitude_loop_survives_a_sample_of_delay() {
         let limit = boundary(0.0, 1.0, |delay_samples| radius(axis, Timing { delay_samples, ..IDEAL }) < 1.0);
         assert!((limit - expected).abs() < 0.0005, "{axis:?}: {limit} samples");
         // The delay margin of the undelayed loop is that limit in seconds.
-        let margin = model(TABLE_ONE, IDEAL).report(axis).margins.unwrap().delay;
+        let margin = model(GainParameters::TABLE_1, IDEAL).report(axis).margins.unwrap().delay;
         assert!((margin - limit * IDEAL.period).abs() < 1e-9, "{axis:?}: {margin} s");
     }
     assert!(radius(Axis::Vertical, Timing { delay_samples: 1.0, ..IDEAL }) < 1.0);
@@ -71,7 +71,7 @@ fn in_continuous_time_the_limit_on_the_lag_is_the_same_about_every_axis() {
 #[test]
 fn a_bad_timing_is_refused_by_name() {
     let vehicle = vehicle();
-    let gains = Gains::new(TABLE_ONE, &vehicle).unwrap();
+    let gains = Gains::new(GainParameters::TABLE_1, &vehicle).unwrap();
     for (timing, field, reason) in [
         (Timing { period: 0.0, ..IDEAL }, "control.period", Reason::NotPositive),
         (Timing { period: 0.2, ..IDEAL }, "control.period", Reason::NotBelow(0.1)),
