@@ -3,8 +3,9 @@
 //! Let n = |u|, gamma the tilt of rho = u / n from the vertical, chi the angle in the plane orthogonal to rho from body x to the
 //! uphill direction, so that the roll of R_d has tan phi = tan gamma sin chi. Write w and p for the parts of u'' and u'
 //! orthogonal to rho, r for the part of u' along it, w_perp and p_perp for the horizontal ones among the orthogonal, and
-//! [v] = (|v| + |v_perp|) / 2, which is the greatest sin chi (x . v) over chi. Then, exactly, omega_d' = L u'' + N, with
+//! `[v]` = (|v| + |v_perp|) / 2, which is the greatest sin chi (x . v) over chi. Then, exactly, omega_d' = L u'' + N, with
 //!
+//! ```text
 //! |L_12 u''| = |w| / n,  |L_3 u''| = |tan phi (x . w)| / n <= tan gamma [w] / n,
 //!
 //! |N_12| = (p / n) sqrt(4 r^2 / n^2 + omega_3^2),  |omega_3| <= |psi'| / cos gamma + tan gamma [p] / n,
@@ -13,6 +14,7 @@
 //!       + (p / n)^2 (1 + 2 tan^2 gamma) / 2,
 //!
 //! |omega_d'|^2 <= (|L_12 u''| + |N_12|)^2 + (|L_3 u''| + |N_3|)^2.
+//! ```
 //!
 //! What is gained over the lemma: the yaw acceleration feels w only through tan gamma, and the tilt is bounded; p and r share
 //! one budget, p^2 + r^2 <= |u'|^2; the horizontal parts of w share another; the tilting and the yawing part of omega_d' are
