@@ -46,14 +46,14 @@
 //! # The paper and this code
 //!
 //! Equation numbers are those LaTeX gives the paper's source. (19), (34) and (35) are used up by groups that print no
-//! number: the data of H_theta, H_R and H_l. Tests are given as file: function; files without a folder are
+//! number: the data of H_theta, H_R and H_l. Modules call equations by their labels there, (FilterDynamics) for (7). Tests are given as file: function; files without a folder are
 //! in this crate's `src/`, `tests/…` is at the top of the repository, `core/tests/…` is this crate's `tests/`, `host-sim/…` the
 //! desktop crate's. "The independent law" is tests/independent_law.rs: `a_tick_with_table_i_agrees_with_the_plain_transcription`
 //! and `a_tick_with_random_vehicles_and_gains_agrees_with_the_plain_transcription`, an f64 transcription that shares no code with this crate.
 //!
 //! | paper | what it says | here | checked by |
 //! |---|---|---|---|
-//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh`], [`position::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
+//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh`], [`position::PositionLaw::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
 //! | Section II | R(q), phi(q), Upsilon(theta), T(theta) | [`mrp::rotation`], [`mrp::from_quaternion`], [`mrp::shadow`], [`mrp::kinematics`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from`, `the_shadow_of_the_shadow_is_the_parameter_and_unit_length_is_the_border`, `parameters_move_as_their_kinematics_say` |
 //! | (1) | rotation from MRP, sign put right | [`mrp::to_rotation`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from` |
 //! | (2a), (2b) | the rigid body | `host_sim::plant`; its constants are [`vehicle::Vehicle`] | host-sim/src/plant/tests.rs: `agrees_with_a_plain_integration_of_the_printed_equations` |
