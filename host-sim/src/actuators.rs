@@ -180,3 +180,6 @@ impl Actuators {
         Ok((clipping, thrusts))
     }
 }
+
+#[cfg(test)]
+mod tests;

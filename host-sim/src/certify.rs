@@ -137,3 +137,6 @@ pub fn loop_model(scenario: &Scenario) -> Result<LoopModel, ParameterError> {
     let timing = Timing { period, rotor_lag, delay_samples: scenario.delay() / period };
     LoopModel::new(configuration.vehicle(), configuration.gains(), timing)
 }
+
+#[cfg(test)]
+mod tests;

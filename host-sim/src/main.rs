@@ -6,7 +6,7 @@ use host_sim::claims;
 use host_sim::fly::{FlyError, certification, fly};
 use host_sim::law::LawServer;
 use host_sim::log::WholeFile;
-use host_sim::scenario::Scenario;
+use host_sim::scenario::{Scenario, check_name};
 use host_sim::table::{percent, short};
 use host_sim::tune::{Effort, Requirements, output, tune, widest_bounds};
 use std::io::{self, Write};
@@ -17,6 +17,8 @@ use std::process::ExitCode;
 const CLAIMS_FAIL: u8 = 1;
 /// Input that cannot be used, or output that cannot be written.
 const BAD_INPUT: u8 = 2;
+/// Longest recovery that a search may fly thousands of times, s.
+const GREATEST_RECOVERY: f64 = 3600.0;
 
 /// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
 #[derive(Parser)]
@@ -108,8 +110,8 @@ struct TuneArguments {
 }
 
 const TUNE_HELP: &str = "\
-The height lost is the start less the lowest point of a flight from roll -179 degrees, at rest, on a hover reference
-where it starts. Printed at the end: the frontier of height lost against k_p with the inequality that limits each, and
+The height lost is the start less the lowest point of a flight from the paper's first attitude (roll -179 degrees, yaw
+100 degrees off the heading), at rest, on a hover reference where it starts. Printed at the end: the frontier of height lost against k_p with the inequality that limits each, and
 the answer: the greatest k_p within 5 % of the least height.";
 
 const LAW_HELP: &str = "\
@@ -187,8 +189,18 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         .as_deref()
         .and_then(Path::file_stem)
         .map_or_else(|| format!("{}-tuned", scenario.name), |stem| stem.to_string_lossy().into_owned());
+    check_name(&name).map_err(|error| format!("--out: becomes the scenario's name: {error}"))?;
     scenario.name.clone_from(&name);
     let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+    // Whatever is wrong with the output shows now, not after the search.
+    if same_file(&path, &arguments.file) {
+        return Err(format!("{}: --out must be another file than the one tuned", path.display()));
+    }
+    let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
+    if path.is_dir() {
+        return Err(unwritable(io::ErrorKind::IsADirectory.into()));
+    }
+    drop(WholeFile::create(&path).map_err(unwritable)?);
     let effort = Effort { generations: arguments.generations, seed: arguments.seed };
     let tuned = match tune(&scenario, requirements, effort) {
         Ok(tuned) => tuned,
@@ -203,7 +215,7 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         }
     };
     let text = output::rewritten(&original, &tuned).map_err(|error| error.to_string())?;
-    WholeFile::write(&path, &text).map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
+    WholeFile::write(&path, &text).map_err(unwritable)?;
     let (certificate, _) = certify(&tuned.scenario).map_err(|error| error.to_string())?;
     let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
         format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
@@ -226,6 +238,11 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Whether both paths lead to one file that exists.
+fn same_file(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
+
 impl TuneArguments {
     fn requirements(&self) -> Result<Requirements, String> {
         let positive = [
@@ -234,8 +251,11 @@ impl TuneArguments {
             ("--mrp-error", self.mrp_error),
             ("--recovery", self.recovery),
         ];
-        if let Some((name, value)) = positive.into_iter().find(|(_, value)| value.is_nan() || *value <= 0.0) {
-            return Err(format!("{name}: must be greater than zero, found {value}"));
+        if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
+            return Err(format!("{name}: must be greater than zero and finite, found {value}"));
+        }
+        if self.recovery > GREATEST_RECOVERY {
+            return Err(format!("--recovery: must be at most {GREATEST_RECOVERY} s, found {}", self.recovery));
         }
         if !(0.0..1.0).contains(&self.margin) {
             return Err(format!("--margin: must be from 0 to below 1, found {}", self.margin));

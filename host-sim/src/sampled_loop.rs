@@ -133,6 +133,15 @@ impl LoopModel {
         Ok(Self { inertia, gains: **gains, timing })
     }
 
+    /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
+    /// gain margin at the position feedback. The gains need not be ones that may fly.
+    #[must_use]
+    pub fn with_position_feedback(&self, factor: f64) -> Self {
+        let scaled = |gain: f32| (f64::from(gain) * factor) as f32;
+        let gains = GainParameters { k_p: scaled(self.gains.k_p), k_v: scaled(self.gains.k_v), ..self.gains };
+        Self { gains, ..*self }
+    }
+
     /// Spectral radius and margins of one loop.
     #[must_use]
     pub fn report(&self, axis: Axis) -> LoopReport {

@@ -117,7 +117,7 @@ impl Scenario {
         let configuration = vehicle::read_configuration(root, &bounds)?;
         let configuration = match &rotors {
             None => configuration,
-            Some(setup) => configuration.with_rotors(setup.rotors.clone()).map_err(|error| refused(root, &error))?,
+            Some(setup) => actuation::mounted(root, configuration, &setup.rotors)?,
         };
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
@@ -165,17 +165,23 @@ impl fmt::Display for ScenarioError {
 
 impl std::error::Error for ScenarioError {}
 
-/// A name that is safe as a directory's.
-fn read_name(root: &Section) -> Result<String, FieldError> {
-    let name = root.text("name")?;
+/// Refuses a scenario's name that is not safe as a directory's.
+///
+/// # Errors
+/// Names `name`.
+pub fn check_name(name: &str) -> Result<(), FieldError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let safe = !name.is_empty() && name.len() <= 64 && name.chars().all(plain) && !name.starts_with('.');
-    if safe {
-        Ok(name.to_owned())
+    if !name.is_empty() && name.len() <= 64 && name.chars().all(plain) && !name.starts_with('.') {
+        Ok(())
     } else {
         let allowed = "must be 1 to 64 letters, digits, '-', '_' or '.', not starting with '.'";
         Err(FieldError::new("name", format!("{allowed}, found {name:?}")))
     }
+}
+
+fn read_name(root: &Section) -> Result<String, FieldError> {
+    let name = root.text("name")?;
+    check_name(name).map(|()| name.to_owned())
 }
 
 /// A refusal by one of the law's constructors, with the value the file has there.

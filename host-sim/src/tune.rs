@@ -5,7 +5,8 @@
 //! 1. a constraint: every inequality of the certificate, down to the rotors, with [`Requirements::margin`] to spare; the
 //!    sampled loops stable with gain and delay margins; the vehicle recovers from upside down and holds still; the file's
 //!    own reference is flown without a clipped command and within the errors asked for;
-//! 2. the least height lost from roll -179 degrees, at rest, on a hover reference at the same point;
+//! 2. the least height lost from the paper's first attitude, roll -179 degrees, at rest, on a hover reference at the same
+//!    point ([`candidate::recovery`]);
 //! 3. within [`HEIGHT_SLACK`] of that best, the greatest k_p.
 //!
 //! [`candidate`] turns a point of the search space into gains and judges it, cheapest test first; [`evolution`] searches;
@@ -79,7 +80,7 @@ pub fn tune(scenario: &Scenario, requirements: Requirements, effort: Effort) -> 
     let judge = Judge::new(scenario, requirements);
     let mut frontier = Frontier::default();
     let mut progress = Progress::new("tuning", u64::from(2 * effort.generations));
-    let mut evolution = Evolution::new(&judge, effort.seed);
+    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier);
     for generation in 0..effort.generations {
         evolution.generation(&judge, Goal::Height, &mut frontier);
         progress.show(u64::from(generation));
@@ -136,3 +137,6 @@ pub fn widest_bounds(configuration: &Configuration, margin: f64) -> Result<(f64,
     }
     Ok((good, scaled(good)))
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,6 +18,8 @@ use super::section::{FieldError, Section, vector_at};
 use super::timing::Timing;
 use crate::actuators::RotorSetup;
 use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
 use toml::Value;
 
 /// Longest lag and delay, s: slower actuators fly no multirotor.
@@ -53,9 +55,38 @@ pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
             thrust_max: thrust(fastest),
         });
     }
-    let rotors = Rotors::new(&list).map_err(|error| refused(root, &error))?;
+    let rotors = Rotors::new(&list).map_err(|error| refused(root, &in_file(error)))?;
     let lag = read_time(&section, "lag")?;
     Ok(Some(RotorSetup { rotors, lag }))
+}
+
+/// The field of the file that a refused field of one rotor comes from: all have the same coefficients and speeds.
+fn in_file(error: ParameterError) -> ParameterError {
+    let field = match error.field.split('[').next() {
+        Some("rotors.thrust_coefficient") => "rotors.thrust_coefficient",
+        Some("rotors.drag_coefficient") => "rotors.drag_coefficient",
+        Some("rotors.thrust_min" | "rotors.thrust_max") => "rotors.speed",
+        _ => error.field,
+    };
+    ParameterError { field, ..error }
+}
+
+/// Carries `configuration` to the rotors.
+///
+/// # Errors
+/// Names `rotors.speed` if the vehicle cannot hover between its ends.
+pub fn mounted(root: &Section, configuration: Configuration, rotors: &Rotors) -> Result<Configuration, FieldError> {
+    let hover = configuration.vehicle().mass * configuration.vehicle().gravity;
+    configuration.with_rotors(rotors.clone()).map_err(|error| {
+        let together = |thrust: fn(&Rotor) -> f32| rotors.iter().map(thrust).sum::<f32>();
+        let (least, greatest) = (together(|rotor| rotor.thrust_min), together(|rotor| rotor.thrust_max));
+        let found = root.lookup(error.field).unwrap_or_default();
+        let problem = format!(
+            "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} rad/s: \
+             {least} to {greatest} N"
+        );
+        FieldError::new(error.field, problem)
+    })
 }
 
 /// Reads `[sampling]`: the delay in plant steps.
@@ -89,8 +120,9 @@ fn read_time(section: &Section, key: &str) -> Result<f64, FieldError> {
 
 fn read_speeds(section: &Section) -> Result<(f64, f64), FieldError> {
     const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
-    let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}"));
     let elements = section.elements("speed", WANTED)?;
+    let found = || elements.iter().map(|(_, value)| value.to_string()).collect::<Vec<_>>().join(", ");
+    let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}, found [{}]", found()));
     let numbers: Vec<f64> = elements.iter().filter_map(|(_, value)| number(value)).collect();
     match numbers.as_slice() {
         [least, greatest] if elements.len() == 2 && 0.0 <= *least && least < greatest && greatest.is_finite() => {
@@ -111,3 +143,6 @@ fn read_spin(path: String, value: &Value) -> Result<Spin, FieldError> {
         _ => Err(FieldError::new(path, format!("must be \"cw\" or \"ccw\" as seen from above, found {value}"))),
     }
 }
+
+#[cfg(test)]
+mod tests;

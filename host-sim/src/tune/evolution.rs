@@ -56,14 +56,17 @@ pub struct Evolution {
 }
 
 impl Evolution {
-    /// The first population, scattered around the file's own gains.
+    /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
     #[must_use]
-    pub fn new(judge: &Judge, seed: u64) -> Self {
+    pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let start = judge.start();
         let mut points = vec![start];
         points.resize_with(POPULATION, || start.map(|x| x + SPREAD * (random.random::<f64>() - 0.5)));
         let members = judge_all(judge, points);
+        for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
+            frontier.offer(point, verdict);
+        }
         Self { members, random, judged: POPULATION as u64 }
     }
 
@@ -126,4 +129,30 @@ impl Evolution {
 
 fn judge_all(judge: &Judge, points: Vec<Point>) -> Vec<(Point, Verdict)> {
     points.into_par_iter().map(|point| (point, judge.judge(&point))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn verdict(violation: f64, height_lost: f64, position_gain: f64) -> Verdict {
+        Verdict { violation, failed: None, height_lost, position_gain, tightest: None }
+    }
+
+    #[test]
+    fn an_acceptable_candidate_beats_a_better_one_that_is_not() {
+        let (poor, rejected) = (verdict(0.0, 50.0, 1.0), verdict(0.5, 1.0, 9.0));
+        for goal in [Goal::Height, Goal::PositionGain { height_at_most: 2.0 }] {
+            assert!(goal.better(&poor, &rejected) && !goal.better(&rejected, &poor), "{goal:?}");
+        }
+        assert!(Goal::Height.better(&verdict(0.4, f64::INFINITY, 1.0), &rejected), "the nearer to acceptance wins");
+    }
+
+    #[test]
+    fn position_gain_counts_only_within_the_height_allowed() {
+        let goal = Goal::PositionGain { height_at_most: 4.0 };
+        let (within, stiff, beyond) = (verdict(0.0, 3.0, 2.0), verdict(0.0, 4.0, 5.0), verdict(0.0, 4.1, 9.0));
+        assert!(goal.better(&stiff, &within) && goal.better(&within, &beyond) && goal.better(&stiff, &beyond));
+        assert!(Goal::Height.better(&within, &stiff));
+    }
 }

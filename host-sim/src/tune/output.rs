@@ -4,6 +4,9 @@ use super::Tuned;
 use crate::table::short;
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
+/// How the line begins that says what was achieved.
+const HEAD: &str = "# Tuned:";
+
 /// `original` with the tuned gains, headed by what they achieve.
 ///
 /// # Errors
@@ -27,18 +30,28 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     for (key, gain) in gains {
         document["gains"][key] = value(shortest(gain));
     }
-    if let Some(floor) = configuration.thrust_floor() {
-        if !document.contains_key("control") {
-            document["control"] = Item::Table(Table::new());
+    match configuration.thrust_floor() {
+        Some(floor) => {
+            if !document.contains_key("control") {
+                document["control"] = Item::Table(Table::new());
+            }
+            document["control"]["thrust_floor"] = value(shortest(floor));
         }
-        document["control"]["thrust_floor"] = value(shortest(floor));
+        None => {
+            if let Some(control) = document.get_mut("control").and_then(Item::as_table_like_mut) {
+                control.remove("thrust_floor");
+            }
+        }
     }
     let head = format!(
-        "# Tuned: height lost from upside down {} m; every margin at least {:.1} %.\n",
+        "{HEAD} height lost from upside down {} m; every margin at least {:.1} %.\n",
         short(tuned.verdict.height_lost),
         100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
     );
-    Ok(head + &document.to_string())
+    let text = document.to_string();
+    // A file that was tuned before loses what it said then.
+    let rest = text.strip_prefix(HEAD).and_then(|said| said.split_once('\n')).map_or(text.as_str(), |(_, rest)| rest);
+    Ok(head + rest)
 }
 
 /// The double with the fewest digits that rounds to `single`, so that the file reads like the number that flies.

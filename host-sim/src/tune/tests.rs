@@ -1,0 +1,151 @@
+//! A small search from beginning to end, and each requirement on its own.
+
+use super::*;
+use crate::scenario::PAPER;
+
+const EASY: Requirements = Requirements {
+    margin: 0.0,
+    gain_margin: 1.2,
+    delay_margin: 1e-3,
+    position_error: 0.01,
+    mrp_error: 1e-3,
+    recovery: 40.0,
+    projection: false,
+};
+
+const SMALL: Effort = Effort { generations: 2, seed: 3 };
+
+fn paper() -> Scenario {
+    Scenario::parse(PAPER, "f").unwrap()
+}
+
+/// What the file's own gains earn.
+fn verdict(scenario: &Scenario, requirements: Requirements) -> Verdict {
+    let judge = Judge::new(scenario, requirements);
+    judge.judge(&judge.start())
+}
+
+#[test]
+fn table_one_meets_easy_requirements_and_loses_23_metres() {
+    let verdict = verdict(&paper(), EASY);
+    assert!(verdict.accepted(), "{verdict:?}");
+    assert!((verdict.height_lost - 23.3).abs() < 0.1, "{}", verdict.height_lost);
+    assert!((verdict.position_gain - 9.0).abs() < 1e-5);
+}
+
+#[test]
+fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
+    let refusals = [
+        (Requirements { margin: 0.5, ..EASY }, "certificate: "),
+        (Requirements { gain_margin: 20.0, ..EASY }, "sampled loop margin: "),
+        (Requirements { delay_margin: 0.1, ..EASY }, "sampled loop margin: "),
+        (Requirements { recovery: 3.0, ..EASY }, "recovery: "),
+        (Requirements { position_error: 1e-9, ..EASY }, "the file's flight: "),
+        (Requirements { mrp_error: 1e-12, ..EASY }, "the file's flight: "),
+    ];
+    let mut last = f64::INFINITY;
+    for (requirements, what) in refusals {
+        let verdict = verdict(&paper(), requirements);
+        assert!(!verdict.accepted());
+        assert!(verdict.failed.as_ref().is_some_and(|failed| failed.starts_with(what)), "{what}: {verdict:?}");
+        assert!(verdict.violation.floor() <= last, "{what}");
+        last = verdict.violation.floor();
+    }
+    let unstable = Scenario::parse(&format!("{PAPER}\n[sampling]\ndelay = 0.01\n"), "f").unwrap();
+    assert!(verdict(&unstable, EASY).failed.is_some_and(|failed| failed.starts_with("sampled loop unstable: ")));
+}
+
+#[test]
+fn the_position_feedback_needs_the_gain_margin_too() {
+    // At the actuator's command the attitude loop dominates and k_p, k_v hardly count.
+    let steep = PAPER.replace("k_p = 9.0", "k_p = 900.0").replace("k_v = 6.0", "k_v = 120.0");
+    let steep = Scenario::parse(&steep, "f").unwrap();
+    let failed = |gain_margin| verdict(&steep, Requirements { gain_margin, ..EASY }).failed.unwrap_or_default();
+    assert!(!failed(1.2).contains("k_p and k_v"), "{}", failed(1.2));
+    assert!(failed(2.5).starts_with("sampled loop unstable with 2.5 times k_p and k_v"), "{}", failed(2.5));
+}
+
+#[test]
+fn a_small_search_finds_something_at_least_as_good_as_its_start() {
+    let tuned = tune(&paper(), EASY, SMALL).unwrap_or_else(|closest| panic!("{closest:?}"));
+    assert!(tuned.verdict.accepted());
+    assert_eq!(tuned.judged, 48 * 5);
+    let own = verdict(&paper(), EASY);
+    assert!(tuned.verdict.height_lost <= own.height_lost * (1.0 + HEIGHT_SLACK));
+    assert!(tuned.frontier.least_height().is_some_and(|least| least <= own.height_lost));
+    assert!(tuned.frontier.table().starts_with("height lost [m]"));
+    // The scenario it hands out is the one it judged.
+    assert_eq!(verdict(&tuned.scenario, EASY).height_lost, tuned.verdict.height_lost);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
+    let gains = |seed| {
+        let effort = Effort { seed, generations: 1 };
+        let tuned = tune(&paper(), EASY, effort).unwrap_or_else(|closest| panic!("{closest:?}"));
+        *tuned.scenario.configuration.gains()
+    };
+    assert_eq!(gains(3), gains(3));
+    assert_ne!(gains(3), gains(4));
+}
+
+#[test]
+fn requirements_that_nothing_meets_give_the_closest_verdict() {
+    let closest = tune(&paper(), Requirements { margin: 0.97, ..EASY }, SMALL).err().unwrap();
+    assert!(closest.failed.is_some_and(|failed| failed.starts_with("certificate: ")));
+}
+
+#[test]
+fn the_projection_lowers_the_floor_below_its_greatest_value_by_the_margin() {
+    let judge = Judge::new(&paper(), Requirements { projection: true, margin: 0.05, ..EASY });
+    let mut point = judge.start();
+    point[9] = 0.0;
+    let configuration = judge.scenario(&point).unwrap().configuration;
+    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.greatest_thrust_floor());
+    assert!((floor / greatest - 0.95).abs() < 1e-6, "{floor} of {greatest}");
+}
+
+#[test]
+fn a_rewritten_file_keeps_its_comments_and_flies_the_tuned_gains() {
+    let tuned = |floor: Option<f32>| {
+        let mut scenario = paper();
+        let own = **scenario.configuration.gains();
+        let parameters = controller_core::gains::GainParameters { k_p: 1.234_567_8, m_omega: 0.012_3, ..own };
+        let gains = controller_core::gains::Gains::new(parameters, scenario.configuration.vehicle()).unwrap();
+        scenario.configuration = scenario.configuration.with_gains(gains).unwrap();
+        if let Some(floor) = floor {
+            scenario.configuration = scenario.configuration.with_thrust_floor(floor).unwrap();
+        }
+        scenario.name = "mine".to_owned();
+        Tuned { verdict: verdict(&scenario, EASY), scenario, frontier: Frontier::default(), judged: 0 }
+    };
+    let (plain, floored) = (tuned(None), tuned(Some(0.4)));
+    let text = output::rewritten(PAPER, &floored).unwrap();
+    let read = Scenario::parse(&text, "f").unwrap();
+    assert!(read.flies_like(&floored.scenario) && read.name == "mine");
+    let comments = |text: &str| text.matches('#').count();
+    assert_eq!(comments(&text), comments(PAPER) + 1, "{text}");
+    assert!(text.starts_with("# Tuned: height lost from upside down "), "{text}");
+
+    // Again, without projection: the floor goes, and what was said of the last result.
+    let again = output::rewritten(&text, &plain).unwrap();
+    assert!(Scenario::parse(&again, "f").unwrap().flies_like(&plain.scenario), "{again}");
+    assert_eq!((comments(&again), again.contains("thrust_floor")), (comments(&text), false));
+    // A file without [control] gets one.
+    let (before, rest) = PAPER.split_once("[control]").unwrap();
+    let bare = format!("{before}[plant]{}", rest.split_once("[plant]").unwrap().1);
+    let read = output::rewritten(&bare, &floored).unwrap();
+    assert!(read.contains("[control]\nthrust_floor = 0.4"), "{read}");
+}
+
+#[test]
+fn the_widest_bounds_leave_the_margin_and_no_more() {
+    let scenario = Scenario::parse(&PAPER.replace("[0.5, 0.5, 0.5]", "[1.0, 1.0, 1.0]"), "f").unwrap();
+    let (factor, bounds) = widest_bounds(&scenario.configuration, 0.05).unwrap();
+    assert!(factor > 1.0, "{factor}");
+    let margin = |bounds| {
+        let wider = scenario.configuration.with_bounds(bounds).unwrap();
+        Certificate::new(&wider).unwrap().tightest().unwrap().margin()
+    };
+    assert!((0.05..0.0501).contains(&margin(bounds)), "{}", margin(bounds));
+}

@@ -1,0 +1,200 @@
+//! `certify` and `tune` as a user meets them: exit statuses, one clear line for each refusal, no file half-written.
+
+use host_sim::scenario::Scenario;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+const PAPER: &str = include_str!("../scenarios/paper.toml");
+const STUDY: &str = include_str!("../vehicles/study.toml");
+
+/// A directory of its own for each test, empty at the start.
+fn directory(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_certify").join(test);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn host_sim(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).current_dir(directory).output().unwrap()
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn files(directory: &Path) -> Vec<String> {
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    let mut names: Vec<String> = std::fs::read_dir(directory).unwrap().map(name).collect();
+    names.sort();
+    names
+}
+
+/// `file` with the line that starts with `line` replaced.
+fn with(file: &str, line: &str, replacement: &str) -> String {
+    assert_eq!(file.lines().filter(|found| found.starts_with(line)).count(), 1, "{line}");
+    file.lines().map(|found| if found.starts_with(line) { replacement } else { found }).collect::<Vec<_>>().join("\n")
+}
+
+/// Table I where a search may be quick: seconds of recovery, easy requirements.
+const QUICK: [&str; 13] = [
+    "--margin",
+    "0",
+    "--gain-margin",
+    "1.2",
+    "--delay-margin",
+    "1",
+    "--mrp-error",
+    "0.001",
+    "--recovery",
+    "40",
+    "--generations",
+    "1",
+    "--no-projection",
+];
+
+#[test]
+fn certify_exits_with_0_for_the_paper_and_says_why() {
+    let directory = directory("paper");
+    let output = host_sim(&directory, &["certify"]);
+    assert_eq!((status(&output), stderr(&output)), (0, String::new()));
+    let text = stdout(&output);
+    for words in
+        ["paper: CERTIFIED", "as printed: fails in T2 yaw torque", "sharp: every inequality holds", "published"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert!(files(&directory).is_empty());
+}
+
+#[test]
+fn certify_exits_with_1_where_an_inequality_fails() {
+    let directory = directory("refused");
+    std::fs::write(directory.join("weak.toml"), with(PAPER, "thrust_max", "thrust_max = 5.0")).unwrap();
+    let output = host_sim(&directory, &["certify", "weak.toml"]);
+    assert_eq!(status(&output), 1);
+    assert!(stdout(&output).contains("NOT certified") && stdout(&output).contains("T1 greatest thrust"));
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn bad_input_exits_with_2_and_one_line_that_names_field_and_reason() {
+    let directory = directory("bad");
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("inertia", "inertia = [2.24e-3, 0.0, 5.3e-3]", &["vehicle.inertia[1]", "greater than zero"]),
+        ("inertia", "inertia = [2.24e-3, -2.9e-3, 5.3e-3]", &["vehicle.inertia[1]", "greater than zero"]),
+        ("inertia", "inertia = [2.24e-3, 2.9e-3, 9.0e-3]", &["vehicle.inertia", "triangle inequality"]),
+        ("thrust_max", "thrust_max = 4.0", &["limits.thrust_max", "above 4.51", "found 4"]),
+        ("torque_max", "torque_max = [0.5, 0.5, 0.0]", &["limits.torque_max[2]", "greater than zero"]),
+        ("speed", "speed = [100.0, 400.0]", &["rotors.speed", "cannot hover", "4.51"]),
+        ("speed", "speed = [500.0, 800.0]", &["rotors.speed", "cannot hover"]),
+        ("speed", "speed = [800.0, 100.0]", &["rotors.speed", "least < greatest"]),
+        ("spin", "spin = [\"cw\", \"cw\", \"cw\", \"cw\"]", &["rotors", "cannot produce thrust and all three torques"]),
+        ("spin", "spin = [\"cw\", \"ccw\", \"cw\"]", &["rotors.spin", "4 positions, found 3"]),
+        ("m_p", "m_p = 9.7", &["gains.m_p", "below 9.63", "K_a3"]),
+        ("rate", "rate = 100.0\nthrust_floor = 4.5", &["control.thrust_floor", "found 4.5"]),
+        ("delay", "delay = 0.0123456", &["sampling.delay", "whole number of plant steps"]),
+        ("jerk", "jerk = 0.1", &["reference_bounds.jerk", "which [reference] takes"]),
+        ("snap", "snop = 6.0", &["reference_bounds.snop", "\"snap\""]),
+    ];
+    for (line, replacement, words) in cases {
+        std::fs::write(directory.join("bad.toml"), with(STUDY, line, replacement)).unwrap();
+        for arguments in [["certify", "bad.toml"], ["tune", "bad.toml"], ["fly", "bad.toml"]] {
+            let output = host_sim(&directory, &arguments);
+            let message = stderr(&output);
+            assert_eq!((status(&output), message.lines().count()), (2, 1), "{replacement}: {message}");
+            assert_eq!(stdout(&output), "");
+            for word in ["bad.toml"].iter().chain(*words) {
+                assert!(message.contains(word), "{replacement}: {message:?} does not say {word:?}");
+            }
+        }
+    }
+    assert_eq!(files(&directory), ["bad.toml"]);
+}
+
+#[test]
+fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
+    let directory = directory("tune");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    let output = host_sim(&directory, &[&["tune", "start.toml", "--out", "mine.toml", "--widen"][..], &QUICK].concat());
+    assert_eq!((status(&output), stderr(&output)), (0, String::new()));
+    let text = stdout(&output);
+    for words in ["height lost [m]", "active constraint", "mine: CERTIFIED", "reference bounds can grow"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert_eq!(files(&directory), ["mine.toml", "start.toml"]);
+    assert_eq!(std::fs::read_to_string(directory.join("start.toml")).unwrap(), PAPER, "the input is not touched");
+    let tuned = Scenario::load(&directory.join("mine.toml")).unwrap();
+    assert_eq!(tuned.name, "mine");
+    assert_eq!(status(&host_sim(&directory, &["certify", "mine.toml"])), 0);
+}
+
+#[test]
+fn a_search_that_finds_nothing_exits_with_1_and_writes_nothing() {
+    let directory = directory("nothing");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    let output = host_sim(&directory, &["tune", "start.toml", "--margin", "0.97", "--generations", "1"]);
+    assert_eq!((status(&output), stdout(&output)), (1, String::new()));
+    let message = stderr(&output);
+    assert!(message.lines().count() == 1 && message.contains("the closest fail in: certificate"), "{message}");
+    assert_eq!(files(&directory), ["start.toml"]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_refused_before_the_search() {
+    let directory = directory("unwritable");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    std::fs::create_dir(directory.join("folder.toml")).unwrap();
+    for (out, words) in [
+        ("start.toml", "must be another file than the one tuned"),
+        ("./start.toml", "must be another file than the one tuned"),
+        ("nowhere/mine.toml", "nowhere/mine.toml: cannot be written"),
+        ("folder.toml", "folder.toml: cannot be written"),
+        ("my file.toml", "letters, digits"),
+    ] {
+        let started = Instant::now();
+        // A search of this length would take hours.
+        let output = host_sim(&directory, &["tune", "start.toml", "--generations", "100000", "--out", out]);
+        assert!(started.elapsed() < Duration::from_secs(20), "{out}: refused only after a search");
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{out}: {message}");
+        assert!(message.contains(words), "{out}: {message}");
+    }
+    assert_eq!(files(&directory), ["folder.toml", "start.toml"]);
+    assert_eq!(std::fs::read_to_string(directory.join("start.toml")).unwrap(), PAPER);
+}
+
+#[test]
+fn unusable_requirements_exit_with_2_and_name_the_argument() {
+    let directory = directory("arguments");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    for (name, value) in [
+        ("--margin", "1"),
+        ("--margin", "nan"),
+        ("--gain-margin", "0.9"),
+        ("--gain-margin", "inf"),
+        ("--delay-margin", "0"),
+        ("--position-error", "nan"),
+        ("--mrp-error", "0"),
+        ("--recovery", "0"),
+        ("--recovery", "inf"),
+        ("--generations", "0"),
+    ] {
+        let output = host_sim(&directory, &["tune", "start.toml", name, value]);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{name} {value}: {message}");
+        assert!(message.contains(name), "{message}");
+    }
+    assert_eq!(status(&host_sim(&directory, &["tune"])), 2);
+    assert_eq!(status(&host_sim(&directory, &["tune", "nowhere.toml"])), 2);
+    assert_eq!(files(&directory), ["start.toml"]);
+}

@@ -1,0 +1,201 @@
+//! The vehicles of `vehicles/`, with their rotors turning: certified to the last rotor, and flown without one that saturates.
+//! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
+
+use controller_core::certificate::Certificate;
+use controller_core::gains::{GainParameters, Gains};
+use host_sim::flight::Flight;
+use host_sim::plant::attitude_from_euler;
+use host_sim::scenario::Scenario;
+use host_sim::tune::candidate::recovery;
+use std::path::Path;
+
+const VEHICLES: [&str; 2] = ["hummingbird", "study"];
+
+/// What every inequality must have to spare.
+const MARGIN: f64 = 0.05;
+
+/// Greatest position error on the circle, m.
+const CIRCLE_ERROR: f64 = 0.05;
+
+/// The same on the paper's trajectory.
+const PAPER_ERROR: f64 = 0.05;
+
+/// How long a recovery from upside down is watched, s: the slowest is back after a minute.
+const RECOVERY: f64 = 120.0;
+
+fn vehicle(name: &str) -> Scenario {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
+    Scenario::load(&folder.join(format!("{name}.toml"))).unwrap()
+}
+
+/// The greatest errors in one stretch of five seconds.
+#[derive(Debug, Clone, Copy, Default)]
+struct Errors {
+    /// m.
+    position: f64,
+    /// Norm of the modified Rodrigues parameters.
+    mrp: f64,
+}
+
+/// What a flight showed.
+struct Shown {
+    /// Stretch by stretch, the last one complete.
+    errors: Vec<Errors>,
+    height_lost: f64,
+    saturated: u64,
+    /// The greatest share of a rotor's certified demand, from the middle of its interval; beyond one is outside it.
+    demand_used: f64,
+}
+
+impl Shown {
+    /// The errors of the last five seconds and of the five before.
+    fn end(&self) -> (Errors, Errors) {
+        let [.., before, last] = self.errors[..] else { panic!("too short a flight") };
+        (before, last)
+    }
+}
+
+fn flown(scenario: &Scenario) -> Shown {
+    let certificate = Certificate::new(&scenario.configuration).unwrap();
+    assert_eq!(certificate.rotors.len(), 4, "{} has no rotors", scenario.name);
+    let mut flight = Flight::new(scenario).unwrap();
+    let stretch = (5e6 / scenario.timing.period_us as f64) as u64;
+    let start = scenario.initial.position.z;
+    let mut shown = Shown { errors: Vec::new(), height_lost: 0.0, saturated: 0, demand_used: 0.0 };
+    let mut errors = Errors::default();
+    // Stretches are counted from the end, so that the last one is complete.
+    for left in (0..scenario.timing.ticks).rev() {
+        let tick = flight.tick().unwrap();
+        shown.saturated += u64::from(tick.clipping.any());
+        shown.height_lost = shown.height_lost.max(start - tick.state.position.z);
+        for (thrust, report) in tick.rotor_thrusts.iter().zip(&certificate.rotors) {
+            let middle = 0.5 * (report.demand.least + report.demand.greatest);
+            let half = 0.5 * (report.demand.greatest - report.demand.least);
+            shown.demand_used = shown.demand_used.max((f64::from(*thrust) - middle).abs() / half);
+        }
+        let error = (tick.state.position - tick.reference.position.cast::<f64>()).norm();
+        errors.position = errors.position.max(error);
+        errors.mrp = errors.mrp.max(f64::from(tick.diagnostics.mrp.norm()));
+        if left.is_multiple_of(stretch) {
+            shown.errors.push(std::mem::take(&mut errors));
+        }
+    }
+    let (_, last) = shown.end();
+    println!(
+        "{:18} last 5 s: {:.1e} m, MRP {:.1e}; height lost {:6.1} m; {:4.1} % of the certified rotor demand used",
+        scenario.name,
+        last.position,
+        last.mrp,
+        shown.height_lost,
+        100.0 * shown.demand_used
+    );
+    shown
+}
+
+/// Every command of a flight fits every rotor, and keeps to what was certified.
+fn assert_within_the_certificate(name: &str, shown: &Shown) {
+    assert_eq!(shown.saturated, 0, "{name}: saturated ticks");
+    assert!(shown.demand_used <= 1.0, "{name}: {} of the certified demand", shown.demand_used);
+}
+
+#[test]
+fn both_are_certified_down_to_the_rotors_with_five_per_cent_to_spare() {
+    for name in VEHICLES {
+        let certificate = Certificate::new(&vehicle(name).configuration).unwrap();
+        let tightest = certificate.tightest().unwrap();
+        println!("{name}: tightest {tightest}, margin {:.2} %", 100.0 * tightest.margin());
+        assert!(certificate.holds() && tightest.margin() >= MARGIN, "{name}: {tightest}");
+        assert_eq!(certificate.rotors.len(), 4);
+    }
+}
+
+#[test]
+fn they_are_the_vehicles_they_are_said_to_be() {
+    for (name, mass, inertia, lag, delay) in [
+        ("hummingbird", 0.5, [3.65e-3, 3.68e-3, 7.03e-3], 0.005, 0.0),
+        ("study", 0.46, [2.24e-3, 2.9e-3, 5.3e-3], 0.030, 0.010),
+    ] {
+        let scenario = vehicle(name);
+        let body = scenario.configuration.vehicle();
+        assert_eq!((body.mass, [body.inertia.x, body.inertia.y, body.inertia.z]), (mass, inertia), "{name}");
+        let setup = scenario.rotors.as_ref().unwrap();
+        assert_eq!((setup.lag, scenario.delay()), (lag, delay), "{name}");
+        for rotor in setup.rotors.iter() {
+            assert_eq!((rotor.thrust_coefficient, rotor.drag_coefficient), (5.57e-6, 1.36e-7), "{name}");
+            assert!((rotor.position.norm() - 0.17).abs() < 1e-5, "{name}");
+        }
+    }
+    let fastest = vehicle("hummingbird").rotors.unwrap().rotors[0].thrust_max;
+    assert!((fastest - 5.57e-6 * 1500.0 * 1500.0).abs() < 1e-4);
+}
+
+#[test]
+fn the_paper_siblings_differ_in_what_is_flown_only() {
+    let paper = Scenario::paper().unwrap();
+    for name in VEHICLES {
+        let (own, sibling) = (vehicle(name), vehicle(&format!("{name}-paper")));
+        assert_eq!(own.configuration, sibling.configuration, "{name}");
+        assert_eq!((&own.rotors, own.delay_steps), (&sibling.rotors, sibling.delay_steps), "{name}");
+        assert_eq!((sibling.reference, sibling.initial), (paper.reference.clone(), paper.initial), "{name}");
+        assert_eq!(own.timing.period_us, paper.timing.period_us, "{name}");
+    }
+}
+
+#[test]
+fn they_fly_a_circle_of_one_metre_without_a_saturated_rotor() {
+    for name in VEHICLES {
+        let scenario = vehicle(name);
+        let shown = flown(&scenario);
+        assert_within_the_certificate(name, &shown);
+        let at = |t_us| scenario.trajectory.at(t_us).position;
+        assert!((at(0) - at(2_000_000)).norm() > 1.999 && (at(0) - at(4_000_000)).norm() < 1e-3, "a circle in 4 s");
+        let (_, last) = shown.end();
+        assert!(last.position < CIRCLE_ERROR, "{name}: {last:?}");
+    }
+}
+
+#[test]
+fn they_fly_the_papers_scenario_from_upside_down_without_a_saturated_rotor() {
+    for name in VEHICLES {
+        let shown = flown(&vehicle(&format!("{name}-paper")));
+        assert_within_the_certificate(name, &shown);
+        let (_, last) = shown.end();
+        assert!(last.position < PAPER_ERROR, "{name}: {last:?}");
+    }
+}
+
+#[test]
+fn they_recover_from_upside_down_and_then_hold_still() {
+    for name in VEHICLES {
+        let mut scenario = recovery(&vehicle(name), RECOVERY);
+        let attitudes = [[-179.0, 0.0, 100.0], [-179.0, 0.0, 0.0], [0.0, 178.0, 0.0], [-180.0, 0.0, 0.0]];
+        for angles in attitudes.map(|angles| angles.map(f64::to_radians)) {
+            let [roll, pitch, yaw] = angles;
+            scenario.initial.attitude = attitude_from_euler(roll, pitch, yaw);
+            let shown = flown(&scenario);
+            assert_within_the_certificate(name, &shown);
+            let (before, last) = shown.end();
+            assert!(last.position < 1e-4 && last.mrp < 1e-5, "{name} {angles:?}: {last:?}");
+            // Not growing. Thrust (length of u, mass, share of a rotor, its speed, squared) and direction (the measured
+            // attitude) carry some sixteen roundings of single precision, half an EPSILON of gravity each: with them the
+            // position may rest, or wander, as far away as the position feedback takes to make up for them.
+            let k_p = f64::from(scenario.configuration.gains().k_p);
+            let rounding = 16.0 * 0.5 * f64::from(f32::EPSILON) * 9.81 / k_p;
+            assert!(last.position <= before.position.max(rounding), "{name} {angles:?}: {before:?} {last:?}");
+            assert!(last.mrp <= before.mrp.max(1e-6), "{name} {angles:?}: {before:?} {last:?}");
+        }
+    }
+}
+
+#[test]
+fn with_ten_times_table_ones_attitude_feedback_the_same_rotors_saturate() {
+    let table_1 = **Scenario::paper().unwrap().configuration.gains();
+    for name in VEHICLES {
+        let mut scenario = recovery(&vehicle(name), 10.0);
+        let gains = GainParameters { m_theta: 10.0 * table_1.m_theta, ..table_1 };
+        let gains = Gains::new(gains, scenario.configuration.vehicle()).unwrap();
+        scenario.configuration = scenario.configuration.with_gains(gains).unwrap();
+        assert!(!Certificate::new(&scenario.configuration).unwrap().holds());
+        assert!(flown(&scenario).saturated > 0, "{name}");
+    }
+}
