@@ -80,7 +80,7 @@ struct TuneArguments {
     /// Least margin of every inequality, as a fraction
     #[arg(long, default_value_t = 0.05)]
     margin: f64,
-    /// Least gain margin of every sampled loop, as a factor
+    /// Least gain margin of every sampled loop, as a factor: at the actuators, and of k_p and k_v together
     #[arg(long, default_value_t = 2.0)]
     gain_margin: f64,
     /// Least delay margin of every sampled loop, ms

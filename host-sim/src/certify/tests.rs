@@ -19,7 +19,10 @@ fn table_one_is_certified_sharply_and_refused_as_printed_beside_the_published_fi
     assert!(certified && text.starts_with("paper: CERTIFIED\n"), "{text}");
     assert_eq!(line(&text, "as printed: fails"), "as printed: fails in T2 yaw torque");
     assert_eq!(line(&text, "sharp: every"), "sharp: every inequality holds");
-    assert!(line(&text, "as printed: |omega_d|").ends_with("torques 0.3786, 0.4457, 0.664 N m"), "{text}");
+    let printed = line(&text, "as printed: |omega_d|").split_once("torques ").unwrap().1.trim_end_matches(" N m");
+    for (torque, lemma_1) in printed.split(", ").zip([0.379, 0.446, 0.664]) {
+        assert!((torque.parse::<f64>().unwrap() - lemma_1).abs() < 1e-3, "{printed}");
+    }
     assert_eq!(line(&text, "published"), PUBLISHED);
     let yaw: Vec<&str> = line(&text, "T2 yaw torque").split_whitespace().collect();
     assert!(yaw.contains(&"FAILS") && yaw.last() == Some(&"holds"), "{yaw:?}");
