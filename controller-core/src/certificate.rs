@@ -247,4 +247,24 @@ mod tests {
         let thrust = Certificate::new(&paper()).unwrap().printed.thrust;
         assert!((thrust.least - 3.512).abs() < 1e-3 && (thrust.greatest - 6.188).abs() < 1e-3, "{thrust:?}");
     }
+
+    #[test]
+    fn references_that_the_vehicle_cannot_follow_at_all_fail_assumption_1() {
+        let paper = paper();
+        let fails = |bounds: ReferenceBounds, name: &str| {
+            let certificate = Certificate::new(&paper.with_bounds(bounds).unwrap()).unwrap();
+            let failing = |form: &Form| form.inequalities.iter().any(|i| i.name == name && !i.holds());
+            assert!(failing(&certificate.printed) && failing(&certificate.sharp) && !certificate.holds(), "{name}");
+        };
+        // 7 N on 0.46 kg is 15.2 m/s^2: with gravity, less than 12 sideways.
+        fails(ReferenceBounds { horizontal_acceleration: 12.0, ..*paper.bounds() }, "A1 thrust for the reference");
+        fails(ReferenceBounds { snap: 2500.0, ..*paper.bounds() }, "A1 yaw torque for the reference");
+    }
+
+    #[test]
+    fn a_reference_that_leaves_no_upward_thrust_is_no_configuration() {
+        let paper = paper();
+        let falling = ReferenceBounds { vertical_acceleration: 7.9, ..*paper.bounds() };
+        assert_eq!(paper.with_bounds(falling).unwrap_err().field, "gains.m_p");
+    }
 }

@@ -242,3 +242,50 @@ impl Controller {
         Ok((wrench, diagnostics))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gains::GainParameters;
+    use crate::heading::Heading;
+    use crate::reference::Trajectory;
+    use crate::reference::hover::Hover;
+    use crate::vehicle::VehicleParameters;
+
+    fn controller() -> Controller {
+        let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
+        let vehicle = Vehicle::new(VehicleParameters { mass: 0.46, inertia, gravity: 9.81 }).unwrap();
+        let gains = Gains::new(GainParameters::TABLE_1, &vehicle).unwrap();
+        Controller::uncertified(vehicle, gains, None, 0.01).unwrap()
+    }
+
+    #[test]
+    fn a_reset_controller_is_as_good_as_new() {
+        let away = State {
+            position: Vector3::new(5.0, -3.0, 1.0),
+            velocity: Vector3::new(0.0, 2.0, 0.0),
+            attitude: Quaternion::new(-0.6, 0.0, 0.8, 0.0),
+            angular_velocity: Vector3::new(1.0, 0.0, -4.0),
+        };
+        let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
+        let mut used = controller();
+        let first = used.step(&away, &reference).unwrap();
+        for _ in 0..50 {
+            used.step(&away, &reference).unwrap();
+        }
+        assert_ne!(used.memory(), Memory::RESET);
+        used.reset();
+        assert_eq!(used.memory(), Memory::RESET);
+        assert_eq!(used.step(&away, &reference).unwrap(), first);
+    }
+
+    #[test]
+    fn a_refused_period_leaves_the_controller_as_it_was() {
+        let mut controller = controller();
+        let before = controller.clone();
+        for period in [0.0, -0.01, 0.11, f32::NAN, f32::INFINITY] {
+            assert_eq!(controller.set_period(period).unwrap_err().field, "control.period");
+        }
+        assert_eq!(controller, before);
+    }
+}

@@ -37,7 +37,7 @@ Examples:
   host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
 
-A scenario file is TOML; scenarios/paper.toml says what can stand in it.
+A scenario file is TOML: start from one in scenarios/ or vehicles/; docs/scenario-file.md describes every key.
 
 Exit status:
   0  every claim holds (law: the input ended)

@@ -30,6 +30,10 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     for (key, gain) in gains {
         document["gains"][key] = value(shortest(gain));
     }
+    if let Some(table) = document["gains"].as_table_mut() {
+        // Whatever stood here was said of other gains.
+        table.decor_mut().set_suffix("                               # found by `host-sim tune`");
+    }
     match configuration.thrust_floor() {
         Some(floor) => {
             if !document.contains_key("control") {
