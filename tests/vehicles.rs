@@ -20,6 +20,10 @@ const CIRCLE_ERROR: f64 = 0.01;
 /// The same on the paper's trajectory.
 const PAPER_ERROR: f64 = 0.03;
 
+/// Thrust (length of u, mass, share of a rotor, its speed, squared) and its direction (the measured attitude) carry some
+/// sixteen roundings of single precision, half an EPSILON of gravity each, m/s^2.
+const ROUNDED_ACCELERATION: f64 = 16.0 * 0.5 * f32::EPSILON as f64 * 9.81;
+
 /// How long a recovery from upside down is watched, s: the slowest is back after a minute.
 const RECOVERY: f64 = 120.0;
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Searches the gains of the two vehicles and of the paper's anew, and writes them into their files.
-#   sh vehicles/retune.sh [hummingbird] [study] [paper]        from the repository's root; default: all three
-# The same sources give the same gains: seeds and starting gains are fixed here. Minutes to half an hour each.
+#   [SEED=n] sh vehicles/retune.sh [hummingbird] [study] [paper]        from the repository's root; default: all, SEED=1
+# The same sources and seed give the same gains: the starting gains are fixed here. Minutes to half an hour each.
 set -eu
 
 sim=${HOST_SIM:-"cargo run --release --quiet -p host-sim --"}
@@ -43,7 +43,7 @@ vehicle() {
     shift
     with_gains "$@" < "vehicles/$name.toml" > "$work/start.toml"
     search "vehicles/$name.toml" "$work/start.toml" \
-        --seed 1 --generations 150 --recovery 60 --position-error 0.01 --mrp-error 0.001
+        --seed "${SEED:-1}" --generations 150 --recovery 60 --position-error 0.01 --mrp-error 0.001
     sibling "$name"
 }
 
@@ -60,7 +60,7 @@ for name; do
             with_gains k_p=100 k_v=30 k_f=4.5 k_s=1.6 k_theta=57 k_omega=0.034 m_p=3.4 m_theta=0.43 m_omega=0.12 \
                 < scenarios/paper.toml | sed 's/^# The paper.s Section VI: /# The paper'"'"'s vehicle and flight with gains of our own: /
                     s/^\[gains\].*/[gains]/' > "$work/start.toml"
-            search scenarios/paper-tuned.toml "$work/start.toml" --seed 1 --generations 150 ;;
+            search scenarios/paper-tuned.toml "$work/start.toml" --seed "${SEED:-1}" --generations 150 ;;
         *) echo "unknown: $name" >&2; exit 2 ;;
     esac
 done
