@@ -101,7 +101,7 @@ fn bad_input_exits_with_2_and_one_line_that_names_field_and_reason() {
         ("spin", "spin = [\"cw\", \"cw\", \"cw\", \"cw\"]", &["rotors", "cannot produce thrust and all three torques"]),
         ("spin", "spin = [\"cw\", \"ccw\", \"cw\"]", &["rotors.spin", "4 positions, found 3"]),
         ("m_p", "m_p = 9.7", &["gains.m_p", "below 9.63", "K_a3"]),
-        ("rate", "rate = 100.0\nthrust_floor = 4.5", &["control.thrust_floor", "found 4.5"]),
+        ("thrust_floor", "thrust_floor = 4.5", &["control.thrust_floor", "found 4.5"]),
         ("delay", "delay = 0.0123456", &["sampling.delay", "whole number of plant steps"]),
         ("jerk", "jerk = 0.1", &["reference_bounds.jerk", "which [reference] takes"]),
         ("snap", "snop = 6.0", &["reference_bounds.snop", "\"snap\""]),
