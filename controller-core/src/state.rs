@@ -25,10 +25,9 @@ pub struct State {
 
 /// Refuses non-finite components and magnitudes beyond `range`.
 pub(crate) fn check_vector(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), InputError> {
-    // A NaN compares false with everything: the negation catches it.
-    let largest = vector.x.abs().max(vector.y.abs()).max(vector.z.abs());
-    let sum = vector.x + vector.y + vector.z;
-    if largest <= range && sum.is_finite() {
+    // A NaN compares false with everything, so it fails here too; no branch until all three are compared.
+    let within = |component: f32| component.abs() <= range;
+    if within(vector.x) & within(vector.y) & within(vector.z) {
         Ok(())
     } else if vector.iter().all(|component| component.is_finite()) {
         Err(InputError::OutOfRange { field })

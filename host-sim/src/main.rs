@@ -6,7 +6,7 @@ use host_sim::claims;
 use host_sim::fly::{FlyError, certification, fly};
 use host_sim::law::LawServer;
 use host_sim::log::WholeFile;
-use host_sim::scenario::{Scenario, check_name};
+use host_sim::scenario::{Scenario, bounds, check_name};
 use host_sim::table::{percent, short};
 use host_sim::tune::{Effort, Requirements, output, tune, widest_bounds};
 use std::io::{self, Write};
@@ -230,9 +230,14 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         path.display()
     );
     if arguments.widen {
-        let (factor, bounds) =
+        let (factor, widest) =
             widest_bounds(&tuned.scenario.configuration, requirements.margin).map_err(|error| error.to_string())?;
-        summary += &format!("reference bounds can grow {} times, to {bounds:?}\n", short(factor));
+        summary += &format!(
+            "\nwith these gains every margin stays at least {} for references {} times as demanding:\n\n{}",
+            percent(requirements.margin),
+            short(factor),
+            bounds::written(&widest)
+        );
     }
     let _ = io::stdout().write_all(summary.as_bytes());
     Ok(ExitCode::SUCCESS)

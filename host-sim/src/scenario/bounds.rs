@@ -53,6 +53,21 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
     bounds.validated().map_err(|error| refused(root, &error))
 }
 
+/// `bounds` as the section of a scenario file.
+#[must_use]
+pub fn written(bounds: &ReferenceBounds) -> String {
+    format!(
+        "[reference_bounds]\nhorizontal_acceleration = {:?}\nvertical_acceleration = {:?}\njerk = {:?}\nsnap = {:?}\n\
+         heading_rate = {:?}\nheading_second_derivative = {:?}\n",
+        bounds.horizontal_acceleration,
+        bounds.vertical_acceleration,
+        bounds.jerk,
+        bounds.snap,
+        bounds.heading_rate,
+        bounds.heading_second_derivative
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,6 +110,7 @@ heading_second_derivative = 2.0
             heading_second_derivative: 2.0,
         };
         assert_eq!(read(WIDER), Ok(wider));
+        assert_eq!(read(&written(&wider)), Ok(wider));
     }
 
     #[test]
