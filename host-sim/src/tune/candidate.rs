@@ -80,8 +80,10 @@ impl Judge {
     /// The file's own gains as a point: where the search starts.
     #[must_use]
     pub fn start(&self) -> Point {
-        let g = self.scenario.configuration.gains();
-        let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, 0.5];
+        let configuration = &self.scenario.configuration;
+        let g = configuration.gains();
+        let floor = configuration.thrust_floor().map_or(0.5, |floor| floor / configuration.greatest_thrust_floor());
+        let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor];
         values.map(|value| f64::from(value).ln())
     }
 

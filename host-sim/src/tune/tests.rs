@@ -34,6 +34,17 @@ fn table_one_meets_easy_requirements_and_loses_23_metres() {
 }
 
 #[test]
+fn a_search_starts_from_the_files_gains_and_thrust_floor() {
+    let floor = PAPER.replace("rate = 100.0", "rate = 100.0\nthrust_floor = 1.0");
+    let scenario = Scenario::parse(&floor, "f").unwrap();
+    let judge = Judge::new(&scenario, Requirements { projection: true, ..EASY });
+    let start = judge.scenario(&judge.start()).unwrap().configuration;
+    let near = |a: f32, b: f32| (a / b - 1.0).abs() < 1e-5;
+    assert!(near(start.thrust_floor().unwrap(), 1.0), "{start:?}");
+    assert!(near(start.gains().k_p, 9.0) && near(start.gains().m_omega, 0.045), "{start:?}");
+}
+
+#[test]
 fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
     let refusals = [
         (Requirements { margin: 0.5, ..EASY }, "certificate: "),
