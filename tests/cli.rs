@@ -1,46 +1,15 @@
 //! The binary as a user meets it: exit statuses, messages, files, and the law in lock-step.
 
+mod binary;
+
+use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
-const PAPER: &str = include_str!("../scenarios/paper.toml");
-
-/// A directory of its own for each test, empty at the start.
+/// A directory of this suite.
 fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli").join(test);
-    let _ = std::fs::remove_dir_all(&path);
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn host_sim(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).current_dir(directory).output().unwrap()
-}
-
-fn status(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn files(directory: &Path) -> Vec<String> {
-    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
-    let mut names: Vec<String> = std::fs::read_dir(directory).unwrap().map(name).collect();
-    names.sort();
-    names
-}
-
-/// The paper's scenario with one line, found by its beginning, replaced.
-fn paper_with(line: &str, replacement: &str) -> String {
-    assert_eq!(PAPER.lines().filter(|found| found.starts_with(line)).count(), 1, "{line}");
-    PAPER.lines().map(|found| if found.starts_with(line) { replacement } else { found }).collect::<Vec<_>>().join("\n")
+    binary::directory("cli", test)
 }
 
 #[test]
@@ -74,7 +43,7 @@ fn without_arguments_it_flies_the_paper() {
 fn a_flight_whose_claims_fail_exits_with_1_and_still_writes_everything() {
     let directory = directory("failing");
     // Enough to hover, too little for what the law commands.
-    std::fs::write(directory.join("weak.toml"), paper_with("thrust_max", "thrust_max = 4.9")).unwrap();
+    std::fs::write(directory.join("weak.toml"), with(PAPER, "thrust_max", "thrust_max = 4.9")).unwrap();
     let output = host_sim(&directory, &["fly", "weak.toml", "--out", "results"]);
     assert_eq!(status(&output), 1, "{}", stderr(&output));
     assert!(stdout(&output).contains("FAILS"));
@@ -84,8 +53,8 @@ fn a_flight_whose_claims_fail_exits_with_1_and_still_writes_everything() {
 #[test]
 fn the_published_figures_are_claims_about_the_papers_scenario_only() {
     let directory = directory("renamed");
-    std::fs::write(directory.join("same.toml"), paper_with("name", "name = \"same\"")).unwrap();
-    std::fs::write(directory.join("other.toml"), paper_with("duration", "duration = 41.0")).unwrap();
+    std::fs::write(directory.join("same.toml"), with(PAPER, "name", "name = \"same\"")).unwrap();
+    std::fs::write(directory.join("other.toml"), with(PAPER, "duration", "duration = 41.0")).unwrap();
     let same = host_sim(&directory, &["fly", "same.toml"]);
     assert!(stdout(&same).contains("published") && directory.join("flights/same/log.csv").exists());
     let other = stdout(&host_sim(&directory, &["fly", "other.toml", "--out", "other"]));
@@ -140,7 +109,7 @@ fn malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output() {
     let directory = directory("malformed");
     let file = directory.join("bad.toml");
     for (line, replacement, words) in cases {
-        std::fs::write(&file, paper_with(line, replacement)).unwrap();
+        std::fs::write(&file, with(PAPER, line, replacement)).unwrap();
         for arguments in [["fly", "bad.toml"], ["law", "bad.toml"]] {
             let output = host_sim(&directory, &arguments);
             let message = stderr(&output);
@@ -207,7 +176,7 @@ fn unusable_arguments_exit_with_2() {
 #[test]
 fn a_second_flight_replaces_the_first_and_a_failed_one_leaves_it() {
     let directory = directory("replaced");
-    let quick = paper_with("duration", "duration = 1.0");
+    let quick = with(PAPER, "duration", "duration = 1.0");
     std::fs::write(directory.join("quick.toml"), &quick).unwrap();
     assert_eq!(status(&host_sim(&directory, &["fly", "quick.toml", "--out", "out"])), 0);
     let first = std::fs::read(directory.join("out/log.csv")).unwrap();

@@ -1,48 +1,17 @@
 //! `certify` and `tune` as a user meets them: exit statuses, one clear line for each refusal, no file half-written.
 
+mod binary;
+
+use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
 use host_sim::scenario::Scenario;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-const PAPER: &str = include_str!("../scenarios/paper.toml");
 const STUDY: &str = include_str!("../vehicles/study.toml");
 
-/// A directory of its own for each test, empty at the start.
+/// A directory of this suite.
 fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_certify").join(test);
-    let _ = std::fs::remove_dir_all(&path);
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn host_sim(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).current_dir(directory).output().unwrap()
-}
-
-fn status(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn files(directory: &Path) -> Vec<String> {
-    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
-    let mut names: Vec<String> = std::fs::read_dir(directory).unwrap().map(name).collect();
-    names.sort();
-    names
-}
-
-/// `file` with the line that starts with `line` replaced.
-fn with(file: &str, line: &str, replacement: &str) -> String {
-    assert_eq!(file.lines().filter(|found| found.starts_with(line)).count(), 1, "{line}");
-    file.lines().map(|found| if found.starts_with(line) { replacement } else { found }).collect::<Vec<_>>().join("\n")
+    binary::directory("cli_certify", test)
 }
 
 /// Table I where a search may be quick: seconds of recovery, easy requirements.
