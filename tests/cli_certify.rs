@@ -97,7 +97,7 @@ fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
     let output = host_sim(&directory, &[&["tune", "start.toml", "--out", "mine.toml", "--widen"][..], &QUICK].concat());
     assert_eq!((status(&output), stderr(&output)), (0, String::new()));
     let text = stdout(&output);
-    for words in ["height lost [m]", "active constraint", "mine: CERTIFIED", "reference bounds can grow"] {
+    for words in ["height lost [m]", "active constraint", "mine: CERTIFIED", "times as demanding"] {
         assert!(text.contains(words), "{words}: {text}");
     }
     assert_eq!(files(&directory), ["mine.toml", "start.toml"]);
@@ -105,6 +105,12 @@ fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
     let tuned = Scenario::load(&directory.join("mine.toml")).unwrap();
     assert_eq!(tuned.name, "mine");
     assert_eq!(status(&host_sim(&directory, &["certify", "mine.toml"])), 0);
+
+    // The widest bounds are printed as the section they are: it can be pasted, and certifies.
+    let (_, section) = text.split_once("[reference_bounds]").unwrap();
+    let found = std::fs::read_to_string(directory.join("mine.toml")).unwrap();
+    std::fs::write(directory.join("wide.toml"), format!("{found}\n[reference_bounds]{section}")).unwrap();
+    assert_eq!(status(&host_sim(&directory, &["certify", "wide.toml"])), 0);
 }
 
 #[test]
