@@ -2,11 +2,10 @@
 
 use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
 use super::record::Sample;
-use crate::claims::{
-    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE, theorem_1_thrust,
-};
+use crate::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
 use crate::scenario::Scenario;
 use crate::table::short;
+use controller_core::certificate::{Certificate, Form};
 use plotters::style::RGBColor;
 
 /// The axes' colours, x (roll), y (pitch), z (yaw).
@@ -69,18 +68,21 @@ pub fn mrp_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
     }
 }
 
-/// Thrust between the published bounds (the paper's scenario) or Theorem 1's (any other), and the vehicle's limit.
+/// Thrust between the published bounds (the paper's scenario) or the certificate's sharp ones (any other), and the
+/// vehicle's limit unless it is so far away that it would flatten the curve.
 #[must_use]
 pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
     let (name, interval) = if scenario.is_papers() {
         ("published", Some(PUBLISHED_THRUST))
     } else {
-        ("Theorem 1", theorem_1_thrust(scenario))
+        ("proven", sharp(scenario).map(|form| (form.thrust.least, form.thrust.greatest)))
     };
     let limit = f64::from(scenario.configuration.limits().thrust_max);
     let ends = interval.into_iter().flat_map(|(least, greatest)| [least, greatest]);
     let mut bounds: Vec<Bound> = ends.map(|end| bound(end, format!("{name}: {} N", short(end)))).collect();
-    bounds.push(bound(limit, format!("limit: {} N", short(limit))));
+    if bounds.iter().all(|bound| limit < 2.0 * bound.value) || scenario.is_papers() {
+        bounds.push(bound(limit, format!("limit: {} N", short(limit))));
+    }
     Panel {
         title: "Thrust",
         quantity: "thrust [N]",
@@ -90,7 +92,12 @@ pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
     }
 }
 
-/// Torques with the published bound of each axis (the paper's scenario) or the vehicle's limits (any other).
+/// The certificate's sharp bounds, which hold for every flight from a reset.
+fn sharp(scenario: &Scenario) -> Option<Form> {
+    Certificate::new(&scenario.configuration).ok().map(|certificate| certificate.sharp)
+}
+
+/// Torques with the published bound of each axis (the paper's scenario) or the certificate's sharp one (any other).
 #[must_use]
 pub fn moments(scenario: &Scenario, samples: &[Sample]) -> Panel {
     Panel {
@@ -108,10 +115,12 @@ pub fn moments(scenario: &Scenario, samples: &[Sample]) -> Panel {
 
 /// Equal bounds are drawn once.
 fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
-    let limits = scenario.configuration.limits().torque_max.map(f64::from);
-    let values = if scenario.is_papers() { PUBLISHED_TORQUE } else { limits.into() };
+    let proven = || sharp(scenario).map(|form| form.torque.into());
+    let Some(values): Option<[f64; 3]> = (if scenario.is_papers() { Some(PUBLISHED_TORQUE) } else { proven() }) else {
+        return Vec::new();
+    };
     let equal = values.iter().all(|value| *value == values[0]);
-    let named = if equal { [("limit", INK); 3] } else { [("roll", AXES[0]), ("pitch", AXES[1]), ("yaw", AXES[2])] };
+    let named = if equal { [("each", INK); 3] } else { [("roll", AXES[0]), ("pitch", AXES[1]), ("yaw", AXES[2])] };
     let both = |(value, (name, color)): (f64, (&str, RGBColor))| {
         [
             Bound { value, label: format!("{name} {}", short(value)), color },
@@ -154,8 +163,8 @@ pub fn feedbacks(scenario: &Scenario, samples: &[Sample]) -> Panel {
             curve(samples, "|s_ω|", VERMILION, |s| s.feedback_norms.1),
         ],
         bounds: vec![
-            Bound { value: f64::from(m_theta), label: format!("M_ϑ = {m_theta}"), color: BLUE },
-            Bound { value: f64::from(m_omega), label: format!("M_ω = {m_omega}"), color: VERMILION },
+            Bound { value: f64::from(m_theta), label: format!("M_ϑ = {}", short(m_theta.into())), color: BLUE },
+            Bound { value: f64::from(m_omega), label: format!("M_ω = {}", short(m_omega.into())), color: VERMILION },
         ],
     }
 }

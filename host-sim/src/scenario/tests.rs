@@ -1,6 +1,7 @@
 //! Whole files: what they become, and which defaults fill the gaps. tests/cli.rs holds the table of malformed ones.
 
 use super::*;
+use controller_core::certificate::Certificate;
 use nalgebra::Vector3;
 
 /// The paper's file without the section that starts with `head`.
@@ -72,8 +73,8 @@ fn any_number_that_differs_makes_another_flight() {
 #[test]
 fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     let with = |floor: &str| Scenario::parse(&PAPER.replace("rate = 100.0", &format!("thrust_floor = {floor}")), "f");
-    let (least, _) = crate::claims::theorem_1_thrust(&with("1.0").unwrap()).unwrap();
-    assert!(least < 1.0 && least > 0.999, "{least}");
+    let thrust = Certificate::new(&with("1.0").unwrap().configuration).unwrap().printed.thrust;
+    assert!(thrust.least < 1.0 && thrust.least > 0.999, "{thrust:?}");
     for bad in ["0.0", "-1", "4.0"] {
         assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");
     }
