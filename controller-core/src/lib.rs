@@ -40,8 +40,8 @@
 //! # Features
 //!
 //! - `defmt`: errors can be written to defmt logs. Such a build checks on a desktop but links only for targets with a defmt logger.
-//! - `uncertified`: [`controller::Controller`] can also be made from gains that nothing proves. For simulations; no flight
-//!   build turns it on.
+//! - `uncertified`: [`controller::Controller`] can also be made from gains that nothing proves, and started from any
+//!   memory. For simulations; no flight build turns it on.
 //!
 //! # The paper and this code
 //!
