@@ -45,27 +45,30 @@ pub fn yaw(samples: &[Sample]) -> Panel {
 /// |p - p_d|; for the paper's scenario with the level it reaches.
 #[must_use]
 pub fn position_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
-    let published = bound(PUBLISHED_POSITION_ERROR, format!("published, steady state: {PUBLISHED_POSITION_ERROR} m"));
-    Panel {
-        title: "Position error norm",
-        quantity: "|p − p_d| [m]",
-        scale: Scale::Log,
-        curves: vec![curve(samples, "position error", BLUE, |s| s.position_error)],
-        bounds: scenario.is_papers().then_some(published).into_iter().collect(),
-    }
+    let published = format!("published, steady state: {PUBLISHED_POSITION_ERROR} m");
+    let level = bound(PUBLISHED_POSITION_ERROR, published);
+    let error = curve(samples, "position error", BLUE, |s| s.position_error);
+    error_norm(scenario, "Position error norm", "|p − p_d| [m]", error, level)
 }
 
 /// |theta~|; for the paper's scenario with the level it reaches.
 #[must_use]
 pub fn mrp_error(scenario: &Scenario, samples: &[Sample]) -> Panel {
-    let published = bound(PUBLISHED_MRP_ERROR, format!("published, steady state: {PUBLISHED_MRP_ERROR}"));
-    Panel {
-        title: "MRP error norm",
-        quantity: "|ϑ| [–]",
-        scale: Scale::Log,
-        curves: vec![curve(samples, "MRP error", BLUE, |s| s.mrp_error)],
-        bounds: scenario.is_papers().then_some(published).into_iter().collect(),
-    }
+    let level = bound(PUBLISHED_MRP_ERROR, format!("published, steady state: {PUBLISHED_MRP_ERROR}"));
+    let error = curve(samples, "MRP error", BLUE, |s| s.mrp_error);
+    error_norm(scenario, "MRP error norm", "|ϑ| [–]", error, level)
+}
+
+/// An error over decades; `published` is a level for the paper's scenario only.
+fn error_norm(
+    scenario: &Scenario,
+    title: &'static str,
+    quantity: &'static str,
+    error: Curve,
+    published: Bound,
+) -> Panel {
+    let bounds = scenario.is_papers().then_some(published).into_iter().collect();
+    Panel { title, quantity, scale: Scale::Log, curves: vec![error], bounds }
 }
 
 /// Thrust between the published bounds (the paper's scenario) or the certificate's sharp ones (any other), and the
