@@ -20,17 +20,9 @@ use controller_core::allocation::{Rotor, Rotors};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
 use nalgebra::{Vector3, Vector4};
+pub use scenario::actuation::RotorSetup;
 use std::collections::VecDeque;
 use std::fmt;
-
-/// Rotors and how fast they follow.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RotorSetup {
-    /// Geometry, coefficients, ranges.
-    pub rotors: Rotors,
-    /// First-order lag of their speeds, s; zero for none.
-    pub lag: f64,
-}
 
 /// Why a wrench could not be applied.
 #[derive(Debug, Clone, Copy, PartialEq)]

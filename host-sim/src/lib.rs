@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
-//! | [`scenario`] | files to validated types |
+//! | [`scenario`] | files to validated types; a crate of its own, which the firmware's build reads them with too |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`claims`] | what was claimed against what was flown |
 //! | [`log`], [`plots`] | log.csv and the figures |
@@ -22,6 +22,7 @@ pub mod plant;
 pub mod plots;
 pub mod progress;
 pub mod sampled_loop;
-pub mod scenario;
 pub mod table;
 pub mod tune;
+
+pub use scenario;

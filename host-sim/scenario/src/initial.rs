@@ -1,7 +1,7 @@
 //! `[initial]`: where a flight starts. Left out, in whole or in part: on the reference, at rest, level, facing world x.
 
 use super::section::{FieldError, Section};
-use crate::plant::{BodyState, Plant, attitude_from_euler};
+use crate::body::{BodyState, GREATEST_TURN_PER_STEP, attitude_from_euler};
 use controller_core::state::STATE_RANGE;
 use nalgebra::Vector3;
 
@@ -25,7 +25,7 @@ pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Re
             return Err(FieldError::new(section.path_of(key), format!("must be within ±{STATE_RANGE:e}")));
         }
     }
-    let greatest = Plant::GREATEST_TURN_PER_STEP / step;
+    let greatest = GREATEST_TURN_PER_STEP / step;
     if angular_velocity.norm() > greatest {
         let problem = format!("must be at most {greatest:.4} rad/s for plant.step = {step} s (or take a smaller step)");
         return Err(FieldError::new(section.path_of("angular_velocity"), problem));

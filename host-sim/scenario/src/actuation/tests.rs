@@ -1,7 +1,7 @@
 //! `[rotors]` and `[sampling]` as users may write them, and as they must not.
 
 use super::*;
-use crate::scenario::{PAPER, Scenario};
+use crate::{PAPER, Scenario};
 use nalgebra::Vector3;
 
 const ROTORS: &str = "

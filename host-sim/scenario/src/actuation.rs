@@ -16,7 +16,6 @@
 use super::refused;
 use super::section::{FieldError, Section, vector_at};
 use super::timing::Timing;
-use crate::actuators::RotorSetup;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
@@ -24,6 +23,15 @@ use toml::Value;
 
 /// Longest lag and delay, s: slower actuators fly no multirotor.
 const LONGEST: f64 = 1.0;
+
+/// Rotors and how fast they follow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorSetup {
+    /// Geometry, coefficients, ranges.
+    pub rotors: Rotors,
+    /// First-order lag of their speeds, s; zero for none.
+    pub lag: f64,
+}
 
 /// Reads `[rotors]`.
 ///

@@ -14,6 +14,7 @@
 //! Numbers are read in double precision and rounded once, where the law's types take them.
 
 pub mod actuation;
+pub mod body;
 pub mod bounds;
 pub mod initial;
 pub mod reference;
@@ -21,8 +22,8 @@ pub mod section;
 pub mod timing;
 pub mod vehicle;
 
-use crate::actuators::RotorSetup;
-use crate::plant::BodyState;
+use actuation::RotorSetup;
+use body::BodyState;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::reference::Trajectory;
@@ -35,7 +36,7 @@ use timing::Timing;
 use toml::Table;
 
 /// The paper's Section VI, built in.
-pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
+pub const PAPER: &str = include_str!("../../../scenarios/paper.toml");
 
 /// What a scenario file may hold at its top level.
 const SECTIONS: [&str; 12] = [

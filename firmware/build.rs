@@ -1,0 +1,52 @@
+//! Embeds the scenario that flies, and hands the linker the board's memory.
+
+#[path = "build/embed.rs"]
+mod embed;
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// Boards and the files that describe their memory, from this package's folder.
+const MEMORY: [(&str, &str); 4] = [
+    ("MICOAIR_H743", "memory/micoair-h743.x"),
+    ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
+    ("MPS2_AN386", "memory/mps2-an386.x"),
+    ("MPS2_AN500", "memory/mps2-an500.x"),
+];
+
+fn main() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    embed::scenario(&out.join("configuration.rs")).unwrap_or_else(|error| fail(&error));
+    println!("cargo::rerun-if-changed=build.rs");
+    if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") {
+        link(&out).unwrap_or_else(|error| fail(&error));
+    }
+}
+
+/// One clear line instead of a panic's backtrace.
+fn fail(problem: &str) -> ! {
+    println!("cargo::error={problem}");
+    std::process::exit(1)
+}
+
+/// Puts the board's memory map where ../memory.x finds it, and asks for the scripts of the runtime and of defmt.
+fn link(out: &Path) -> Result<(), String> {
+    let active = |(board, _): &&(&str, &str)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some();
+    let boards: Vec<_> = MEMORY.iter().filter(active).collect();
+    let [(_, memory)] = boards.as_slice() else {
+        let names: Vec<_> = MEMORY.iter().map(|(board, _)| board.to_lowercase().replace('_', "-")).collect();
+        let names = names.join(", ");
+        return Err(format!("exactly one board's feature must be on, found {}; boards: {names}", boards.len()));
+    };
+    fs::copy(memory, out.join("board-memory.x")).map_err(|error| format!("{memory}: {error}"))?;
+    // The runtime asks every board with interrupts of its own for this file; those of the emulated boards need no names.
+    if env::var_os("CARGO_FEATURE_MPS2").is_some() {
+        fs::write(out.join("device.x"), "").map_err(|error| format!("device.x: {error}"))?;
+    }
+    println!("cargo::rerun-if-changed={memory}");
+    println!("cargo::rustc-link-search={}", out.display());
+    for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
+        println!("cargo::rustc-link-arg-bins={argument}");
+    }
+    Ok(())
+}

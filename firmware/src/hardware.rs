@@ -1,0 +1,69 @@
+//! What the tasks ask of a board: narrow traits, one for each thing that can fail on its own.
+//!
+//! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
+//! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
+
+use controller_core::flight::ImuSample;
+use core::future::Future;
+
+/// Rotors that a board drives.
+pub const MOTORS: usize = 4;
+
+/// The board's time.
+pub trait Clock {
+    /// Microseconds since boot.
+    fn now(&self) -> u64;
+
+    /// Resolves at `time` (or at once if that has passed).
+    fn until(&self, time: u64) -> impl Future<Output = ()>;
+}
+
+/// A peripheral that did not do what it was asked to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
+pub struct Fault;
+
+/// An inertial measurement unit.
+pub trait Imu {
+    /// Waits for the next sample (1 kHz) and reads it, turned into the body frame (x forward, y left, z up).
+    ///
+    /// # Errors
+    /// [`Fault`] if the sensor does not answer as it should; the next call tries again.
+    fn sample(&mut self) -> impl Future<Output = Result<ImuSample, Fault>>;
+}
+
+/// What the motors are told, once per control tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MotorCommand {
+    /// The stop command: the only frame that a disarmed vehicle sends.
+    Stop,
+    /// Command of each motor, 0 (slowest) to 1 (full), in the rotors' order.
+    Run([f32; MOTORS]),
+}
+
+/// The motors' electronic speed controllers.
+pub trait Motors {
+    /// Sends one frame to every motor. The caller bounds the time this may take.
+    ///
+    /// # Errors
+    /// [`Fault`] if the frame did not go out.
+    fn write(&mut self, command: MotorCommand) -> impl Future<Output = Result<(), Fault>>;
+}
+
+/// The watchdog that stops a vehicle whose control task does not come back.
+pub trait Watchdog {
+    /// Gives the control task until the next deadline.
+    fn feed(&mut self);
+}
+
+/// The battery's voltage, where a board can measure it.
+pub trait Battery {
+    /// Volts; none where there is nothing to measure with.
+    fn voltage(&mut self) -> impl Future<Output = Option<f32>>;
+}
+
+/// A light for people.
+pub trait Light {
+    /// On or off.
+    fn set(&mut self, on: bool);
+}

@@ -1,0 +1,51 @@
+//! What the tasks tell each other. Every value comes with the time it was taken, and every reader says how old is too old.
+//!
+//! | from | what | to | at most this old |
+//! |---|---|---|---|
+//! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
+//! | link | [`Shared::pose`] | control | [`controller_core::flight`] decides |
+//! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
+//! | link | [`Shared::setpoints`] | control | a tick: taken once |
+//! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
+//! | status | [`Shared::voltage`] | control, link | 1 s |
+//! | control | [`Shared::report`] | link, status | one report a tick |
+//! | control, link | [`Shared::events`] | link (STATUSTEXT), status (log) | until sent |
+
+use controller_core::flight::Stamped;
+use core::cell::Cell;
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// The freshest value of something, overwritten by each newer one.
+pub struct Latest<M: RawMutex, T: Copy>(Mutex<M, Cell<Option<Stamped<T>>>>);
+
+impl<M: RawMutex, T: Copy> Latest<M, T> {
+    /// Nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Mutex::new(Cell::new(None)))
+    }
+
+    /// Replaces the value.
+    pub fn put(&self, value: T, time: u64) {
+        self.0.lock(|cell| cell.set(Some(Stamped { value, time })));
+    }
+
+    /// The value with its time, left in place.
+    #[must_use]
+    pub fn get(&self) -> Option<Stamped<T>> {
+        self.0.lock(Cell::get)
+    }
+
+    /// The value with its time, taken away.
+    #[must_use]
+    pub fn take(&self) -> Option<Stamped<T>> {
+        self.0.lock(Cell::take)
+    }
+}
+
+impl<M: RawMutex, T: Copy> Default for Latest<M, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
