@@ -27,7 +27,15 @@ fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
 /// The names of all tests in the repository.
 fn tests() -> BTreeSet<String> {
     let mut files = Vec::new();
-    for folder in ["controller-core/src", "controller-core/tests", "host-sim/src", "host-sim/tests", "tests"] {
+    for folder in [
+        "controller-core/src",
+        "controller-core/tests",
+        "host-sim/src",
+        "host-sim/scenario/src",
+        "host-sim/tests",
+        "firmware/src",
+        "tests",
+    ] {
         sources(&Path::new(ROOT).join(folder), &mut files);
     }
     let name =
