@@ -11,6 +11,8 @@
 
 #![allow(unsafe_code)] // one instruction, in `sqrt`
 
+use nalgebra::Vector4;
+
 /// Square root, correctly rounded. The hardware instruction where there is one.
 #[inline(always)]
 #[must_use]
@@ -82,6 +84,21 @@ pub fn limit(x: f32, level: f32) -> f32 {
     } else {
         x
     }
+}
+
+/// a . b in double precision, for configuration time. Out of line: where double precision is software, every operation is
+/// a call, and copies of this in every caller would cost more flash than the law.
+#[inline(never)]
+#[must_use]
+pub fn dot(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
+    a.dot(b)
+}
+
+/// The products of the components, out of line like [`dot`].
+#[inline(never)]
+#[must_use]
+pub fn component_product(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
+    a.component_mul(b)
 }
 
 /// e^x, for configuration time (not used in a tick).
