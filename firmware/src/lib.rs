@@ -3,6 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
+//! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //!
@@ -14,5 +15,6 @@
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod configuration;
+pub mod frames;
 pub mod hardware;
 pub mod shared;
