@@ -3,7 +3,10 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
+//! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
+//! | [`link`] | MAVLink: frames, what comes in, what goes out |
+//! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
@@ -14,5 +17,8 @@
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod configuration;
+pub mod frames;
 pub mod hardware;
+pub mod link;
+pub mod parameters;
 pub mod shared;
