@@ -5,7 +5,7 @@
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu};
-use crate::shared::{Event, Shared};
+use crate::shared::{Severity, Shared};
 use controller_core::flight::ImuSample;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
@@ -26,7 +26,10 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
         }
         if sample.is_ok() != healthy {
             healthy = sample.is_ok();
-            shared.tell(if healthy { Event::ImuBack } else { Event::ImuFault });
+            match sample {
+                Ok(_) => shared.announce(Severity::Information, "IMU answers again"),
+                Err(Fault) => shared.announce(Severity::Critical, "IMU does not answer"),
+            }
         }
     }
 }
