@@ -17,6 +17,8 @@
 //! [`rules::POSE_AGE_MAX`] at most.
 
 mod chain;
+#[cfg(test)]
+mod example;
 mod measurement;
 mod permission;
 pub mod pilot;

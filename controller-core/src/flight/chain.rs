@@ -127,9 +127,9 @@ impl Chain {
         self.governor.accept(setpoint).map_err(field)
     }
 
-    /// Whether thrusts were refused for too long.
+    /// Whether the last thrusts have been held for long enough.
     pub fn is_refused(&self) -> bool {
-        self.refusals > REFUSALS_MAX
+        self.refusals >= REFUSALS_MAX
     }
 
     /// One tick on the governor's reference.

@@ -188,3 +188,6 @@ fn is_silent(inputs: &Inputs) -> bool {
         to_come || inputs.now.saturating_sub(heard) >= GROUND_STATION_SILENCE_MAX
     })
 }
+
+#[cfg(test)]
+mod tests;
