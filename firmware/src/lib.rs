@@ -8,6 +8,7 @@
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
+//! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
 //! priority and runs them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
@@ -22,3 +23,4 @@ pub mod hardware;
 pub mod link;
 pub mod parameters;
 pub mod shared;
+pub mod status;
