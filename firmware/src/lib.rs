@@ -13,6 +13,7 @@
 //! | [`outputs`] | thrusts to motor commands |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
+//! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
 //! priority and runs them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
@@ -32,3 +33,4 @@ pub mod link;
 pub mod outputs;
 pub mod parameters;
 pub mod shared;
+pub mod status;

@@ -12,6 +12,7 @@
 //! | control | [`Shared::report`] | link, status | one report a tick |
 //! | control, link, status | [`Shared::announce`] | link (STATUSTEXT), status (log) | until sent |
 //! | link | [`Shared::hil`] | motors, sensors | until reboot |
+//! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
@@ -26,7 +27,7 @@ mod report;
 pub use event::{Event, Severity, Text};
 pub use flag::Flag;
 pub use latest::Latest;
-pub use report::{Report, Timing};
+pub use report::{Report, Timing, Traffic};
 
 use crate::link::Reply;
 use crate::parameters::Parameters;
@@ -95,6 +96,8 @@ pub struct Shared<M: RawMutex> {
     pub voltage: Latest<M, f32>,
     /// What the last control tick did.
     pub report: Latest<M, Report>,
+    /// What the link received.
+    pub traffic: Latest<M, Traffic>,
     /// Events on their way to the ground station.
     pub events: Channel<M, Event, EVENTS>,
     /// The same events on their way to the log.
@@ -123,6 +126,7 @@ impl<M: RawMutex> Shared<M> {
             answers: Channel::new(),
             voltage: Latest::new(),
             report: Latest::new(),
+            traffic: Latest::new(),
             events: Channel::new(),
             log: Channel::new(),
             hil: Flag::new(),

@@ -63,13 +63,16 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
+    /// Whether the message is of this type. Version 1 does not cut fields off: there, shorter payloads are something else.
+    #[must_use]
+    pub fn holds<D: MessageData>(&self) -> bool {
+        self.message == D::ID && (self.version == MavlinkVersion::V2 || self.payload.len() >= D::ENCODED_LEN)
+    }
+
     /// The message, if it is of this type and its enumerations are known ones. Fields cut off are zero.
     #[must_use]
     pub fn decode<D: MessageData>(&self) -> Option<D> {
-        if self.message != D::ID || (self.version == MavlinkVersion::V1 && self.payload.len() < D::ENCODED_LEN) {
-            return None;
-        }
-        D::deser(self.version, self.payload).ok()
+        if self.holds::<D>() { D::deser(self.version, self.payload).ok() } else { None }
     }
 
     /// One byte of the payload; zero where version 2 has cut it off.

@@ -1,4 +1,4 @@
-//! What a control tick did, for telemetry and the log.
+//! What a control tick did and what the line carried, for telemetry and the log.
 
 use controller_core::flight::Mode;
 use controller_core::state::{State, Wrench};
@@ -26,4 +26,17 @@ pub struct Timing {
     pub worst_jitter: u32,
     /// Ticks that did not run to their end in time.
     pub missed: u32,
+}
+
+/// What the link received since boot; each count starts again after 2^32.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Traffic {
+    /// Frames with the right checksum.
+    pub frames: u32,
+    /// Bytes that were part of none.
+    pub discarded: u32,
+    /// Messages that could not be used.
+    pub refused: u32,
+    /// Commands that the line delivered twice.
+    pub repeated: u32,
 }
