@@ -2,7 +2,9 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`bmi088`] | the boards' inertial measurement unit, over any SPI |
 //! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
+//! | [`dshot`] | motor commands as pulse widths |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //!
@@ -11,8 +13,10 @@
 
 #![cfg_attr(target_os = "none", no_std)]
 
+pub mod bmi088;
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod configuration;
+pub mod dshot;
 pub mod hardware;
 pub mod shared;
