@@ -9,6 +9,7 @@ mod target {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
+        let board = firmware::boards::crazyflie_bolt::Board::take();
         defmt::info!("{}", firmware::configuration::NAME);
         loop {
             cortex_m::asm::wfi();

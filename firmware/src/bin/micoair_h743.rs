@@ -9,6 +9,7 @@ mod target {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
+        let board = firmware::boards::micoair_h743::Board::take();
         defmt::info!("{}", firmware::configuration::NAME);
         loop {
             cortex_m::asm::wfi();
