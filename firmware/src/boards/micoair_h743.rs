@@ -164,9 +164,7 @@ impl DividedBattery {
     const VOLTS_PER_COUNT: f32 = 3.3 / 65535.0;
 
     fn new(adc: Peri<'static, ADC1>, pin: Peri<'static, PC0>) -> Self {
-        let mut config = AdcConfig::default();
-        config.resolution = Some(Resolution::BITS16);
-        config.averaging = Some(Averaging::Samples16);
+        let config = AdcConfig { resolution: Some(Resolution::BITS16), averaging: Some(Averaging::Samples16) };
         Self { converter: Adc::new_with_config(adc, config), pin }
     }
 }
