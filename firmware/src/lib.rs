@@ -2,10 +2,12 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`bmi088`] | the boards' inertial measurement unit, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
 //! | [`configuration`] | the scenario this build embeds |
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
+//! | [`dshot`] | motor commands as pulse widths |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`imu`] | the IMU task |
@@ -20,12 +22,14 @@
 
 #![cfg_attr(target_os = "none", no_std)]
 
+pub mod bmi088;
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod boot;
 pub mod configuration;
 pub mod control;
 pub mod deadline;
+pub mod dshot;
 pub mod frames;
 pub mod hardware;
 pub mod imu;
