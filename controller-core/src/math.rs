@@ -11,11 +11,12 @@
 
 #![allow(unsafe_code)] // one instruction, in `sqrt`
 
-/// Square root, correctly rounded. The hardware instruction where there is one.
+/// Square root, correctly rounded. The hardware instruction on bare-metal ARM with hardware floating point, which the
+/// target's ABI tells (stable compilers do not tell its feature `vfp2`).
 #[inline(always)]
 #[must_use]
 pub fn sqrt(x: f32) -> f32 {
-    #[cfg(all(target_arch = "arm", target_feature = "vfp2"))]
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf", target_os = "none"))]
     {
         let mut bits = x.to_bits();
         // SAFETY: one register-to-register instruction; it touches no memory and only the register it names.
@@ -27,7 +28,7 @@ pub fn sqrt(x: f32) -> f32 {
         }
         f32::from_bits(bits)
     }
-    #[cfg(not(all(target_arch = "arm", target_feature = "vfp2")))]
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf", target_os = "none")))]
     libm::sqrtf(x)
 }
 
