@@ -116,7 +116,12 @@ fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Cer
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
     let copy = configuration.clone();
     let (instructions, certified) = counter.long(|| certify(copy));
-    hprintln!("certificate: {:.0} instructions, {} B of stack, result {} B", instructions, bytes, size_of::<Certified>());
+    hprintln!(
+        "certificate: {:.0} instructions, {} B of stack, result {} B",
+        instructions,
+        bytes,
+        size_of::<Certified>()
+    );
     certified
 }
 
