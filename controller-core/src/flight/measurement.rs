@@ -6,6 +6,7 @@
 
 use super::{ImuSample, Pose, Stamped};
 use crate::governor::{POSITION_RANGE, SPEED_RANGE};
+use crate::math;
 use crate::state::{STATE_RANGE, State, check_vector};
 use nalgebra::Vector3;
 
@@ -50,7 +51,8 @@ impl Measurement for Pose {
         require(&position, POSITION_RANGE, "pose.position")?;
         require(&velocity, SPEED_RANGE, "pose.velocity")?;
         let state = State { position, velocity, attitude, angular_velocity: Vector3::zeros() };
-        let attitude = state.checked_attitude().map_err(|_| "pose.attitude")?;
+        state.check().map_err(|_| "pose.attitude")?;
+        let attitude = attitude * (1.0 / math::sqrt(attitude.norm_squared()));
         Ok(Self { attitude, ..self })
     }
 }
