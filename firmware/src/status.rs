@@ -50,7 +50,7 @@ pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
         Some(Mode::Flying) => true,
         Some(Mode::Holding) => step < 10,
         Some(Mode::Levelling) => step % 4 < 2,
-        None => step % 2 == 0,
+        None => step.is_multiple_of(2),
     }
 }
 
