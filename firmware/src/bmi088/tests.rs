@@ -22,7 +22,7 @@ impl Clock for Jumping {
     }
 }
 
-/// One write, as the bus saw it.
+/// One write that a device heard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Written {
     time: u64,
@@ -70,11 +70,14 @@ impl Registers {
         let [address, data @ ..] = bytes else { return };
         let register = *address & !READ;
         if *address & READ == 0 {
+            if asleep {
+                return;
+            }
             let value = data[0];
             self.written.push(Written { time: self.clock.now(), register, value });
             if register == self.reset && value == SOFT_RESET {
                 self.asleep = self.dummy > 0;
-            } else if !asleep {
+            } else {
                 self.values[usize::from(register)] = value;
             }
             return;

@@ -1,6 +1,7 @@
 //! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
 //!
 //! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice that.
+//! Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no RAM).
 //! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
 //! restarts.
 
@@ -88,6 +89,11 @@ impl Board {
     pub fn take() -> Self {
         let restart = restart::cause();
         let p = embassy_stm32::init(clocks());
+        pac::FLASH.acr().modify(|w| {
+            w.set_prften(true);
+            w.set_icen(true);
+            w.set_dcen(true);
+        });
 
         // The motors first: PA15 is pulled up until here, and the controllers must not see that.
         let pins = Pins(

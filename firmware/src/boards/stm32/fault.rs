@@ -46,7 +46,8 @@ pub fn stop_and_restart(timer: TimGp16) -> ! {
 fn stop_frame(timer: TimGp16) -> Option<()> {
     let width = zero_width(timer.arr().read().arr() + 1);
     widths(timer, width);
-    // The widths take effect at an update: the first begins bit one, the last ends bit sixteen.
+    // Widths take effect at an update: the first update begins bit one, the seventeenth ends bit sixteen.
+    timer.sr().write(|w| w.0 = 0);
     timer.cr1().modify(|w| w.set_cen(true));
     for _ in 0..BITS {
         period_ends(timer)?;
