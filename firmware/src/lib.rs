@@ -5,6 +5,7 @@
 //! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
+//! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
@@ -17,4 +18,5 @@ pub mod boards;
 pub mod configuration;
 pub mod frames;
 pub mod hardware;
+pub mod hil;
 pub mod shared;
