@@ -10,6 +10,7 @@
 //! | [`dshot`] | motor commands as pulse widths |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
+//! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
 //! | [`outputs`] | thrusts to motor commands |
@@ -32,6 +33,7 @@ pub mod deadline;
 pub mod dshot;
 pub mod frames;
 pub mod hardware;
+pub mod hil;
 pub mod imu;
 pub mod link;
 pub mod outputs;
