@@ -1,7 +1,7 @@
 //! The IMU task: each sample as it comes, at 1 kHz, stamped with the time it was read.
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! The first fault after good samples, and the first good sample after faults, are events.
+//! While a simulator stands in for the sensors, what this one says counts for nothing. The first fault after good samples, and the first good sample after faults, are events.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu};
@@ -21,6 +21,7 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
     loop {
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         match sample {
+            Ok(_) if shared.hil.active() => {}
             Ok(sample) => shared.imu.put(sample, clock.now()),
             Err(Fault) => clock.until(clock.now() + RETRY).await,
         }
