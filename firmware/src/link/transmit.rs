@@ -31,12 +31,13 @@ pub async fn transmit<W: Write, M: RawMutex>(line: W, clock: &impl Clock, shared
     let mut schedule = Schedule::new(clock.now());
     loop {
         let (replies, answers, events) = (&shared.replies, &shared.answers, &shared.events);
-        match select4(clock.until(schedule.next()), replies.receive(), answers.receive(), events.receive()).await {
+        // Of those ready the first goes first: what the vehicle decided before what somebody asked.
+        match select4(clock.until(schedule.next()), answers.receive(), events.receive(), replies.receive()).await {
             Either4::First(()) => transmitter.scheduled(&mut schedule).await,
-            Either4::Second(Reply::AllParameters) => schedule.list = Some((0, clock.now())),
-            Either4::Second(reply) => transmitter.reply(reply).await,
-            Either4::Third(answer) => transmitter.answer(answer).await,
-            Either4::Fourth(event) => transmitter.send(&telemetry::text(&event)).await,
+            Either4::Second(answer) => transmitter.answer(answer).await,
+            Either4::Third(event) => transmitter.send(&telemetry::text(&event)).await,
+            Either4::Fourth(Reply::AllParameters) => schedule.list = Some((0, clock.now())),
+            Either4::Fourth(reply) => transmitter.reply(reply).await,
         }
     }
 }
@@ -59,12 +60,6 @@ impl Schedule {
     }
 }
 
-/// The time after `due` by whole intervals that lies after `now`: a late transmission does not bring a burst of others.
-fn following(due: u64, interval: u64, now: u64) -> u64 {
-    let next = due.saturating_add(interval);
-    if next > now { next } else { now.saturating_add(interval) }
-}
-
 /// Writes messages.
 struct Transmitter<'a, W: Write, C: Clock, M: RawMutex> {
     line: W,
@@ -82,20 +77,28 @@ impl<W: Write, C: Clock, M: RawMutex> Transmitter<'_, W, C, M> {
         if now >= schedule.state {
             // Within 10 and 50 Hz, as the table has it.
             let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
-            schedule.state = following(schedule.state, interval, now);
             self.state(now).await;
+            schedule.state = self.following(schedule.state, interval);
         }
         if now >= schedule.heartbeat {
-            schedule.heartbeat = following(schedule.heartbeat, HEARTBEAT_INTERVAL, now);
             self.heartbeat(now).await;
+            schedule.heartbeat = self.following(schedule.heartbeat, HEARTBEAT_INTERVAL);
         }
         if let Some((index, time)) = schedule.list.filter(|&(_, time)| now >= time) {
-            let name = Name::from_index(index);
-            schedule.list = name.map(|_| (index + 1, following(time, LIST_INTERVAL, now)));
-            if let Some(name) = name {
-                self.parameter(name).await;
-            }
+            schedule.list = match Name::from_index(index) {
+                Some(name) => {
+                    self.parameter(name).await;
+                    Some((index + 1, self.following(time, LIST_INTERVAL)))
+                }
+                None => None,
+            };
         }
+    }
+
+    /// When what was due at `due` is due again: after now, so that a slow line does not keep the rest from being sent.
+    fn following(&self, due: u64, interval: u64) -> u64 {
+        let (now, next) = (self.clock.now(), due.saturating_add(interval));
+        if next > now { next } else { now.saturating_add(interval) }
     }
 
     async fn state(&mut self, now: u64) {
