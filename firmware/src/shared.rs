@@ -29,6 +29,7 @@ pub use flag::Flag;
 pub use latest::Latest;
 pub use report::{Report, Timing, Traffic};
 
+use crate::hil::Hil;
 use crate::link::Reply;
 use crate::parameters::Parameters;
 use controller_core::flight::{ImuSample, Pose, Refusal, Request};
@@ -103,7 +104,7 @@ pub struct Shared<M: RawMutex> {
     /// The same events on their way to the log.
     pub log: Channel<M, Event, EVENTS>,
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
-    pub hil: Flag,
+    pub hil: Hil<M>,
     /// What the receiving half of the link gives the sending half to say.
     pub replies: Channel<M, Reply, REPLIES>,
     /// What may be set from the ground.
@@ -129,7 +130,7 @@ impl<M: RawMutex> Shared<M> {
             traffic: Latest::new(),
             events: Channel::new(),
             log: Channel::new(),
-            hil: Flag::new(),
+            hil: Hil::new(false),
             replies: Channel::new(),
             parameters: Parameters::new(),
             lost: AtomicU32::new(0),

@@ -5,9 +5,10 @@
 //! number that it could refuse.
 
 use super::{ImuSample, Pose, Stamped};
-use crate::error::InputError;
 use crate::governor::{POSITION_RANGE, SPEED_RANGE};
+use crate::math;
 use crate::state::{STATE_RANGE, State, check_vector};
+use nalgebra::Vector3;
 
 /// How far ahead of the clock a time stamp may be, us: a sample taken while the tick was beginning.
 pub const STAMP_LEAD_MAX: u64 = 1_000;
@@ -15,30 +16,49 @@ pub const STAMP_LEAD_MAX: u64 = 1_000;
 /// The greatest body rate about an axis, rad/s: no gyro that flies measures more.
 pub const BODY_RATE_MAX: f32 = 100.0;
 
+/// Whether a time stamp can be of something that has happened.
+pub(super) fn is_in_time(time: u64, now: u64) -> bool {
+    time <= now.saturating_add(STAMP_LEAD_MAX)
+}
+
 /// Something measured that can be told to be usable.
 pub(super) trait Measurement: Copy {
+    /// The name of its time stamp.
+    const TIME: &'static str;
+
     /// It, with its attitude normalised.
     ///
     /// # Errors
     /// Names the field that cannot be used.
-    fn checked(self) -> Result<Self, InputError>;
+    fn checked(self) -> Result<Self, &'static str>;
+}
+
+/// Passes a vector that is finite and within `range`.
+fn require(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), &'static str> {
+    check_vector(vector, range, field).map_err(|_| field)
 }
 
 impl Measurement for ImuSample {
-    fn checked(self) -> Result<Self, InputError> {
-        check_vector(&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity")?;
-        check_vector(&self.specific_force, STATE_RANGE, "imu.specific_force")?;
+    const TIME: &'static str = "imu.time";
+
+    fn checked(self) -> Result<Self, &'static str> {
+        require(&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity")?;
+        require(&self.specific_force, STATE_RANGE, "imu.specific_force")?;
         Ok(self)
     }
 }
 
 impl Measurement for Pose {
-    fn checked(self) -> Result<Self, InputError> {
+    const TIME: &'static str = "pose.time";
+
+    fn checked(self) -> Result<Self, &'static str> {
         let Self { position, velocity, attitude } = self;
-        check_vector(&position, POSITION_RANGE, "pose.position")?;
-        check_vector(&velocity, SPEED_RANGE, "pose.velocity")?;
-        let state = State { position, velocity, attitude, angular_velocity: nalgebra::Vector3::zeros() };
-        Ok(Self { attitude: state.checked_attitude()?, ..self })
+        require(&position, POSITION_RANGE, "pose.position")?;
+        require(&velocity, SPEED_RANGE, "pose.velocity")?;
+        let state = State { position, velocity, attitude, angular_velocity: Vector3::zeros() };
+        state.check().map_err(|_| "pose.attitude")?;
+        let attitude = attitude * (1.0 / math::sqrt(attitude.norm_squared()));
+        Ok(Self { attitude, ..self })
     }
 }
 
@@ -46,32 +66,35 @@ impl Measurement for Pose {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Newest<T> {
     usable: Option<Stamped<T>>,
-    refused: bool,
+    unusable: Option<&'static str>,
 }
 
 impl<T: Measurement> Newest<T> {
     /// None yet.
-    pub const NONE: Self = Self { usable: None, refused: false };
+    pub const NONE: Self = Self { usable: None, unusable: None };
 
-    /// Considers what is offered in the tick at `now`. The same measurement may be offered again and again.
-    /// Returns it if it is a new one and usable.
+    /// Considers what is offered in the tick at `now`; the same measurement may be offered again and again, and one older
+    /// than what is here is passed over. Returns it if it is new and usable.
     pub fn offer(&mut self, offered: Option<Stamped<T>>, now: u64) -> Option<Stamped<T>> {
-        let offered = offered.filter(|offered| self.usable.as_ref().is_none_or(|kept| offered.time > kept.time))?;
-        let in_time = offered.time <= now.saturating_add(STAMP_LEAD_MAX);
-        self.refused = true;
-        let value = offered.value.checked().ok().filter(|_| in_time)?;
-        self.refused = false;
-        self.usable = Some(Stamped { value, time: offered.time });
+        let Stamped { value, time } =
+            offered.filter(|offered| self.usable.as_ref().is_none_or(|kept| offered.time > kept.time))?;
+        match if is_in_time(time, now) { value.checked() } else { Err(T::TIME) } {
+            Ok(value) => *self = Self { usable: Some(Stamped { value, time }), unusable: None },
+            Err(field) => {
+                self.unusable = Some(field);
+                return None;
+            }
+        }
         self.usable
     }
 
-    /// The newest usable one, if it is not older than `age_max`, us.
+    /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
     pub fn within(&self, age_max: u64, now: u64) -> Option<Stamped<T>> {
-        self.usable.filter(|kept| kept.age(now) <= age_max)
+        self.usable.filter(|kept| kept.age(now) <= age_max && is_in_time(kept.time, now))
     }
 
-    /// Whether the newest one offered could not be used.
-    pub fn was_refused(&self) -> bool {
-        self.refused
+    /// The field for which the newest one offered cannot be used, if so.
+    pub fn unusable(&self) -> Option<&'static str> {
+        self.unusable
     }
 }

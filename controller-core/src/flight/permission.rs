@@ -51,9 +51,8 @@ pub(super) fn to_arm(
     ground_station_silent: bool,
     now: u64,
 ) -> Result<Start, Refusal> {
-    require(!imu.was_refused(), Refusal::ImuUnusable)?;
+    imu.unusable().or(pose.unusable()).map_or(Ok(()), |field| Err(Refusal::Unusable(field)))?;
     require(imu.within(IMU_AGE_MAX, now).is_some(), Refusal::ImuStale)?;
-    require(!pose.was_refused(), Refusal::PoseUnusable)?;
     let pose = pose.within(POSE_AGE_MAX - 1, now).ok_or(Refusal::PoseStale)?.value;
     require(upright(&pose.attitude) > TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;

@@ -26,7 +26,7 @@ pub enum Reason {
     MotorTestOver,
     /// No usable IMU sample for [`super::rules::IMU_AGE_MAX`] in flight.
     ImuLost,
-    /// The law or the allocation refused its input for more than [`super::rules::REFUSALS_MAX`] ticks.
+    /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
     ThrustsRefused,
     /// No usable pose for [`super::rules::POSE_AGE_MAX`] in flight.
     PoseLost,
@@ -161,12 +161,10 @@ pub enum Refusal {
     DisarmCommanded,
     /// No IMU sample under [`super::rules::IMU_AGE_MAX`] old.
     ImuStale,
-    /// The newest IMU sample cannot be used: not finite, or beyond any gyro's range.
-    ImuUnusable,
     /// No pose under [`super::rules::POSE_AGE_MAX`] old.
     PoseStale,
-    /// The newest pose cannot be used: not finite, out of range, or no rotation.
-    PoseUnusable,
+    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or no rotation.
+    Unusable(&'static str),
     /// Body z is 30 degrees or more from up.
     Tilted,
     /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
@@ -189,15 +187,14 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Grounded(grounded) => return grounded.fmt(f),
+            Self::Unusable(field) => return write!(f, "Refused: {field:.32} unusable"),
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
             Self::ImuStale => "Refused: no IMU sample for 20 ms",
-            Self::ImuUnusable => "Refused: IMU sample unusable",
             Self::PoseStale => "Refused: no pose for 100 ms",
-            Self::PoseUnusable => "Refused: pose unusable",
             Self::Tilted => "Refused: tilted by 30 degrees or more",
             Self::GroundStationSilent => "Refused: no ground station for 2.5 s",
             Self::NoSuchRotor => "Motor test refused: no such rotor",
@@ -205,5 +202,60 @@ impl fmt::Display for Refusal {
             Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
             Self::NotFlying => "Setpoint refused: not flying",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::example;
+    extern crate std;
+    use std::format;
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    /// A name longer than any.
+    const LONG: &str = "a_name.that_is_longer_than_the_fifty_characters_of_a_status_text";
+
+    #[test]
+    fn every_text_fits_a_statustext_and_is_unlike_the_others() {
+        let grounded = [Grounded::Inequality(LONG), Grounded::Parameter(LONG), Grounded::NoRotors];
+        let refusals = [
+            Refusal::AlreadyArmed,
+            Refusal::MotorTestRunning,
+            Refusal::DisarmCommanded,
+            Refusal::ImuStale,
+            Refusal::PoseStale,
+            Refusal::Unusable(LONG),
+            Refusal::Tilted,
+            Refusal::GroundStationSilent,
+            Refusal::Reference(LONG),
+            Refusal::NoSuchRotor,
+            Refusal::MotorTestLevel,
+            Refusal::MotorTestDuration,
+            Refusal::NotFlying,
+            Refusal::Setpoint(LONG),
+        ];
+        let reasons = Reason::ALL.iter().map(ToString::to_string);
+        let refusals = refusals.into_iter().chain(grounded.map(Refusal::Grounded));
+        let mut texts: Vec<_> = reasons.chain(refusals.map(|refusal| refusal.to_string())).collect();
+        for text in &texts {
+            assert!(text.len() <= TEXT_MAX && text.len() > 4, "{text}");
+        }
+        let count = texts.len();
+        texts.sort();
+        texts.dedup();
+        assert_eq!(texts.len(), count);
+    }
+
+    #[test]
+    fn every_inequality_of_the_certificate_is_told_from_the_others_in_its_text() {
+        let certified = example::certified();
+        let certificate = certified.certificate();
+        let mut texts: Vec<_> =
+            certificate.inequalities().map(|i| format!("{:.44}", Grounded::Inequality(i.name).to_string())).collect();
+        texts.sort();
+        texts.dedup();
+        assert_eq!(texts.len(), certificate.inequalities().count());
     }
 }

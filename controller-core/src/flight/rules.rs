@@ -75,7 +75,7 @@ pub enum Condition {
     MotorTestOver,
     /// The newest usable IMU sample is older than [`IMU_AGE_MAX`].
     ImuStale,
-    /// More than [`REFUSALS_MAX`] ticks in a row without new thrusts.
+    /// [`REFUSALS_MAX`] ticks in a row brought no new thrusts.
     ThrustsRefused,
     /// The newest usable pose is older than [`POSE_AGE_MAX`].
     PoseStale,

@@ -190,7 +190,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 CommandResult::Accepted
             }
             Action::EnterHil => {
-                self.shared.hil.raise();
+                self.shared.hil.activate();
                 CommandResult::Accepted
             }
             Action::Answer(result) => result,

@@ -115,7 +115,7 @@ impl<W: Write, C: Clock, M: RawMutex> Transmitter<'_, W, C, M> {
         let shared = self.shared;
         let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX).map(|report| report.value);
         let mode = report.map(|report| report.mode);
-        self.send(&telemetry::heartbeat(mode, shared.hil.is_raised())).await;
+        self.send(&telemetry::heartbeat(mode, shared.hil.active())).await;
         let voltage = shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
         let traffic = shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
         self.send(&telemetry::status(voltage.map(|voltage| voltage.value), report.as_ref(), traffic)).await;
