@@ -6,7 +6,7 @@ use controller_core::flight::Mode;
 use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;
-use firmware::shared::{Flag, Severity, TEXT_MAX, Text};
+use firmware::shared::{Decimal, Flag, Severity, TEXT_MAX, Text};
 use firmware::status::{STEP, is_lit, run};
 use std::cell::RefCell;
 use support::Simulated;
@@ -85,6 +85,12 @@ fn texts_are_cut_at_whole_characters() {
     let long = "x".repeat(TEXT_MAX - 1);
     assert_eq!(Text::new(format_args!("{long}äb")).as_str(), long);
     assert_eq!(Text::new(format_args!("{long}ab")).as_str(), format!("{long}a"));
+}
+
+#[test]
+fn numbers_are_written_with_one_decimal() {
+    let written: Vec<_> = [0.0, 0.04, 0.06, 9.96, -1.25, 250.0].map(|number| Decimal(number).to_string()).into();
+    assert_eq!(written, ["0.0", "0.0", "0.1", "10.0", "-1.3", "250.0"]);
 }
 
 #[test]
