@@ -59,6 +59,9 @@ const SOFT_RESET: u8 = 0xB6;
 const ACCELEROMETER_RESET: u8 = 0x7E;
 const GYROSCOPE_RESET: u8 = 0x14;
 
+/// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
+const POWER_TAKES: u64 = 1_000;
+
 /// After a reset: 1 ms for the accelerometer, 30 ms for the gyroscope, and a little more, us.
 const ACCELEROMETER_RESET_TAKES: u64 = 2_000;
 const GYROSCOPE_RESET_TAKES: u64 = 35_000;
@@ -126,6 +129,7 @@ impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Bmi088<A, G, P, C> {
     }
 
     async fn power_up(&mut self) -> Result<(), Fault> {
+        self.wait(POWER_TAKES).await;
         // The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns
         // it to SPI. What that access reads means nothing.
         self.accelerometer_register(CHIP_ID).await?;
