@@ -4,6 +4,7 @@
 //! a busy one every half ring. A read that fails (noise, a ring overrun) loses what the ring held, and the next one starts
 //! reception again.
 
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{Config, RingBufferedUartRx, Uart, UartTx};
 use static_cell::StaticCell;
@@ -17,11 +18,12 @@ pub type Transmitter = UartTx<'static, Async>;
 /// Bytes of the ring.
 const RING: usize = 2048;
 
-/// 921,600 baud, eight bits, no parity, one stop bit.
+/// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: a line that nobody drives must not look like bytes.
 #[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.baudrate = 921_600;
+    config.rx_pull = Pull::Up;
     config
 }
 
