@@ -32,7 +32,12 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
         MotorCommand::Run(commands) if commands.iter().all(|command| command.is_finite()) => {
             Ok(commands.map(|command| run(command).unwrap_or_else(stop_frame)))
         }
-        MotorCommand::Run(_) => Err(Fault),
+        MotorCommand::One { motor, level } if level.is_finite() => {
+            let mut frames = stop();
+            *frames.get_mut(motor).ok_or(Fault)? = run(level).unwrap_or_else(stop_frame);
+            Ok(frames)
+        }
+        MotorCommand::Run(_) | MotorCommand::One { .. } => Err(Fault),
     }
 }
 
@@ -113,6 +118,13 @@ mod tests {
     #[test]
     fn stop_is_the_value_zero_with_the_checksum_zero() {
         assert_eq!(frames(MotorCommand::Stop).unwrap().map(|frame| frame.inner()), [0; MOTORS]);
+    }
+
+    #[test]
+    fn a_motor_test_turns_one_motor_and_stops_the_others() {
+        assert_eq!(values(MotorCommand::One { motor: 2, level: 0.0 }), [0, 0, 48, 0]);
+        assert!(frames(MotorCommand::One { motor: 4, level: 0.1 }).is_err());
+        assert!(frames(MotorCommand::One { motor: 0, level: f32::NAN }).is_err());
     }
 
     #[test]

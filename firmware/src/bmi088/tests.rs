@@ -208,6 +208,13 @@ fn power_up_waits_as_long_as_the_devices_need() {
 }
 
 #[test]
+fn power_up_ends_before_the_task_loses_patience() {
+    let mut bench = bench(Mounting::Aligned);
+    bench.sample().unwrap();
+    assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
+}
+
+#[test]
 fn a_running_sensor_is_not_powered_up_again() {
     let mut bench = bench(Mounting::Aligned);
     bench.sample().unwrap();

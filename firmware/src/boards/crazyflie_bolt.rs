@@ -9,7 +9,7 @@ use super::stm32::clock::SystemClock;
 use super::stm32::fault;
 use super::stm32::imu::{self, BoardImu};
 use super::stm32::light::Lamp;
-use super::stm32::link::{self, Receiver, Transmitter};
+use super::stm32::link::{self, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart::{self, Cause};
 use super::stm32::storage::ParameterFlash;
@@ -20,12 +20,12 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3};
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
-use embassy_stm32::usart::Uart;
+use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
 
 bind_interrupts!(
@@ -39,6 +39,7 @@ bind_interrupts!(
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         USART2 => usart::InterruptHandler<USART2>;
+        USART3 => usart::BufferedInterruptHandler<USART3>;
     }
 );
 
@@ -72,6 +73,10 @@ pub struct Board {
     pub receiver: Receiver,
     /// What USART2 sends.
     pub transmitter: Transmitter,
+    /// What USART3 receives from a simulator.
+    pub simulator_receiver: SimulatorReceiver,
+    /// What USART3 sends to a simulator.
+    pub simulator_transmitter: SimulatorTransmitter,
     /// Where parameters live.
     pub storage: ParameterFlash,
     /// Why the chip started.
@@ -119,6 +124,10 @@ impl Board {
         let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
         let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
         let (receiver, transmitter) = link::halves(uart);
+        let (to, from) = link::simulator_rings();
+        let uart = BufferedUart::new(p.USART3, p.PC11, p.PC10, to, from, Interrupts, link::config());
+        let uart = defmt::unwrap!(uart.map_err(|_| "USART3's clock makes no 921,600 baud"));
+        let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
         Self {
             clock: SystemClock,
@@ -129,6 +138,8 @@ impl Board {
             light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
             receiver,
             transmitter,
+            simulator_receiver,
+            simulator_transmitter,
             storage: ParameterFlash::new(p.FLASH, pac::IWDG),
             restart,
             power,

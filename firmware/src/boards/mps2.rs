@@ -1,4 +1,82 @@
-//! QEMU's `mps2-an386` (Cortex-M4F) and `mps2-an500` (Cortex-M7).
+//! QEMU's `mps2-an386` (Cortex-M4F) and `mps2-an500` (Cortex-M7): a board that only exists emulated.
+//!
+//! | peripheral | use |
+//! |---|---|
+//! | UART0 | the simulator: sensors in, motors out ([`crate::hil`]) |
+//! | UART1 | the ground station |
+//! | SysTick, timer 0 | [`time`]: what embassy-time counts, and when it wakes |
+//! | watchdog | [`watchdog`]: ends the emulation |
+//! | two interrupt lines nobody is connected to | the executors, flight above link ([`executors`]) |
+//!
+//! Thread mode only sleeps ([`idle`]). Panics and faults end the emulation with status 1 ([`exit`]).
+
+pub mod executors;
+pub mod exit;
+pub mod idle;
+pub mod time;
+pub mod uart;
+pub mod watchdog;
+
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
+
+/// What the processor and all devices on the bus run at, Hz.
+pub const CLOCK: u32 = 25_000_000;
+
+/// The lines of the interrupt controller that are in use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Interrupt {
+    /// UART 0 has a byte.
+    Uart0Receive = 0,
+    /// UART 0 takes another byte.
+    Uart0Transmit = 1,
+    /// UART 1 has a byte.
+    Uart1Receive = 2,
+    /// UART 1 takes another byte.
+    Uart1Transmit = 3,
+    /// Timer 0 has run down.
+    Timer0 = 8,
+    /// The executor of the flight tasks; connected to no device.
+    Flight = 30,
+    /// The executor of everything that may wait; connected to no device.
+    Background = 31,
+}
+
+// SAFETY: the numbers are those of the machine's lines, each below the 32 that it has.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        self as u16
+    }
+}
+
+/// Lines by urgency, the most urgent first. Devices only move bytes and wake tasks, so they may interrupt the flight tasks.
+const PRIORITIES: [(Interrupt, u8); 7] = [
+    (Interrupt::Timer0, 0x20),
+    (Interrupt::Uart0Receive, 0x40),
+    (Interrupt::Uart0Transmit, 0x40),
+    (Interrupt::Uart1Receive, 0x40),
+    (Interrupt::Uart1Transmit, 0x40),
+    (Interrupt::Flight, 0x80),
+    (Interrupt::Background, 0xC0),
+];
+
+/// Starts time and the UARTs; the executors' lines are turned on when they start.
+pub fn init(mut core: cortex_m::Peripherals) {
+    // Unmasking below cannot break a critical section: nothing has started one yet.
+    for (line, priority) in PRIORITIES {
+        // SAFETY: no line is unmasked yet, and no critical section relies on priorities.
+        unsafe { core.NVIC.set_priority(line, priority) };
+    }
+    time::init(core.SYST);
+    uart::SIMULATOR.init();
+    uart::GROUND.init();
+    use Interrupt::{Timer0, Uart0Receive, Uart0Transmit, Uart1Receive, Uart1Transmit};
+    for line in [Timer0, Uart0Receive, Uart0Transmit, Uart1Receive, Uart1Transmit] {
+        // SAFETY: each of these has its handler in the table below, and its device is initialised.
+        unsafe { NVIC::unmask(line) };
+    }
+}
 
 /// A device's interrupt handler.
 type Handler = unsafe extern "C" fn();
@@ -10,4 +88,14 @@ unsafe extern "C" {
 /// The device's part of the vector table.
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
-pub static __INTERRUPTS: [Handler; 32] = [DefaultHandler; 32];
+pub static __INTERRUPTS: [Handler; 32] = {
+    let mut table: [Handler; 32] = [DefaultHandler; 32];
+    table[Interrupt::Uart0Receive as usize] = uart::simulator_received;
+    table[Interrupt::Uart0Transmit as usize] = uart::simulator_transmitted;
+    table[Interrupt::Uart1Receive as usize] = uart::ground_received;
+    table[Interrupt::Uart1Transmit as usize] = uart::ground_transmitted;
+    table[Interrupt::Timer0 as usize] = time::alarm;
+    table[Interrupt::Flight as usize] = executors::flight;
+    table[Interrupt::Background as usize] = executors::background;
+    table
+};

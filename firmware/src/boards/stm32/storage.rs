@@ -13,7 +13,7 @@ use embassy_stm32::peripherals::FLASH;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 
 /// Bytes of the two sectors.
-const SIZE: u32 = 2 * MAX_ERASE_SIZE as u32;
+pub const SIZE: u32 = 2 * MAX_ERASE_SIZE as u32;
 
 /// Where they start, from the start of the flash.
 const START: u32 = FLASH_SIZE as u32 - SIZE;
