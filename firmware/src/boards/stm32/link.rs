@@ -5,6 +5,7 @@
 //! a busy one every half ring. A read that fails (noise, a ring overrun) loses what the ring held, and the next one starts
 //! reception again.
 
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{BufferedUart, BufferedUartRx, BufferedUartTx, Config, RingBufferedUartRx, Uart, UartTx};
 use static_cell::StaticCell;
@@ -40,11 +41,12 @@ pub fn simulator_halves(uart: BufferedUart<'static>) -> (SimulatorReceiver, Simu
     (receiver, transmitter)
 }
 
-/// 921,600 baud, eight bits, no parity, one stop bit.
+/// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: a line that nobody drives must not look like bytes.
 #[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.baudrate = 921_600;
+    config.rx_pull = Pull::Up;
     config
 }
 
