@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
+//! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
@@ -15,4 +16,5 @@
 pub mod boards;
 pub mod configuration;
 pub mod hardware;
+pub mod replay;
 pub mod shared;
