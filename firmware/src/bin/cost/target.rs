@@ -3,7 +3,7 @@
 use crate::body;
 use crate::counter::Counter;
 use crate::stack;
-use controller_core::allocation::Mixer;
+use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::controller::Controller;
 use controller_core::error::InputError;
@@ -52,6 +52,8 @@ impl Cost {
 /// The measured call: state and reference in, wrench out.
 type Step = fn(&mut Controller, &State, &Reference) -> Result<Wrench, InputError>;
 
+type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
+
 fn wrench_only(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Wrench, InputError> {
     controller.step(state, reference).map(|(wrench, _)| wrench)
 }
@@ -93,11 +95,12 @@ fn measure() -> bool {
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@480MHz");
     let mut flight = Flight { controller: &mut controller, mixer: &mixer, certified: &certified, counter: &counter };
-    let Some(cost) = flight.fly(on(&circle), &circle, &mut allocation) else { return false };
+    let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
+    let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
     allocation.print("allocation, circle");
     let mut recovering = Cost::default();
-    let Some(cost) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
+    let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
     if !govern(&counter, &embedded, &mut governing) {
@@ -135,9 +138,9 @@ struct Flight<'a> {
 
 impl Flight<'_> {
     /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
-    fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<Cost> {
+    fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
         let step: Step = black_box(wrench_only);
-        let allocate = black_box(Mixer::allocate);
+        let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
         for tick in 0..STEPS {
@@ -150,7 +153,8 @@ impl Flight<'_> {
             let achieved = allocated.ok()?.achieved;
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
         }
-        Some(cost)
+
+        Some((state, cost))
     }
 }
 
@@ -194,7 +198,7 @@ fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
     let Ok(mut governor) = Governor::new(*configuration.bounds(), GovernorLimits::default(), PERIOD, &start) else {
         return false;
     };
-    let tick = black_box(Governor::tick);
+    let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
     for number in 0..6000_u32 {
         if number % 1000 == 0 {
             let away = if number % 2000 == 0 { 3.0 } else { 0.0 };
