@@ -191,6 +191,9 @@ impl Controller {
         let FilterState { filtered, intermediate } = self.memory.filter;
         let command = self.position_law.command(state, reference, &self.memory.filter);
         let desired = DesiredAttitude::new(&command.acceleration_command, &reference.heading);
+        let CommandRates { jerk_command, snap_command } =
+            self.position_law.rates(reference, &self.memory.filter, &command.feedback);
+        let motion = desired.motion(&jerk_command, &snap_command, &reference.heading);
         let is_rotation = state.has_unit_attitude();
         let mass = self.vehicle.mass;
         let thrust = match self.thrust_floor {
@@ -199,9 +202,6 @@ impl Controller {
         };
         let error = desired.error(&state.attitude);
         let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
-        let CommandRates { jerk_command, snap_command } =
-            self.position_law.rates(reference, &self.memory.filter, &command.feedback);
-        let motion = desired.motion(&jerk_command, &snap_command, &reference.heading);
         let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } = self
             .attitude_law
             .command(&lifted.quaternion, &state.angular_velocity, &motion.velocity, &motion.acceleration);

@@ -20,6 +20,7 @@
 use crate::math;
 use crate::mrp;
 use crate::state::length_squared;
+use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3};
 
 /// The mechanism's memory.
@@ -60,7 +61,8 @@ pub fn switching_scalar(delta: f32) -> f32 {
 #[must_use]
 pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {
     let length = math::sqrt(length_squared(error));
-    let Lift { memory, sign } = match previous {
+    let mut jumped = previous.is_none();
+    let Lift { mut memory, mut sign } = match previous {
         Some(lift) => *lift,
         None => Lift { memory: *error * (canonical_sign(error) / length), sign: 1.0 },
     };
@@ -72,12 +74,17 @@ pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: 
     } else {
         canonical_sign(error)
     };
-    let follows = agreement.abs() <= (1.0 - alpha) * length;
-    let switches = sign * nearest * error.w <= switching_scalar * length;
-    let sign = if switches { -sign } else { sign };
+    if sign * nearest * error.w <= switching_scalar * length {
+        cold_path();
+        sign = -sign;
+        jumped = true;
+    }
     let quaternion = *error * (sign * nearest / length);
-    let memory = if follows { quaternion * sign } else { memory };
-    let jumped = previous.is_none() || follows || switches;
+    if agreement.abs() <= (1.0 - alpha) * length {
+        cold_path();
+        memory = quaternion * sign;
+        jumped = true;
+    }
     Lifted { quaternion, mrp: mrp::from_quaternion(&quaternion), lift: Lift { memory, sign }, jumped }
 }
 
