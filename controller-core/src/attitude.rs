@@ -6,10 +6,17 @@
 //! | omega~ = omega - R~^T omega_d | `angular_velocity_error` | Section V |
 //! | s_theta(theta~) = M_theta k_theta theta~ / sqrt(M_theta^2 + \|k_theta theta~\|^2) | `attitude_feedback` | Section V |
 //! | s_omega(omega~) = M_omega k_omega omega~ / sqrt(M_omega^2 + \|k_omega omega~\|^2) | `rate_feedback` | Section V |
-//! | tau_c = \[J R~^T omega_d\]x R~^T omega_d - J R~^T omega_d' | minus the feedforward | Section V |
+//! | tau_c = \[J R~^T omega_d\]x R~^T omega_d - J R~^T omega_d' | minus `feedforward` | Section V |
 //! | tau = -(1 + \|theta~\|^2)/4 s_theta - s_omega - tau_c | `torque` | Section V |
 //!
 //! The paper writes the gain inside the saturations *and* in their argument; it acts once. Body frame, N m.
+//!
+//! The tick takes its terms from the lifted quaternion (q_0, q_v) itself. With D = 1 + q_0, theta~ = q_v / D and
+//! (1 + |theta~|^2) / 4 = 1 / (2 D), so
+//!
+//! (1 + |theta~|^2)/4 s_theta = (k_theta / 2) / (D sqrt(D^2 + (k_theta / M_theta)^2 |q_v|^2)) q_v:
+//!
+//! one root and one division. J is diagonal, so (J w) x w has the components (J_y - J_z) w_y w_z and so on around.
 
 use crate::gains::Gains;
 use crate::math;
@@ -28,43 +35,77 @@ pub struct TorqueCommand {
     pub torque: Vector3<f32>,
 }
 
-/// The radial saturation s(x) = M x / sqrt(M^2 + |x|^2): unit slope at zero, shorter than `level` everywhere.
-#[inline]
-#[must_use]
-pub fn radial_saturation(x: &Vector3<f32>, level: f32) -> Vector3<f32> {
-    x * (level / math::sqrt(level * level + x.norm_squared()))
-}
-
-/// R(q)^T v for a unit quaternion.
+/// R(q)^T v for a unit quaternion: v - 2 q_0 q_v x v + 2 q_v x (q_v x v).
 #[inline(always)]
 #[must_use]
 pub fn rotate_back(q: &Quaternion<f32>, v: &Vector3<f32>) -> Vector3<f32> {
     let axis = q.imag();
-    let twice = axis.cross(v) * 2.0;
-    v - twice * q.w + axis.cross(&twice)
+    let across = (axis + axis).cross(v);
+    v - across * q.w + axis.cross(&across)
 }
 
-/// Evaluates the law. `error` is the lifted unit quaternion of R~ and `mrp` its theta~; `angular_velocity` is omega in the
-/// body frame; omega_d and omega_d' are in the axes of the desired body frame.
-#[inline]
-#[must_use]
-pub fn torque_command(
-    gains: &Gains,
-    inertia: &Vector3<f32>,
-    error: &Quaternion<f32>,
-    mrp: &Vector3<f32>,
-    angular_velocity: &Vector3<f32>,
-    desired_angular_velocity: &Vector3<f32>,
-    desired_angular_acceleration: &Vector3<f32>,
-) -> TorqueCommand {
-    let rate = rotate_back(error, desired_angular_velocity);
-    let acceleration = rotate_back(error, desired_angular_acceleration);
-    let angular_velocity_error = angular_velocity - rate;
+/// The attitude law's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AttitudeLaw {
+    /// The diagonal of J, kg m^2.
+    inertia: Vector3<f32>,
+    /// (J_z - J_y, J_x - J_z, J_y - J_x), kg m^2.
+    differences: Vector3<f32>,
+    /// k_theta / 2, N m.
+    half_gain: f32,
+    /// (k_theta / M_theta)^2.
+    steepness: f32,
+    /// k_omega M_omega.
+    rate_product: f32,
+    /// M_omega^2.
+    rate_level: f32,
+    /// k_omega^2.
+    rate_gain: f32,
+}
 
-    let attitude_feedback = radial_saturation(&(mrp * gains.k_theta), gains.m_theta);
-    let rate_feedback = radial_saturation(&(angular_velocity_error * gains.k_omega), gains.m_omega);
-    let gyroscopic = inertia.component_mul(&rate).cross(&rate);
-    let inertial = inertia.component_mul(&acceleration);
-    let torque = inertial - gyroscopic - attitude_feedback * (0.25 * (1.0 + mrp.norm_squared())) - rate_feedback;
-    TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque }
+impl AttitudeLaw {
+    /// For `gains` and the diagonal of J, kg m^2.
+    #[must_use]
+    pub fn new(gains: &Gains, inertia: &Vector3<f32>) -> Self {
+        let [k_theta, m_theta, k, m] = [gains.k_theta, gains.m_theta, gains.k_omega, gains.m_omega].map(f64::from);
+        let steepness = k_theta / m_theta;
+        Self {
+            inertia: *inertia,
+            differences: inertia.zxy() - inertia.yzx(),
+            half_gain: 0.5 * gains.k_theta,
+            steepness: (steepness * steepness) as f32,
+            rate_product: (k * m) as f32,
+            rate_level: (m * m) as f32,
+            rate_gain: (k * k) as f32,
+        }
+    }
+
+    /// Evaluates the law. `error` is the lifted unit quaternion of R~; `angular_velocity` is omega in the body frame;
+    /// omega_d and omega_d' are in the axes of the desired body frame.
+    #[inline(always)]
+    #[must_use]
+    pub fn command(
+        &self,
+        error: &Quaternion<f32>,
+        angular_velocity: &Vector3<f32>,
+        desired_angular_velocity: &Vector3<f32>,
+        desired_angular_acceleration: &Vector3<f32>,
+    ) -> TorqueCommand {
+        let rate = rotate_back(error, desired_angular_velocity);
+        let acceleration = rotate_back(error, desired_angular_acceleration);
+        let angular_velocity_error = angular_velocity - rate;
+
+        let (axis, d) = (error.imag(), 1.0 + error.w);
+        let attitude_gain = self.half_gain / (d * math::sqrt(d * d + self.steepness * axis.norm_squared()));
+        let squared = self.rate_level + self.rate_gain * angular_velocity_error.norm_squared();
+        let rate_feedback = angular_velocity_error * (self.rate_product / math::sqrt(squared));
+        let feedforward = self.inertia.component_mul(&acceleration)
+            + self.differences.component_mul(&rate.yzx()).component_mul(&rate.zxy());
+        TorqueCommand {
+            angular_velocity_error,
+            attitude_feedback: axis * (2.0 * d * attitude_gain),
+            rate_feedback,
+            torque: feedforward - axis * attitude_gain - rate_feedback,
+        }
+    }
 }

@@ -22,6 +22,10 @@
 //! Then omega_d = (phi' - psi' sin theta, A cos phi + B sin phi, B cos phi - A sin phi) with A = theta', B = psi' cos theta.
 //! Everything is defined while u_z > 0, which M_p < g - K_a3 guarantees. The sine and cosine of theta and phi are ratios of
 //! h's components: no trigonometric function is called. omega_d is in the axes of the desired body frame.
+//!
+//! The law needs R_d for R~ = R_d^T R only. That is three plane rotations of the vehicle's quaternion, each by half an angle
+//! a: along (1 + cos a, sin a) or (sin a, 1 - cos a), whichever does not cancel. Lengths are left to the path lifting, which
+//! divides by all of them at once.
 
 use crate::heading::Heading;
 use crate::math;
@@ -34,10 +38,60 @@ pub struct AttitudeReference {
     pub magnitude: f32,
     /// R_d as a unit quaternion, body to world.
     pub attitude: Quaternion<f32>,
+    half_angles: HalfAngles,
     /// omega_d, rad/s, axes of the desired body frame.
     pub angular_velocity: Vector3<f32>,
     /// omega_d', rad/s^2, axes of the desired body frame.
     pub angular_acceleration: Vector3<f32>,
+}
+
+impl AttitudeReference {
+    /// R~ = R_d^T R for the vehicle's `attitude`, as a quaternion of any length and either sign.
+    #[inline(always)]
+    #[must_use]
+    pub fn error(&self, attitude: &Quaternion<f32>) -> Quaternion<f32> {
+        self.half_angles.turn_back(attitude)
+    }
+}
+
+/// Yaw, pitch and roll of R_d, each as (cos a/2, sin a/2) times anything but zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct HalfAngles {
+    yaw: (f32, f32),
+    pitch: (f32, f32),
+    roll: (f32, f32),
+}
+
+impl HalfAngles {
+    /// From the cosine and sine of yaw, and of pitch and roll, whose cosines are positive.
+    #[inline(always)]
+    fn new(yaw: (f32, f32), pitch: &Polar, roll: &Polar) -> Self {
+        let (cos, sin) = yaw;
+        Self {
+            yaw: if cos >= 0.0 { (1.0 + cos, sin) } else { (sin, 1.0 - cos) },
+            pitch: (1.0 + pitch.cos, pitch.sin),
+            roll: (1.0 + roll.cos, roll.sin),
+        }
+    }
+
+    /// (R_z R_y R_x)^T in front of `q`: the conjugates (c, 0, 0, -s), (c, 0, -s, 0) and (c, -s, 0, 0), one after the other.
+    #[inline(always)]
+    fn turn_back(&self, q: &Quaternion<f32>) -> Quaternion<f32> {
+        let (w, x, y, z) = (q.w, q.i, q.j, q.k);
+        let (c, s) = self.yaw;
+        let (w, x, y, z) = (c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w);
+        let (c, s) = self.pitch;
+        let (w, x, y, z) = (c * w + s * y, c * x - s * z, c * y - s * w, c * z + s * x);
+        let (c, s) = self.roll;
+        Quaternion::new(c * w + s * x, c * x - s * w, c * y + s * z, c * z - s * y)
+    }
+
+    /// R_z R_y R_x as a unit quaternion.
+    #[inline(always)]
+    fn product(&self) -> Quaternion<f32> {
+        let back = self.turn_back(&Quaternion::new(1.0, 0.0, 0.0, 0.0));
+        back.conjugate() * (1.0 / math::sqrt(back.norm_squared()))
+    }
 }
 
 /// A pair of components read as polar coordinates, with two derivatives.
@@ -71,7 +125,7 @@ impl Polar {
 /// The attitude that points body z along `command` and body x's horizontal part along `heading`.
 ///
 /// `command`, `command_rate` and `command_acceleration` are u, u', u'' in the world frame; u_z > 0.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn attitude_reference(
     command: &Vector3<f32>,
@@ -109,30 +163,14 @@ pub fn attitude_reference(
         a_rate * roll.cos + b_rate * roll.sin + roll.angle_rate * angular_velocity.z,
         b_rate * roll.cos - a_rate * roll.sin - roll.angle_rate * angular_velocity.y,
     );
-    let attitude =
-        from_half_angles(half_angle(nu.x, nu.y), half_angle(pitch.cos, pitch.sin), half_angle(roll.cos, roll.sin));
-    AttitudeReference { magnitude: roll.radius, attitude, angular_velocity, angular_acceleration }
-}
-
-/// A vector along (cos a/2, sin a/2), up to sign, from (cos a, sin a): the one of two formulas that does not cancel.
-#[inline(always)]
-fn half_angle(cos: f32, sin: f32) -> (f32, f32) {
-    if cos >= 0.0 { (1.0 + cos, sin) } else { (sin, 1.0 - cos) }
-}
-
-/// R_z R_y R_x as a unit quaternion, from the halves of the angles with any common scale each.
-#[inline(always)]
-fn from_half_angles(yaw: (f32, f32), pitch: (f32, f32), roll: (f32, f32)) -> Quaternion<f32> {
-    let (cy, sy) = yaw;
-    let (cp, sp) = pitch;
-    let (cr, sr) = roll;
-    let product = Quaternion::new(
-        cy * cp * cr + sy * sp * sr,
-        cy * cp * sr - sy * sp * cr,
-        cy * sp * cr + sy * cp * sr,
-        sy * cp * cr - cy * sp * sr,
-    );
-    product * (1.0 / math::sqrt(product.norm_squared()))
+    let half_angles = HalfAngles::new((nu.x, nu.y), &pitch, &roll);
+    AttitudeReference {
+        magnitude: roll.radius,
+        attitude: half_angles.product(),
+        half_angles,
+        angular_velocity,
+        angular_acceleration,
+    }
 }
 
 #[cfg(test)]
@@ -152,6 +190,18 @@ mod tests {
             let x = r.column(0);
             assert!((cos * x[1] - sin * x[0]).abs() < 1e-6 && cos * x[0] + sin * x[1] > 0.0);
             assert!((desired.magnitude - 7.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_error_is_the_conjugate_of_the_desired_attitude_times_the_attitude() {
+        let attitude = Quaternion::new(0.5, -0.1, 0.7, 0.5);
+        for (cos, sin) in [(1.0, 0.0), (-0.8, 0.6), (-1.0, 0.0), (0.28, -0.96)] {
+            let heading = Heading::new(Vector2::new(cos, sin), 0.0, 0.0).unwrap();
+            let still = Vector3::zeros();
+            let desired = attitude_reference(&Vector3::new(3.0, -2.0, 6.0), &still, &still, &heading);
+            let (error, expected) = (desired.error(&attitude), desired.attitude.conjugate() * attitude);
+            assert!((error * expected.dot(&error).signum() / error.norm() - expected / expected.norm()).norm() < 1e-6);
         }
     }
 

@@ -101,6 +101,7 @@ impl Certificate {
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    #[inline(never)]
     pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
         let printed = form(configuration, Derivation::Printed);
         let sharp = form(configuration, Derivation::Sharp);

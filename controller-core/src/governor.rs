@@ -153,6 +153,7 @@ impl Governor {
     /// # Errors
     /// [`GovernorError::Parameter`] for a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too
     /// unlike each other for the integers; otherwise as [`Self::restart`].
+    #[inline(never)]
     pub fn new(
         bounds: ReferenceBounds,
         limits: GovernorLimits,

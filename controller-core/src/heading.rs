@@ -61,6 +61,12 @@ impl Heading {
         Self { direction: Vector2::new(cos, sin), rate, acceleration }
     }
 
+    /// The same direction with its rates dropped.
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        Self { rate: 0.0, acceleration: 0.0, ..*self }
+    }
+
     /// nu_d, unit length.
     #[must_use]
     pub fn direction(&self) -> Vector2<f32> {

@@ -22,8 +22,10 @@
 //! Vehicle, Limits, Gains, ReferenceBounds (, Rotors, thrust floor) ─> Configuration ─> Certificate ─> Certified ─> Controller
 //! ```
 //!
-//! [`controller`] composes the four steps of the law, with an example. A [`Controller`](controller::Controller) for flight
-//! is made from a [`Certified`](certificate::configuration::Certified) configuration and from nothing else.
+//! [`flight`] decides which of this reaches the motors: [`flight::Pilot`] takes measurements and requests, and gives thrusts or
+//! a stop, by a table of [rules](flight::rules). [`controller`] composes the four steps of the law, with an example. A
+//! [`Controller`](controller::Controller) for flight is made from a [`Certified`](certificate::configuration::Certified)
+//! configuration and from nothing else.
 //!
 //! # Conventions
 //!

@@ -13,6 +13,10 @@
 //!
 //! All vectors are in the world frame; u in m/s^2. The filters are linear and their input is held between ticks, so they
 //! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
+//!
+//! The tick does not form z: the argument of tanh, (k_p z_1 + k_v z_2) / M_p, is linear in p~, v~, u_f and u_s, with weights
+//!
+//! k_p / M_p,  (k_p (1/k_f + 1/k_s) + k_v) / M_p,  (k_p / (k_s k_f) + k_v / k_f) / M_p,  k_v / (k_s M_p).
 
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::gains::{GainParameters, Gains};
@@ -50,6 +54,9 @@ impl FilterTransition {
     /// The longest period, s: the slowest tick the link's simulators may ask for.
     pub const LONGEST_PERIOD: f32 = 0.1;
 
+    /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].
+    const GREATEST_WEIGHT: f64 = 1.0 - 8.0 / 16_777_216.0;
+
     /// For the bandwidths in `gains` and a period in (0, [`Self::LONGEST_PERIOD`]] s.
     ///
     /// # Errors
@@ -63,37 +70,36 @@ impl FilterTransition {
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
         let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
-        let towards_intermediate = k_f * h * mixed;
+        let towards_intermediate = (k_f * h * mixed).min(Self::GREATEST_WEIGHT);
+        let both = (-math::exp_m1(-k_f * h)).min(Self::GREATEST_WEIGHT);
         Ok(Self {
             towards_intermediate: towards_intermediate as f32,
-            towards_input: (-math::exp_m1(-k_f * h) - towards_intermediate) as f32,
-            intermediate_towards_input: -math::exp_m1(-k_s * h) as f32,
+            towards_input: (both - towards_intermediate).max(0.0) as f32,
+            intermediate_towards_input: (-math::exp_m1(-k_s * h)).min(Self::GREATEST_WEIGHT) as f32,
         })
     }
 
-    /// The filters' states one period later, with `feedback` held. Every component stays within ±`level`.
+    /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all of
+    /// them now, to the last bit.
     #[inline]
     #[must_use]
-    pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>, level: f32) -> FilterState {
+    pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
-        // move the filters' bandwidth. The limit does nothing in exact arithmetic; it keeps rounding from leaking past the
-        // level, to the bit.
+        // move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three roundings make
+        // each product at most its weight times (M - x) (1 + 2^-24)^3, and the weights add up to less than that leaves.
+        // So x plus the step is at most M before it is rounded, and hence after.
         let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
-            let step = self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f);
-            math::limit(u_f + step, level)
+            u_f + (self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f))
         });
-        let intermediate = state
-            .intermediate
-            .zip_map(feedback, |u_s, ubar| math::limit(u_s + self.intermediate_towards_input * (ubar - u_s), level));
+        let intermediate =
+            state.intermediate.zip_map(feedback, |u_s, ubar| u_s + self.intermediate_towards_input * (ubar - u_s));
         FilterState { filtered, intermediate }
     }
 }
 
-/// The position law's constants, with the reciprocals a tick would otherwise divide for.
+/// The position law's constants, with what a tick would otherwise work out again and again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
-    k_p: f32,
-    k_v: f32,
     k_f: f32,
     k_s: f32,
     m_p: f32,
@@ -101,8 +107,8 @@ pub struct PositionLaw {
     second_lag: f32,
     /// 1 / k_s, s.
     first_lag: f32,
-    /// 1 / M_p, s^2/m.
-    per_level: f32,
+    /// Weights of p~, v~, u_f and u_s in (k_p z_1 + k_v z_2) / M_p.
+    weights: [f32; 4],
     /// g, m/s^2.
     gravity: f32,
 }
@@ -132,30 +138,40 @@ impl PositionLaw {
     /// For `gains` under `gravity`, m/s^2.
     #[must_use]
     pub fn new(gains: &Gains, gravity: f32) -> Self {
-        let GainParameters { k_p, k_v, k_f, k_s, m_p, .. } = **gains;
-        Self { k_p, k_v, k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, per_level: 1.0 / m_p, gravity }
+        let GainParameters { k_f, k_s, m_p, .. } = **gains;
+        let [p, v, f, s, m] = [gains.k_p, gains.k_v, k_f, k_s, m_p].map(f64::from);
+        let weights = [p, p * (1.0 / f + 1.0 / s) + v, (p / s + v) / f, v / s].map(|weight| (weight / m) as f32);
+        Self { k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, weights, gravity }
     }
 
     /// Evaluates the law at one instant; the filters are read, not advanced.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
-        let Self { k_f, k_s, m_p, second_lag, first_lag, per_level, .. } = *self;
+        let Self {
+            k_f,
+            k_s,
+            m_p,
+            second_lag,
+            first_lag,
+            weights: [of_position, of_velocity, of_filtered, of_intermediate],
+            ..
+        } = *self;
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
 
         let position_error = state.position - reference.position;
         let velocity_error = state.velocity - reference.velocity;
-        let z_1 = position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag);
-        let z_2 = velocity_error + u_f * second_lag + u_s * first_lag;
-        let feedback = (z_1 * self.k_p + z_2 * self.k_v).map(|s| -m_p * math::tanh(s * per_level));
+        let argument =
+            position_error * of_position + velocity_error * of_velocity + u_f * of_filtered + u_s * of_intermediate;
+        let feedback = argument.map(|s| -m_p * math::tanh(s));
 
         let filtered_rate = (u_s - u_f) * k_f;
         let intermediate_rate = (feedback - u_s) * k_s;
         PositionCommand {
             position_error,
             velocity_error,
-            z_1,
-            z_2,
+            z_1: position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag),
+            z_2: velocity_error + u_f * second_lag + u_s * first_lag,
             feedback,
             acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, self.gravity),
             jerk_command: filtered_rate + reference.jerk,

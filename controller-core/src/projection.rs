@@ -15,14 +15,17 @@
 
 use nalgebra::{Quaternion, Vector3};
 
-/// T in N for u (world, m/s^2), the vehicle's attitude (unit, body to world), its mass in kg and the floor in N.
-#[inline]
+/// T in N for u (world, m/s^2), the vehicle's attitude q (body to world, of any length), its mass in kg and the floor in N.
+///
+/// R e3 = e3 + 2/|q|^2 (x z + w y, y z - w x, -(x^2 + y^2)).
+#[inline(always)]
 #[must_use]
 pub fn projected_thrust(mass: f32, command: &Vector3<f32>, attitude: &Quaternion<f32>, floor: f32) -> f32 {
     let Quaternion { coords } = attitude;
     let (x, y, z, w) = (coords.x, coords.y, coords.z, coords.w);
-    let thrust_axis = Vector3::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
-    (mass * command.dot(&thrust_axis)).max(floor)
+    let lean = command.x * (x * z + w * y) + command.y * (y * z - w * x) - command.z * (x * x + y * y);
+    let thrust = mass * (command.z + 2.0 / attitude.norm_squared() * lean);
+    if thrust < floor { floor } else { thrust }
 }
 
 #[cfg(test)]

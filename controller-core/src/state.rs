@@ -1,10 +1,9 @@
 //! What goes into a control tick and what comes out: the vehicle's state and the wrench.
 
 use crate::error::InputError;
-use crate::math;
 use nalgebra::{Quaternion, Vector3};
 
-/// How far from one a quaternion's length may be; closer ones are normalised, others refused.
+/// How far from one a quaternion's length may be; closer ones serve as the rotation they are along, others are refused.
 pub const UNIT_TOLERANCE: f32 = 1e-3;
 
 /// The greatest magnitude of a state's component: its square still fits single precision with room to spare.
@@ -36,16 +35,28 @@ pub(crate) fn check_vector(vector: &Vector3<f32>, range: f32, field: &'static st
     }
 }
 
+/// The sum of all components' squares: below the square of a range, every component is finite and in that range.
+#[inline(always)]
+pub(crate) fn sum_of_squares(vectors: &[&Vector3<f32>]) -> f32 {
+    vectors.iter().fold(0.0, |sum, v| sum + v.x * v.x + v.y * v.y + v.z * v.z)
+}
+
 impl State {
-    /// Checks every field and returns the attitude as an exactly normalised quaternion.
-    pub(crate) fn checked_attitude(&self) -> Result<Quaternion<f32>, InputError> {
+    /// Whether the attitude is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
+    #[inline(always)]
+    pub(crate) fn has_unit_attitude(&self) -> bool {
+        const SQUARE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
+        (self.attitude.norm_squared() - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
+    }
+
+    /// Checks every field, one by one.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vector(&self.position, STATE_RANGE, "state.position")?;
         check_vector(&self.velocity, STATE_RANGE, "state.velocity")?;
         check_vector(&self.angular_velocity, STATE_RANGE, "state.angular_velocity")?;
         let field = "state.attitude";
-        let length = math::sqrt(self.attitude.norm_squared());
-        if (length - 1.0).abs() <= UNIT_TOLERANCE {
-            Ok(self.attitude * (1.0 / length))
+        if self.has_unit_attitude() {
+            Ok(())
         } else if self.attitude.coords.iter().all(|component| component.is_finite()) {
             Err(InputError::NotARotation { field })
         } else {

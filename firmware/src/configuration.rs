@@ -1,8 +1,9 @@
 //! The configuration this build flies: chosen with `SCENARIO=file.toml` at build time, certified again at boot.
 
+use crate::hardware::MOTORS;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
-use controller_core::error::ParameterError;
+use controller_core::error::{ParameterError, Reason};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
@@ -17,3 +18,6 @@ include!(concat!(env!("OUT_DIR"), "/configuration.rs"));
 pub fn embedded() -> Result<Configuration, ParameterError> {
     built()
 }
+
+/// What is said of a scenario without rotors.
+pub const NO_ROTORS: ParameterError = ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) };

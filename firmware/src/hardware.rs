@@ -39,6 +39,13 @@ pub enum MotorCommand {
     Stop,
     /// Command of each motor, 0 (slowest) to 1 (full), in the rotors' order.
     Run([f32; MOTORS]),
+    /// One motor turns at a command from 0 to 1; the others get the stop command.
+    One {
+        /// Which, from 0.
+        motor: usize,
+        /// Its command.
+        level: f32,
+    },
 }
 
 /// The motors' electronic speed controllers.

@@ -2,21 +2,41 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`configuration`] | the scenario this build embeds, and its certificate worked out at boot |
+//! | [`bmi088`] | the boards' inertial measurement unit, over any SPI |
+//! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
+//! | [`configuration`] | the scenario this build embeds |
+//! | [`control`] | the control task: pilot in, motors out, on time |
+//! | [`deadline`] | bounds in time for everything that is waited for |
+//! | [`dshot`] | motor commands as pulse widths |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
+//! | [`imu`] | the IMU task |
+//! | [`link`] | MAVLink: frames, what comes in, what goes out |
+//! | [`outputs`] | thrusts to motor commands |
+//! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
+//! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
 //! priority and runs them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
 
 #![cfg_attr(target_os = "none", no_std)]
 
+pub mod bmi088;
 #[cfg(target_os = "none")]
 pub mod boards;
+pub mod boot;
 pub mod configuration;
+pub mod control;
+pub mod deadline;
+pub mod dshot;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
+pub mod imu;
+pub mod link;
+pub mod outputs;
+pub mod parameters;
 pub mod shared;
+pub mod status;

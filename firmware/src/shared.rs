@@ -5,46 +5,185 @@
 //! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
 //! | link | [`Shared::pose`] | control | [`controller_core::flight`] decides |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
-//! | link | [`Shared::setpoints`] | control | a tick: taken once |
+//! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
+//! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
 //! | status | [`Shared::voltage`] | control, link | 1 s |
 //! | control | [`Shared::report`] | link, status | one report a tick |
-//! | control, link | [`Shared::events`] | link (STATUSTEXT), status (log) | until sent |
+//! | control, link, status | [`Shared::announce`] | link (STATUSTEXT), status (log) | until sent |
+//! | link | [`Shared::hil`] | motors, sensors | until reboot |
+//! | link | [`Shared::traffic`] | link, status | a count |
+//! | link | [`Shared::replies`] | link, its other half | until sent |
+//! | parameters | [`Shared::parameters`] | every task | the present values |
+//!
+//! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
+//! control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
 
-use controller_core::flight::Stamped;
-use core::cell::Cell;
-use embassy_sync::blocking_mutex::Mutex;
+mod event;
+mod flag;
+mod latest;
+mod report;
+
+pub use event::{Event, Severity, Text};
+pub use flag::Flag;
+pub use latest::Latest;
+pub use report::{Report, Timing, Traffic};
+
+use crate::link::Reply;
+use crate::parameters::Parameters;
+use controller_core::flight::{ImuSample, Pose, Refusal, Request};
+use controller_core::governor::Setpoint;
+use core::fmt;
+use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use embassy_sync::channel::Channel;
 
-/// The freshest value of something, overwritten by each newer one.
-pub struct Latest<M: RawMutex, T: Copy>(Mutex<M, Cell<Option<Stamped<T>>>>);
+/// Requests that wait for control, which takes one a tick.
+pub const REQUESTS: usize = 4;
 
-impl<M: RawMutex, T: Copy> Latest<M, T> {
-    /// Nothing yet.
+/// Events that wait to be sent or logged.
+pub const EVENTS: usize = 8;
+
+/// Replies that wait to be sent.
+pub const REPLIES: usize = 8;
+
+/// Who asked for something, and by which command: enough to answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Origin {
+    /// MAVLink system.
+    pub system: u8,
+    /// MAVLink component.
+    pub component: u8,
+    /// MAV_CMD.
+    pub command: u16,
+}
+
+/// A request to control, to be answered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// What for.
+    pub request: Request,
+    /// Who by.
+    pub origin: Origin,
+}
+
+/// What control says to a request.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Who asked.
+    pub origin: Origin,
+    /// Done, or why not.
+    pub result: Result<(), Refusal>,
+}
+
+/// Everything that passes between tasks.
+pub struct Shared<M: RawMutex> {
+    /// The newest inertial sample, with its data-ready time.
+    pub imu: Latest<M, ImuSample>,
+    /// The newest pose, with its time of arrival.
+    pub pose: Latest<M, Pose>,
+    /// Its time says when a ground station was last heard.
+    pub ground_station: Latest<M, ()>,
+    /// The newest setpoint. An unread one is replaced: only the last counts.
+    pub setpoint: Latest<M, Setpoint>,
+    /// Requests for control, in the order they came. Put them in with [`Self::request`].
+    pub requests: Channel<M, Asked, REQUESTS>,
+    /// Raised by a disarm command, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
+    pub disarm: Flag,
+    /// Answers to requests: room for one to each request on its way.
+    pub answers: Channel<M, Answer, REQUESTS>,
+    /// The battery, V.
+    pub voltage: Latest<M, f32>,
+    /// What the last control tick did.
+    pub report: Latest<M, Report>,
+    /// What the link received.
+    pub traffic: Latest<M, Traffic>,
+    /// Events on their way to the ground station.
+    pub events: Channel<M, Event, EVENTS>,
+    /// The same events on their way to the log.
+    pub log: Channel<M, Event, EVENTS>,
+    /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
+    pub hil: Flag,
+    /// What the receiving half of the link gives the sending half to say.
+    pub replies: Channel<M, Reply, REPLIES>,
+    /// What may be set from the ground.
+    pub parameters: Parameters<M>,
+    /// Events that found one of the queues full.
+    lost: AtomicU32,
+}
+
+impl<M: RawMutex> Shared<M> {
+    /// Nothing told yet, parameters at their defaults.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Mutex::new(Cell::new(None)))
+        Self {
+            imu: Latest::new(),
+            pose: Latest::new(),
+            ground_station: Latest::new(),
+            setpoint: Latest::new(),
+            requests: Channel::new(),
+            disarm: Flag::new(),
+            answers: Channel::new(),
+            voltage: Latest::new(),
+            report: Latest::new(),
+            traffic: Latest::new(),
+            events: Channel::new(),
+            log: Channel::new(),
+            hil: Flag::new(),
+            replies: Channel::new(),
+            parameters: Parameters::new(),
+            lost: AtomicU32::new(0),
+        }
     }
 
-    /// Replaces the value.
-    pub fn put(&self, value: T, time: u64) {
-        self.0.lock(|cell| cell.set(Some(Stamped { value, time })));
+    /// Asks control for something.
+    ///
+    /// # Errors
+    /// Gives the request back if too many wait already; the sender is to be told to try again.
+    pub fn request(&self, asked: Asked) -> Result<(), Asked> {
+        self.requests.try_send(asked).map_err(|embassy_sync::channel::TrySendError::Full(asked)| asked)
     }
 
-    /// The value with its time, left in place.
+    /// Disarms within one tick. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
+    pub fn request_disarm(&self) {
+        while let Ok(Asked { origin, .. }) = self.requests.try_receive() {
+            self.answer(Answer { origin, result: Err(Refusal::DisarmCommanded) });
+        }
+        self.disarm.raise();
+    }
+
+    /// Answers a request, and announces a refusal in words. An answer that finds no room is dropped: its sender asks again
+    /// for want of one.
+    pub fn answer(&self, answer: Answer) {
+        if let Err(refusal) = answer.result {
+            self.announce(Severity::Warning, refusal);
+        }
+        let _ = self.answers.try_send(answer);
+    }
+
+    /// Tells people: the ground station and the log. Where a queue is full the event is dropped and counted: what came
+    /// first is the cause, what follows is mostly its consequence.
+    pub fn announce(&self, severity: Severity, words: impl fmt::Display) {
+        let event = Event { severity, text: Text::new(words) };
+        if self.events.try_send(event.clone()).is_err() | self.log.try_send(event).is_err() {
+            self.lost.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Events that were dropped for want of room.
     #[must_use]
-    pub fn get(&self) -> Option<Stamped<T>> {
-        self.0.lock(Cell::get)
+    pub fn lost_events(&self) -> u32 {
+        self.lost.load(Ordering::Relaxed)
     }
 
-    /// The value with its time, taken away.
+    /// Whether the last report says that the law drives the motors. Until there is a report, nothing does.
     #[must_use]
-    pub fn take(&self) -> Option<Stamped<T>> {
-        self.0.lock(Cell::take)
+    pub fn is_armed(&self) -> bool {
+        self.report.get().is_some_and(|report| report.value.mode.is_armed())
     }
 }
 
-impl<M: RawMutex, T: Copy> Default for Latest<M, T> {
+impl<M: RawMutex> Default for Shared<M> {
     fn default() -> Self {
         Self::new()
     }

@@ -11,7 +11,7 @@
 pub mod configurations;
 pub mod search;
 
-use controller_core::attitude;
+use controller_core::attitude::{self, AttitudeLaw};
 use controller_core::attitude_reference::{AttitudeReference, attitude_reference};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Memory;
@@ -155,11 +155,9 @@ impl Situation {
     pub fn torque(&self, configuration: &Configuration) -> Vector3<f32> {
         let desired = self.desired();
         let error = &self.attitude_error;
-        attitude::torque_command(
-            configuration.gains(),
-            &configuration.vehicle().inertia,
+        let law = AttitudeLaw::new(configuration.gains(), &configuration.vehicle().inertia);
+        law.command(
             error,
-            &controller_core::mrp::from_quaternion(error),
             &(self.rate_error + attitude::rotate_back(error, &desired.angular_velocity)),
             &desired.angular_velocity,
             &desired.angular_acceleration,

@@ -31,7 +31,7 @@
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotors};
-use crate::math;
+use crate::math::{self, component_product, dot};
 use core::cell::Cell;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -58,7 +58,7 @@ pub(super) struct Generator {
 pub(super) fn generators<'a>(rotors: &Rotors, chosen: impl Iterator<Item = &'a usize>) -> Vec<Generator, ROTORS_MAX> {
     let one = |index: &usize| {
         let rotor = rotors.get(*index)?;
-        let column = rotors.effectiveness().get(*index)?.component_mul(rotors.scale());
+        let column = component_product(rotors.effectiveness().get(*index)?, rotors.scale());
         Some(Generator { column, low: f64::from(rotor.thrust_min), high: f64::from(rotor.thrust_max) })
     };
     collected(chosen.filter_map(one))
@@ -70,6 +70,30 @@ struct Slab {
     normal: Vector4<f32>,
     low: f32,
     high: f32,
+}
+
+impl Slab {
+    /// The slab between the faces with `normal`, and the cosine between normal and direction; none where they are parallel.
+    #[inline(never)]
+    fn new(
+        rotors: &Rotors,
+        generators: &[Generator],
+        direction: &Vector4<f64>,
+        normal: &Vector4<f64>,
+    ) -> Option<(f64, Self)> {
+        let along = dot(normal, direction);
+        let cosine = along.abs() / math::sqrt_f64(dot(normal, normal) * dot(direction, direction));
+        // Dependent triples have no normal (0 / 0 compares false): the faces they lie in come from other triples.
+        if cosine > PARALLEL {
+            let normal = normal / along;
+            let (low, high) = extent(generators, &normal);
+            let slack = if cosine < STEEP { ROUNDING * magnitude(generators, &normal) } else { 0.0 };
+            let normal = component_product(&normal, rotors.scale()).map(|x| x as f32);
+            Some((cosine, Self { normal, low: (low - slack) as f32, high: (high + slack) as f32 }))
+        } else {
+            None
+        }
+    }
 }
 
 /// How far a wrench may move along one direction d without leaving a zonotope of at most N slabs.
@@ -84,29 +108,16 @@ impl<const N: usize> Slabs<N> {
         open: Option<Vector4<f64>>,
         direction: Vector4<f64>,
     ) -> Self {
-        let direction = direction.component_mul(rotors.scale());
-        let size: Vector4<f64> = generators.iter().map(|generator| generator.column.abs() * generator.high).sum();
+        let direction = component_product(&direction, rotors.scale());
         let mut slabs: Vec<(f64, Slab), N> = Vec::new();
-        let mut add = |a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>| {
-            let normal = normal(a, b, c);
-            let along = normal.dot(&direction);
-            let cosine = along.abs() / math::sqrt_f64(normal.norm_squared() * direction.norm_squared());
-            // Dependent triples have no normal (0 / 0 compares false): the faces they lie in come from other triples.
-            if cosine > PARALLEL {
-                let normal = normal / along;
-                let (low, high) = extent(generators, &normal);
-                let slack = if cosine < STEEP { ROUNDING * normal.abs().dot(&size) } else { 0.0 };
-                let normal = normal.component_mul(rotors.scale()).map(|x| x as f32);
-                // N counts every triple there is.
-                let slab = Slab { normal, low: (low - slack) as f32, high: (high + slack) as f32 };
-                let _ = slabs.push((cosine, slab));
-            }
-        };
         for (i, a) in generators.iter().enumerate() {
             for (j, b) in generators.iter().enumerate().skip(i + 1) {
-                match &open {
-                    Some(axis) => add(&a.column, &b.column, axis),
-                    None => generators.iter().skip(j + 1).for_each(|c| add(&a.column, &b.column, &c.column)),
+                let others = generators.iter().skip(j + 1).map(|generator| &generator.column);
+                let third = open.iter().chain(others.take(if open.is_some() { 0 } else { ROTORS_MAX }));
+                for c in third {
+                    let slab = Slab::new(rotors, generators, &direction, &normal(&a.column, &b.column, c));
+                    // N counts every triple there is.
+                    let _ = slab.map(|slab| slabs.push(slab));
                 }
             }
         }
@@ -134,6 +145,7 @@ impl<const N: usize> Slabs<N> {
 }
 
 /// The vector normal to three others in four dimensions: the cross product's bigger sister.
+#[inline(never)]
 pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
     let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
     Vector4::new(
@@ -144,10 +156,17 @@ pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Ve
     )
 }
 
+/// sum_i |normal| . |b_i| high_i: the size of what rounding is relative to.
+#[inline(never)]
+fn magnitude(generators: &[Generator], normal: &Vector4<f64>) -> f64 {
+    generators.iter().map(|generator| dot(&normal.abs(), &generator.column.abs()) * generator.high).sum()
+}
+
 /// The zonotope's least and greatest component along `normal`.
+#[inline(never)]
 fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
     generators.iter().fold((0.0, 0.0), |(low, high), generator| {
-        let at = normal.dot(&generator.column);
+        let at = dot(normal, &generator.column);
         let (one, other) = (at * generator.low, at * generator.high);
         (low + one.min(other), high + one.max(other))
     })
@@ -176,6 +195,7 @@ impl Edge {
 pub(super) struct Polygon(Vec<Edge, { 2 * ROTORS_MAX }>);
 
 impl Polygon {
+    #[inline(never)]
     pub(super) fn new(rotors: &Rotors) -> Self {
         let arms = || rotors.effectiveness().iter().map(|column| Vector2::new(column.y, column.z));
         let mut edges = Vec::new();

@@ -149,6 +149,7 @@ impl Rotors {
     /// # Errors
     /// Names the field, with the rotor's number from 0; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
     /// combination of the others to within [`INDEPENDENCE`].
+    #[inline(never)]
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
         let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
@@ -223,6 +224,7 @@ impl Rotors {
     }
 
     /// Works out B, its scaling and B+, if the rows of B are independent enough.
+    #[inline(never)]
     fn spanning(rotors: Vec<Rotor, ROTORS_MAX>) -> Option<Self> {
         let columns: Vec<Vector4<f64>, ROTORS_MAX> = collected(rotors.iter().map(Rotor::column));
         let squares: Vector4<f64> = columns.iter().map(|column| column.component_mul(column)).sum();
@@ -233,7 +235,7 @@ impl Rotors {
         let scaled = || columns.iter().map(|column| column.component_mul(&scale));
         // The rows' cosines. The diagonal of the inverse is 1/sin^2 of each row's angle to the span of the others.
         let cosines: Matrix4<f64> = scaled().map(|column| column * column.transpose()).sum();
-        let inverted = cosines.try_inverse()?;
+        let inverted = cosines.cholesky()?.inverse();
         let independent = |of_row: &f64| *of_row > 0.0 && *of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
         if !inverted.diagonal().iter().all(independent) {
             return None;

@@ -26,6 +26,7 @@ use super::attainable::{Polygon, Slabs, generators, normal};
 use super::collected;
 use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
 use crate::error::InputError;
+use crate::math::{component_product, dot};
 use crate::state::{STATE_RANGE, Wrench, check_vector};
 use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -109,6 +110,7 @@ pub struct Mixer {
 impl Mixer {
     /// Prepares the mixer; configuration time.
     #[must_use]
+    #[inline(never)]
     pub fn new(rotors: &Rotors) -> Self {
         let single = |v: &Vector4<f64>| v.map(|x| x as f32);
         let actuator = |((rotor, column), share)| {
@@ -239,20 +241,21 @@ fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
 ///
 /// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
 /// handing its thrust over to them never magnifies an error.
+#[inline(never)]
 fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
     let (mut best, mut largest) = (Vec::new(), 0.0);
     for choice in 0_u32..1 << rotors.len() {
         let chosen = |index: &usize| choice >> index & 1 == 1;
         let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| chosen(index));
         let columns: Vec<Vector4<f64>, ROTORS_MAX> =
-            collected(columns.map(|(_, column)| column.component_mul(rotors.scale())));
+            collected(columns.map(|(_, column)| component_product(column, rotors.scale())));
         if let [a, b, c, d] = columns.as_slice() {
-            let volume = normal(b, c, d).dot(a).abs();
+            let volume = dot(&normal(b, c, d), a).abs();
             if volume > largest {
                 // The inverse's row for one column is normal to the other three.
                 let rows = [(a, normal(b, c, d)), (b, normal(a, c, d)), (c, normal(a, b, d)), (d, normal(a, b, c))];
                 let row = |(column, normal): &(&Vector4<f64>, Vector4<f64>)| {
-                    (normal / normal.dot(column)).component_mul(rotors.scale()).map(|x| x as f32)
+                    component_product(&(normal / dot(normal, column)), rotors.scale()).map(|x| x as f32)
                 };
                 let indices = (0..rotors.len()).filter(chosen);
                 best = collected(indices.zip(rows.iter().map(row)).map(|(rotor, row)| Carrier { rotor, row }));

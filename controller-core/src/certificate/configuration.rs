@@ -23,6 +23,7 @@ impl Configuration {
     ///
     /// # Errors
     /// If a bound is not finite or negative, or M_p >= g - K_a3, where the law is undefined.
+    #[inline(never)]
     pub fn new(
         vehicle: Vehicle,
         limits: Limits,

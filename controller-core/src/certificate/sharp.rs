@@ -22,6 +22,8 @@
 //!
 //! The supremum over (gamma; direction of w; split of u'; psi') is taken over cells that cover the whole range, each
 //! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. All counts are constants.
+//! Cells whose bound, every part at its worst at once, does not exceed what was found already are not looked into: rounding
+//! is monotone, so the result is the same to the last bit.
 
 use super::reachable::Reachable;
 use crate::math;
@@ -31,11 +33,11 @@ use nalgebra::Vector3;
 /// Cells of tan gamma between upright and the greatest tilt.
 const TILT_CELLS: u32 = 48;
 /// Cells of a quarter turn, for the direction of a horizontal vector.
-const ANGLE_CELLS: u32 = 24;
+const ANGLE_CELLS: usize = 24;
 /// Cells of p between zero and its greatest value, for the split of u'.
-const SPLIT_CELLS: u32 = 24;
+const SPLIT_CELLS: usize = 24;
 /// Cells of |psi'|.
-const HEADING_CELLS: u32 = 80;
+const HEADING_CELLS: usize = 80;
 
 /// Bounds on the desired attitude's motion, and on the torque it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +60,15 @@ impl DesiredRates {
             feedforward_torque: self.feedforward_torque.inf(&other.feedforward_torque),
         }
     }
+
+    /// These bounds raised to hold for another cell too.
+    fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
+        Self {
+            angular_velocity: self.angular_velocity.max(velocity),
+            angular_acceleration: self.angular_acceleration.max(acceleration),
+            feedforward_torque: self.feedforward_torque.sup(&feedforward_torque(inertia, velocity, acceleration)),
+        }
+    }
 }
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: what |omega_d'| <= a and |omega_d| <= v can ask for in any body frame.
@@ -75,7 +86,17 @@ struct Parts {
 }
 
 impl Parts {
+    /// The greatest of each part.
+    fn worst(all: &[Self]) -> Self {
+        let nothing = Self { tilting: 0.0, yawing: 0.0 };
+        all.iter().fold(nothing, |worst, parts| Self {
+            tilting: worst.tilting.max(parts.tilting),
+            yawing: worst.yawing.max(parts.yawing),
+        })
+    }
+
     /// |self + other|^2 at most.
+    #[inline(never)]
     fn square_of_sum(&self, other: &Self) -> f64 {
         let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
         tilting * tilting + yawing * yawing
@@ -87,6 +108,32 @@ impl Parts {
 struct Tangential {
     length: f64,
     mixed: f64,
+}
+
+/// One cell of how u' splits into p, orthogonal to rho, and r along it; every part at its greatest, over n.
+#[derive(Clone, Copy)]
+struct Shares {
+    /// r / n.
+    stretch: f64,
+    /// p / n.
+    length: f64,
+    /// p r / n^2.
+    product: f64,
+    /// \[p\] / n.
+    mixed: f64,
+}
+
+impl Shares {
+    /// The greatest of each part.
+    fn worst(all: &[Self]) -> Self {
+        let nothing = Self { stretch: 0.0, length: 0.0, product: 0.0, mixed: 0.0 };
+        all.iter().fold(nothing, |worst, shares| Self {
+            stretch: worst.stretch.max(shares.stretch),
+            length: worst.length.max(shares.length),
+            product: worst.product.max(shares.product),
+            mixed: worst.mixed.max(shares.mixed),
+        })
+    }
 }
 
 /// One cell of the tilt, with each function of it at both ends or at its worst one.
@@ -136,29 +183,65 @@ impl Tilt {
         Parts { tilting: length, yawing: self.tan * mixed }
     }
 
-    /// omega_d for a direction of u' and |psi'| = `yaw_rate`.
-    fn velocity(&self, reach: &Reachable, direction: &Direction, yaw_rate: f64) -> Parts {
-        let Tangential { length, mixed } = self.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
+    /// omega_d for u' and |psi'| = `yaw_rate`.
+    fn velocity(&self, jerk: &Tangential, yaw_rate: f64) -> Parts {
+        let Tangential { length, mixed } = *jerk;
         Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
     }
 
-    /// N for |psi'| and |psi''| at most those of `heading` and the share of p in u' within the cell `split`.
-    fn quadratic_part(&self, reach: &Reachable, heading: &HeadingCell, longest: f64, split: u32) -> Parts {
-        let [least, most] = [split, split + 1].map(|end| longest * f64::from(end) / f64::from(SPLIT_CELLS));
-        let stretch = math::sqrt_f64(reach.jerk * reach.jerk - least * least) / self.magnitude;
+    /// The shares of u' in the cell `split`, for p at most `longest`.
+    fn shares(&self, reach: &Reachable, longest: f64, split: usize) -> Shares {
+        let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
+        let total = reach.jerk * reach.jerk;
         let length = most / self.magnitude;
-        let product =
-            greatest_product(reach.jerk * reach.jerk, least * least, most * most) / (self.magnitude * self.magnitude);
-        let mixed = 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude);
+        Shares {
+            stretch: math::sqrt_f64(total - least * least) / self.magnitude,
+            length,
+            product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
+            mixed: 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude),
+        }
+    }
+
+    /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their parts.
+    #[inline(never)]
+    fn quadratic_part(&self, heading: &HeadingCell, shares: &Shares) -> Parts {
         let HeadingCell { rate, acceleration } = *heading;
+        let Shares { stretch, length, product, mixed } = *shares;
         let yaw = rate * self.secant + self.tan * mixed;
         let yawing = acceleration * self.secant
             + 2.0 * self.tan * stretch * mixed
             + rate * rate * self.tan * self.tan
             + 2.0 * rate * length * self.sin * self.secant * self.secant
             + 0.5 * length * length * (1.0 + 2.0 * self.tan * self.tan);
-        Parts { tilting: math::hypot(2.0 * product, length * yaw), yawing }
+        let (twice, turned) = (2.0 * product, length * yaw);
+        Parts { tilting: math::sqrt_f64(twice * twice + turned * turned), yawing }
     }
+}
+
+/// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which an
+/// upper bound already says that they change nothing.
+fn acceleration_square(
+    tilt: &Tilt,
+    linear: &[Parts; ANGLE_CELLS],
+    headings: &[HeadingCell; HEADING_CELLS],
+    shares: &[Shares; SPLIT_CELLS],
+) -> f64 {
+    let (worst_linear, worst_shares) = (Parts::worst(linear), Shares::worst(shares));
+    let mut greatest: f64 = 0.0;
+    for heading in headings {
+        if worst_linear.square_of_sum(&tilt.quadratic_part(heading, &worst_shares)) <= greatest {
+            continue;
+        }
+        for shares in shares {
+            let quadratic = tilt.quadratic_part(heading, shares);
+            if worst_linear.square_of_sum(&quadratic) > greatest {
+                for linear in linear {
+                    greatest = greatest.max(linear.square_of_sum(&quadratic));
+                }
+            }
+        }
+    }
+    greatest
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
@@ -177,8 +260,8 @@ struct Direction {
 
 impl Direction {
     /// The cells of [0, pi/2]; the other quadrants mirror it.
-    fn quarter_turn() -> [Self; ANGLE_CELLS as usize] {
-        let cell = core::f64::consts::FRAC_PI_2 / f64::from(ANGLE_CELLS);
+    fn quarter_turn() -> [Self; ANGLE_CELLS] {
+        let cell = core::f64::consts::FRAC_PI_2 / ANGLE_CELLS as f64;
         core::array::from_fn(|i| {
             let (least, most) = (cell * i as f64, cell * (i + 1) as f64);
             // The last cell's cosine must not come out below zero by rounding: it is squared.
@@ -196,21 +279,27 @@ struct HeadingCell {
 }
 
 impl HeadingCell {
-    /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end.
-    fn all(bounds: &ReferenceBounds) -> impl Iterator<Item = Self> {
+    /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end. The
+    /// fastest first: they are the likeliest to matter.
+    fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
         let fastest = rate_bound.min(math::sqrt_f64(second_bound));
-        (0..HEADING_CELLS).map(move |cell| {
-            let [near, far] = [cell, cell + 1].map(|end| fastest * f64::from(end) / f64::from(HEADING_CELLS));
+        core::array::from_fn(|place| {
+            let cell = HEADING_CELLS - 1 - place;
+            let [near, far] = [cell, cell + 1].map(|end| fastest * end as f64 / HEADING_CELLS as f64);
             let room = second_bound * second_bound - near * near * near * near;
             Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
         })
     }
 
-    /// The greatest |psi'| of all.
-    fn fastest(bounds: &ReferenceBounds) -> f64 {
-        Self::all(bounds).map(|cell| cell.rate).fold(0.0, f64::max)
+    /// The greatest of each part.
+    fn worst(all: &[Self]) -> Self {
+        let still = Self { rate: 0.0, acceleration: 0.0 };
+        all.iter().fold(still, |worst, cell| Self {
+            rate: worst.rate.max(cell.rate),
+            acceleration: worst.acceleration.max(cell.acceleration),
+        })
     }
 }
 
@@ -219,38 +308,35 @@ impl HeadingCell {
 pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
-    let yaw_rate = HeadingCell::fastest(bounds);
+    let headings = HeadingCell::all(bounds);
+    let worst_heading = HeadingCell::worst(&headings);
     let nothing = Parts { tilting: 0.0, yawing: 0.0 };
     let mut greatest =
         DesiredRates { angular_velocity: 0.0, angular_acceleration: 0.0, feedforward_torque: Vector3::zeros() };
-    for cell in 0..TILT_CELLS {
+    // The steepest first: they are the likeliest to matter.
+    for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * f64::from(end) / f64::from(TILT_CELLS));
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
 
         let mut velocity_square: f64 = 0.0;
         let mut longest: f64 = 0.0;
         for direction in &directions {
-            velocity_square = velocity_square.max(tilt.velocity(reach, direction, yaw_rate).square_of_sum(&nothing));
             let tangential = tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
+            let velocity = tilt.velocity(&tangential, worst_heading.rate);
+            velocity_square = velocity_square.max(velocity.square_of_sum(&nothing));
             longest = longest.max(tangential.length * tilt.magnitude);
         }
+        let velocity = math::sqrt_f64(velocity_square);
         let longest = longest.min(reach.jerk);
         let linear = directions.map(|direction| tilt.linear_part(reach, &direction));
-        let mut acceleration_square: f64 = 0.0;
-        for heading in HeadingCell::all(bounds) {
-            for split in 0..SPLIT_CELLS {
-                let quadratic = tilt.quadratic_part(reach, &heading, longest, split);
-                for linear in &linear {
-                    acceleration_square = acceleration_square.max(linear.square_of_sum(&quadratic));
-                }
-            }
-        }
+        let shares = core::array::from_fn(|split| tilt.shares(reach, longest, split));
 
-        let (velocity, acceleration) = (math::sqrt_f64(velocity_square), math::sqrt_f64(acceleration_square));
-        let torque = feedforward_torque(inertia, velocity, acceleration);
-        greatest.angular_velocity = greatest.angular_velocity.max(velocity);
-        greatest.angular_acceleration = greatest.angular_acceleration.max(acceleration);
-        greatest.feedforward_torque = greatest.feedforward_torque.sup(&torque);
+        let quadratic = tilt.quadratic_part(&worst_heading, &Shares::worst(&shares));
+        let at_most = greatest.with(inertia, velocity, math::sqrt_f64(Parts::worst(&linear).square_of_sum(&quadratic)));
+        if at_most != greatest {
+            let square = acceleration_square(&tilt, &linear, &headings, &shares);
+            greatest = greatest.with(inertia, velocity, math::sqrt_f64(square));
+        }
     }
     greatest
 }

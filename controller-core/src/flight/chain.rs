@@ -1,0 +1,177 @@
+//! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, mixer.
+//!
+//! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle and
+//! every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach, and
+//! takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and the
+//! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
+//! that it is where it should be (position and velocity errors zero); then z_1 = z_2 = 0, the filters stay at zero, and
+//! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had.
+//!
+//! Starting on the ground and regaining the pose both hand the governor a reference without acceleration, jerk and snap:
+//! nothing to fade out, so no bridge is searched for, and such a restart fits in a tick.
+
+use super::Pose;
+use super::reason::{Grounded, field};
+use super::rules::REFUSALS_MAX;
+use crate::allocation::Mixer;
+use crate::allocation::mixer::Thrusts;
+use crate::certificate::configuration::Certified;
+use crate::controller::Controller;
+use crate::error::InputError;
+use crate::governor::{Governor, GovernorError, GovernorLimits, Setpoint};
+use crate::heading::Heading;
+use crate::reference::Reference;
+use crate::state::{State, Wrench};
+use nalgebra::{Quaternion, Vector3};
+
+/// What the law was given in a tick and what it made of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flown {
+    /// The state: measured, or (levelling) on the reference with the propagated attitude.
+    pub state: State,
+    /// The reference.
+    pub reference: Reference,
+    /// The wrench the law asked for.
+    pub wrench: Wrench,
+    /// The wrench the rotors are asked for: the same, unless the mixer had to give something up.
+    pub achieved: Wrench,
+    /// p~, m, world.
+    pub position_error: Vector3<f32>,
+    /// theta~, the modified Rodrigues parameters of the attitude error.
+    pub mrp: Vector3<f32>,
+}
+
+/// Governor, law and mixer, with what they hand from tick to tick.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Chain {
+    governor: Governor,
+    controller: Controller,
+    mixer: Mixer,
+    rotors: usize,
+    /// The last tick's.
+    reference: Reference,
+    thrusts: Option<Thrusts>,
+    /// Ticks in a row without new thrusts.
+    refusals: u32,
+}
+
+/// A reference without acceleration.
+fn steady(position: Vector3<f32>, velocity: Vector3<f32>, heading: &Heading) -> Reference {
+    let zero = Vector3::zeros();
+    Reference { position, velocity, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
+}
+
+impl Chain {
+    #[inline(never)]
+    pub fn new(certified: &Certified, limits: GovernorLimits, period: f32) -> Result<Self, Grounded> {
+        let configuration = certified.configuration();
+        let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
+        let reference = steady(Vector3::zeros(), Vector3::zeros(), &Heading::FORWARD);
+        Ok(Self {
+            governor: Governor::new(*configuration.bounds(), limits, period, &reference)?,
+            controller: Controller::new(certified, period)?,
+            mixer: Mixer::new(rotors),
+            rotors: rotors.len(),
+            reference,
+            thrusts: None,
+            refusals: 0,
+        })
+    }
+
+    /// How many rotors there are.
+    pub fn rotors(&self) -> usize {
+        self.rotors
+    }
+
+    /// Starts a flight: the reference at `position`, at rest; the law reset.
+    ///
+    /// # Errors
+    /// The governor's; it goes on as before then.
+    #[inline(never)]
+    pub fn start(&mut self, position: Vector3<f32>, heading: &Heading) -> Result<(), GovernorError> {
+        let reference = steady(position, Vector3::zeros(), heading);
+        self.governor.restart(&reference)?;
+        self.controller.reset();
+        self.reference = reference;
+        self.thrusts = None;
+        self.refusals = 0;
+        Ok(())
+    }
+
+    /// Turns to levelling: a hover at the last heading, the law reset.
+    pub fn level(&mut self) {
+        self.reference = steady(self.reference.position, Vector3::zeros(), &self.reference.heading);
+        self.controller.reset();
+    }
+
+    /// Takes a flight up again where the vehicle is, at its velocity, with the heading that was held; then brakes to a stop.
+    /// The law needs no reset: levelling has left its filters at zero.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    #[inline(never)]
+    pub fn regain(&mut self, pose: &Pose) -> Result<(), GovernorError> {
+        self.governor.restart(&steady(pose.position, pose.velocity, &self.reference.heading))
+    }
+
+    /// Brings the reference to rest.
+    pub fn hold(&mut self) {
+        self.governor.stop();
+    }
+
+    /// Takes a setpoint.
+    ///
+    /// # Errors
+    /// Names the field the governor refuses.
+    pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), &'static str> {
+        self.governor.accept(setpoint).map_err(field)
+    }
+
+    /// Whether the last thrusts have been held for long enough.
+    pub fn is_refused(&self) -> bool {
+        self.refusals >= REFUSALS_MAX
+    }
+
+    /// One tick on the governor's reference.
+    ///
+    /// # Errors
+    /// What the law or the mixer cannot use.
+    pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
+        self.reference = self.governor.tick();
+        self.step(state)
+    }
+
+    /// One tick of levelling, after [`Self::level`].
+    ///
+    /// # Errors
+    /// As [`Self::fly`].
+    pub fn fly_level(
+        &mut self,
+        attitude: Quaternion<f32>,
+        angular_velocity: Vector3<f32>,
+    ) -> Result<Flown, InputError> {
+        let Reference { position, velocity, .. } = self.reference;
+        self.step(&State { position, velocity, attitude, angular_velocity })
+    }
+
+    fn step(&mut self, state: &State) -> Result<Flown, InputError> {
+        self.refusals = self.refusals.saturating_add(1);
+        let (wrench, diagnostics) = self.controller.step(state, &self.reference)?;
+        let allocation = self.mixer.allocate(&wrench)?;
+        self.refusals = 0;
+        self.thrusts = Some(allocation.thrusts);
+        Ok(Flown {
+            state: *state,
+            reference: self.reference,
+            wrench,
+            achieved: allocation.achieved,
+            position_error: diagnostics.position_error,
+            mrp: diagnostics.mrp,
+        })
+    }
+
+    /// This tick's thrusts, N, in the rotors' order; the last ones if it was refused, none before the first.
+    pub fn thrusts(&self) -> Option<&Thrusts> {
+        self.thrusts.as_ref()
+    }
+}

@@ -1,0 +1,261 @@
+//! Reasons in words: for every transition, and for everything that is refused.
+//!
+//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
+
+use crate::certificate::configuration::Refused;
+use crate::error::{InputError, ParameterError};
+use crate::governor::GovernorError;
+use core::fmt;
+
+/// The length of a STATUSTEXT, characters.
+pub const TEXT_MAX: usize = 50;
+
+/// Why the mode changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reason {
+    /// Arming was requested and permitted.
+    ArmCommanded,
+    /// A disarm command.
+    DisarmCommanded,
+    /// A motor test was requested and permitted.
+    MotorTestRequested,
+    /// Another request arrived during a motor test.
+    MotorTestInterrupted,
+    /// The motor test has had its time.
+    MotorTestOver,
+    /// No usable IMU sample for [`super::rules::IMU_AGE_MAX`] in flight.
+    ImuLost,
+    /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
+    ThrustsRefused,
+    /// No usable pose for [`super::rules::POSE_AGE_MAX`] in flight.
+    PoseLost,
+    /// A pose again while levelling.
+    PoseRegained,
+    /// No pose in [`super::rules::LEVELLING_MAX`] of levelling.
+    PoseLostForLong,
+    /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+    GroundStationLost,
+    /// The ground station was heard again.
+    GroundStationRegained,
+}
+
+impl Reason {
+    /// Every reason.
+    pub const ALL: [Self; 12] = [
+        Self::ArmCommanded,
+        Self::DisarmCommanded,
+        Self::MotorTestRequested,
+        Self::MotorTestInterrupted,
+        Self::MotorTestOver,
+        Self::ImuLost,
+        Self::ThrustsRefused,
+        Self::PoseLost,
+        Self::PoseRegained,
+        Self::PoseLostForLong,
+        Self::GroundStationLost,
+        Self::GroundStationRegained,
+    ];
+
+    /// The reason in words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::ArmCommanded => "Armed",
+            Self::DisarmCommanded => "Disarmed by command",
+            Self::MotorTestRequested => "Motor test begins",
+            Self::MotorTestInterrupted => "Motor test stopped by another request",
+            Self::MotorTestOver => "Motor test over",
+            Self::ImuLost => "Stopped: no IMU sample for 20 ms",
+            Self::ThrustsRefused => "Stopped: the law refused its input for 50 ms",
+            Self::PoseLost => "Pose lost: levelling for at most 1 s",
+            Self::PoseRegained => "Pose regained: braking to hold position",
+            Self::PoseLostForLong => "Stopped: no pose after 1 s of levelling",
+            Self::GroundStationLost => "Ground station lost: holding position",
+            Self::GroundStationRegained => "Ground station regained",
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
+/// Why a pilot can never arm until it is made anew, with another configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Grounded {
+    /// This inequality of the certificate fails.
+    Inequality(&'static str),
+    /// This parameter is one that the certificate, the governor or the law cannot work with.
+    Parameter(&'static str),
+    /// The configuration has no rotors.
+    NoRotors,
+}
+
+impl From<ParameterError> for Grounded {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error.field)
+    }
+}
+
+impl From<GovernorError> for Grounded {
+    fn from(error: GovernorError) -> Self {
+        Self::Parameter(blamed(error))
+    }
+}
+
+impl From<&Refused> for Grounded {
+    fn from(refused: &Refused) -> Self {
+        match refused {
+            Refused::Fails(certificate) => {
+                let failed = certificate.inequalities().find(|inequality| !inequality.holds());
+                Self::Inequality(failed.map_or("", |inequality| inequality.name))
+            }
+            Refused::Undefined(error) => Self::Parameter(error.field),
+        }
+    }
+}
+
+/// The field that keeps a governor from starting.
+pub(super) fn blamed(error: GovernorError) -> &'static str {
+    match error {
+        GovernorError::Parameter(ParameterError { field, .. }) | GovernorError::NoWayOn { field } => field,
+        GovernorError::Start(error) => field(error),
+    }
+}
+
+/// The input that an error is about.
+pub(super) fn field(error: InputError) -> &'static str {
+    match error {
+        InputError::NotFinite { field } | InputError::OutOfRange { field } | InputError::NotARotation { field } => {
+            field
+        }
+        InputError::FallsTooFast => "reference.acceleration",
+    }
+}
+
+impl fmt::Display for Grounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
+            Self::Parameter(field) => write!(f, "Cannot fly with {field:.34}"),
+            Self::NoRotors => f.write_str("Cannot fly: the configuration has no rotors"),
+        }
+    }
+}
+
+/// Why a request or a setpoint was refused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Refusal {
+    /// Nothing certified to fly with.
+    Grounded(Grounded),
+    /// The motors turn already.
+    AlreadyArmed,
+    /// A motor test was running; the request has ended it.
+    MotorTestRunning,
+    /// A disarm command came in the same tick.
+    DisarmCommanded,
+    /// No IMU sample under [`super::rules::IMU_AGE_MAX`] old.
+    ImuStale,
+    /// No pose under [`super::rules::POSE_AGE_MAX`] old.
+    PoseStale,
+    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or no rotation.
+    Unusable(&'static str),
+    /// Body z is 30 degrees or more from up.
+    Tilted,
+    /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+    GroundStationSilent,
+    /// The governor cannot start at the vehicle: the field to blame.
+    Reference(&'static str),
+    /// The vehicle has fewer rotors.
+    NoSuchRotor,
+    /// A test level outside (0, [`super::rules::MOTOR_TEST_LEVEL_MAX`]].
+    MotorTestLevel,
+    /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
+    MotorTestDuration,
+    /// Setpoints are accepted in flight with a ground station and a pose, and at no other time.
+    NotFlying,
+    /// A setpoint with a field that is not finite or out of range.
+    Setpoint(&'static str),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Grounded(grounded) => return grounded.fmt(f),
+            Self::Unusable(field) => return write!(f, "Refused: {field:.32} unusable"),
+            Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
+            Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
+            Self::AlreadyArmed => "Refused: armed already",
+            Self::MotorTestRunning => "Refused: a motor test was running",
+            Self::DisarmCommanded => "Refused: disarm commanded",
+            Self::ImuStale => "Refused: no IMU sample for 20 ms",
+            Self::PoseStale => "Refused: no pose for 100 ms",
+            Self::Tilted => "Refused: tilted by 30 degrees or more",
+            Self::GroundStationSilent => "Refused: no ground station for 2.5 s",
+            Self::NoSuchRotor => "Motor test refused: no such rotor",
+            Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
+            Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
+            Self::NotFlying => "Setpoint refused: not flying",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::example;
+    extern crate std;
+    use std::format;
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    /// A name longer than any.
+    const LONG: &str = "a_name.that_is_longer_than_the_fifty_characters_of_a_status_text";
+
+    #[test]
+    fn every_text_fits_a_statustext_and_is_unlike_the_others() {
+        let grounded = [Grounded::Inequality(LONG), Grounded::Parameter(LONG), Grounded::NoRotors];
+        let refusals = [
+            Refusal::AlreadyArmed,
+            Refusal::MotorTestRunning,
+            Refusal::DisarmCommanded,
+            Refusal::ImuStale,
+            Refusal::PoseStale,
+            Refusal::Unusable(LONG),
+            Refusal::Tilted,
+            Refusal::GroundStationSilent,
+            Refusal::Reference(LONG),
+            Refusal::NoSuchRotor,
+            Refusal::MotorTestLevel,
+            Refusal::MotorTestDuration,
+            Refusal::NotFlying,
+            Refusal::Setpoint(LONG),
+        ];
+        let reasons = Reason::ALL.iter().map(ToString::to_string);
+        let refusals = refusals.into_iter().chain(grounded.map(Refusal::Grounded));
+        let mut texts: Vec<_> = reasons.chain(refusals.map(|refusal| refusal.to_string())).collect();
+        for text in &texts {
+            assert!(text.len() <= TEXT_MAX && text.len() > 4, "{text}");
+        }
+        let count = texts.len();
+        texts.sort();
+        texts.dedup();
+        assert_eq!(texts.len(), count);
+    }
+
+    #[test]
+    fn every_inequality_of_the_certificate_is_told_from_the_others_in_its_text() {
+        let certified = example::certified();
+        let certificate = certified.certificate();
+        let mut texts: Vec<_> =
+            certificate.inequalities().map(|i| format!("{:.44}", Grounded::Inequality(i.name).to_string())).collect();
+        texts.sort();
+        texts.dedup();
+        assert_eq!(texts.len(), certificate.inequalities().count());
+    }
+}

@@ -1,0 +1,212 @@
+//! The flights that are measured, and the table.
+
+use crate::body;
+use crate::counter::Counter;
+use crate::stack;
+use controller_core::allocation::Mixer;
+use controller_core::certificate::configuration::{Certified, Configuration, Refused};
+use controller_core::controller::Controller;
+use controller_core::error::InputError;
+use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::heading::Heading;
+use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
+use controller_core::reference::hover::Hover;
+use controller_core::reference::{Reference, Trajectory};
+use controller_core::state::{State, Wrench};
+use core::hint::black_box;
+use core::panic::PanicInfo;
+use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
+use cortex_m_semihosting::hprintln;
+use firmware::configuration;
+use nalgebra::{Quaternion, Vector3};
+
+/// Steps of a measured flight.
+const STEPS: u64 = 1000;
+const PERIOD_US: u64 = 10_000;
+const PERIOD: f32 = 0.01;
+/// Clocks of the boards, MHz.
+const CLOCKS: [f64; 2] = [168.0, 480.0];
+
+/// Mean and worst of one kind of call.
+#[derive(Default)]
+struct Cost {
+    sum: f64,
+    count: u32,
+    worst: f64,
+}
+
+impl Cost {
+    fn add(&mut self, instructions: f64) {
+        self.sum += instructions;
+        self.count += 1;
+        self.worst = self.worst.max(instructions);
+    }
+
+    fn print(&self, what: &str) {
+        let mean = self.sum / f64::from(self.count);
+        let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
+        hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
+    }
+}
+
+/// The measured call: state and reference in, wrench out.
+type Step = fn(&mut Controller, &State, &Reference) -> Result<Wrench, InputError>;
+
+fn wrench_only(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Wrench, InputError> {
+    controller.step(state, reference).map(|(wrench, _)| wrench)
+}
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let code = if measure() { EXIT_SUCCESS } else { EXIT_FAILURE };
+    debug::exit(code);
+    loop {}
+}
+
+#[panic_handler]
+fn panicked(info: &PanicInfo<'_>) -> ! {
+    hprintln!("{}", info);
+    debug::exit(EXIT_FAILURE);
+    loop {}
+}
+
+/// Everything, as a table; whether it could be measured at all.
+fn measure() -> bool {
+    let counter = cortex_m::Peripherals::take().and_then(|peripherals| Counter::start(peripherals.SYST));
+    let Some(mut counter) = counter else {
+        hprintln!("time does not follow instructions here: run QEMU with -icount shift=6");
+        return false;
+    };
+    let Ok(embedded) = configuration::embedded() else {
+        hprintln!("{}: the embedded configuration is refused", configuration::NAME);
+        return false;
+    };
+    let Ok(certified) = certified(&mut counter, &embedded) else {
+        hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
+        return false;
+    };
+    let Ok(mut controller) = Controller::new(&certified, PERIOD) else { return false };
+    let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
+    let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
+    let mixer = Mixer::new(rotors);
+    let (mut allocation, mut governing) = (Cost::default(), Cost::default());
+
+    hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@480MHz");
+    let mut flight = Flight { controller: &mut controller, mixer: &mixer, certified: &certified, counter: &counter };
+    let Some(cost) = flight.fly(on(&circle), &circle, &mut allocation) else { return false };
+    cost.print("step, circle");
+    allocation.print("allocation, circle");
+    let mut recovering = Cost::default();
+    let Some(cost) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
+    cost.print("step, tumbling recovery");
+    recovering.print("allocation, tumbling recovery");
+    if !govern(&counter, &embedded, &mut governing) {
+        return false;
+    }
+    governing.print("governor tick");
+    hprintln!("one instruction is {} ticks of SysTick", counter.ticks_per_instruction());
+    true
+}
+
+/// Certifies `configuration`, measured.
+#[allow(clippy::result_large_err)] // the core's own error
+fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Certified, Refused> {
+    type Certify = fn(Configuration) -> Result<Certified, Refused>;
+    let certify: Certify = black_box(Certified::new);
+    let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
+    let copy = configuration.clone();
+    let (instructions, certified) = counter.long(|| certify(copy));
+    hprintln!(
+        "certificate: {:.0} instructions, {} B of stack, result {} B",
+        instructions,
+        bytes,
+        size_of::<Certified>()
+    );
+    certified
+}
+
+/// A flight under the law, with what it needs.
+struct Flight<'a> {
+    controller: &'a mut Controller,
+    mixer: &'a Mixer,
+    certified: &'a Certified,
+    counter: &'a Counter,
+}
+
+impl Flight<'_> {
+    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
+    fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<Cost> {
+        let step: Step = black_box(wrench_only);
+        let allocate = black_box(Mixer::allocate);
+        let mut cost = Cost::default();
+        self.controller.reset();
+        for tick in 0..STEPS {
+            let reference = black_box(trajectory.at(tick * PERIOD_US));
+            let (instructions, wrench) = self.counter.short(|| step(self.controller, &state, &reference));
+            cost.add(instructions);
+            let wrench = wrench.ok()?;
+            let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
+            allocation.add(instructions);
+            let achieved = allocated.ok()?.achieved;
+            body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
+        }
+        Some(cost)
+    }
+}
+
+/// A circle of 1 m in four seconds, 1.5 m up, the heading turning along.
+fn circle() -> Option<Harmonic> {
+    let frequency = core::f64::consts::FRAC_PI_2;
+    let parameters = HarmonicParameters {
+        center: [0.0, 0.0, 1.5],
+        amplitude: [1.0, 1.0, 0.0],
+        frequency: [frequency, frequency, 0.0],
+        phase: [0.0, -core::f64::consts::FRAC_PI_2, 0.0],
+        heading: HeadingParameters { offset: 0.0, rate: 0.5, amplitude: 0.5, frequency },
+    };
+    Harmonic::new(parameters).ok()
+}
+
+/// Level, where `trajectory` begins, at its speed.
+fn on(trajectory: &impl Trajectory) -> State {
+    let Reference { position, velocity, .. } = trajectory.at(0);
+    State { position, velocity, attitude: Quaternion::identity(), angular_velocity: Vector3::zeros() }
+}
+
+/// Upside down, falling, spinning about every axis.
+const TUMBLING: State = State {
+    position: Vector3::new(3.0, -2.0, 8.0),
+    velocity: Vector3::new(2.0, 1.0, -3.0),
+    attitude: Quaternion::from_vector(nalgebra::Vector4::new(1.0, 0.0, 0.0, 0.0)),
+    angular_velocity: Vector3::new(10.0, -8.0, 6.0),
+};
+
+/// A minute of the governor under steps of position: there and back every ten seconds.
+fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
+    let start = Reference {
+        position: Vector3::zeros(),
+        velocity: Vector3::zeros(),
+        acceleration: Vector3::zeros(),
+        jerk: Vector3::zeros(),
+        snap: Vector3::zeros(),
+        heading: Heading::FORWARD,
+    };
+    let Ok(mut governor) = Governor::new(*configuration.bounds(), GovernorLimits::default(), PERIOD, &start) else {
+        return false;
+    };
+    let tick = black_box(Governor::tick);
+    for number in 0..6000_u32 {
+        if number % 1000 == 0 {
+            let away = if number % 2000 == 0 { 3.0 } else { 0.0 };
+            let motion = Motion::Position(Vector3::new(away, -away, 0.5 * away));
+            let setpoint = Setpoint { motion, turn: Turn::Angle { angle: away, rate: 0.0 } };
+            if governor.accept(&setpoint).is_err() {
+                return false;
+            }
+        }
+        let (instructions, reference) = counter.short(|| tick(&mut governor));
+        black_box(reference);
+        cost.add(instructions);
+    }
+    true
+}

@@ -1,0 +1,175 @@
+//! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
+//!
+//! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice that.
+//! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
+//! restarts.
+
+use super::stm32::clock::SystemClock;
+use super::stm32::fault;
+use super::stm32::imu::{self, BoardImu};
+use super::stm32::light::Lamp;
+use super::stm32::link::{self, Receiver, Transmitter};
+use super::stm32::motors::{Dshot, Pins};
+use super::stm32::restart::{self, Cause};
+use super::stm32::storage::ParameterFlash;
+use super::stm32::watchdog::ChipWatchdog;
+use crate::bmi088::Mounting;
+use crate::hardware::Battery;
+use cortex_m_rt::{ExceptionFrame, exception};
+use embassy_stm32::exti::ExtiInput;
+use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::pac::timer::TimGp16;
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2};
+use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::simple_pwm::PwmPin;
+use embassy_stm32::usart::Uart;
+use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
+
+bind_interrupts!(
+    /// Interrupts and their handlers.
+    #[derive(Debug)]
+    pub struct Interrupts {
+        DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
+        DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
+        DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
+        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
+        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        USART2 => usart::InterruptHandler<USART2>;
+    }
+);
+
+/// Motors 1 to 4 are on PA1, PB11, PA15, PB10: channels 2, 4, 1, 3 of TIM2.
+const MOTOR_CHANNELS: [usize; 4] = [1, 3, 0, 2];
+
+/// As Bitcraze's own firmware takes it: the sensor's axes are the body's.
+const MOUNTING: Mounting = Mounting::Aligned;
+
+/// The motors.
+pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
+
+/// The watchdog.
+pub type BoardWatchdog = ChipWatchdog<IWDG>;
+
+/// Everything on the board, each part ready for the task that will own it.
+pub struct Board {
+    /// Time since boot.
+    pub clock: SystemClock,
+    /// The sensor, powered up at its first sample.
+    pub imu: BoardImu,
+    /// The motors, silent.
+    pub motors: BoardMotors,
+    /// The watchdog, not started.
+    pub watchdog: BoardWatchdog,
+    /// The battery, out of reach.
+    pub battery: NoBattery,
+    /// The blue light, off.
+    pub light: Lamp,
+    /// What USART2 receives.
+    pub receiver: Receiver,
+    /// What USART2 sends.
+    pub transmitter: Transmitter,
+    /// Where parameters live.
+    pub storage: ParameterFlash,
+    /// Why the chip started.
+    pub restart: Cause,
+    /// Power of the motors' controllers, on for as long as these are held.
+    pub power: [Output<'static>; 4],
+}
+
+impl Board {
+    /// Sets the clocks and takes every peripheral. Once.
+    ///
+    /// # Panics
+    /// The second time.
+    #[must_use]
+    pub fn take() -> Self {
+        let restart = restart::cause();
+        let p = embassy_stm32::init(clocks());
+
+        // The motors first: PA15 is pulled up until here, and the controllers must not see that.
+        let pins = Pins(
+            PwmPin::new(p.PA15, OutputType::PushPull),
+            PwmPin::new(p.PA1, OutputType::PushPull),
+            PwmPin::new(p.PB10, OutputType::PushPull),
+            PwmPin::new(p.PB11, OutputType::PushPull),
+        );
+        let motors = Dshot::new(p.TIM2, pins, MOTOR_CHANNELS, p.DMA1_CH1, Interrupts);
+        let power = [
+            Output::new(p.PA0, Level::High, Speed::Low),
+            Output::new(p.PB12, Level::High, Speed::Low),
+            Output::new(p.PC8, Level::High, Speed::Low),
+            Output::new(p.PC15, Level::High, Speed::Low),
+        ];
+
+        let bus = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
+        let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
+        let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
+        let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
+        let imu = imu::bmi088(bus, accelerometer, gyroscope, data_ready, MOUNTING);
+
+        let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
+        let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+        let (receiver, transmitter) = link::halves(uart);
+
+        Self {
+            clock: SystemClock,
+            imu,
+            motors,
+            watchdog: ChipWatchdog::new(p.IWDG),
+            battery: NoBattery,
+            light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
+            receiver,
+            transmitter,
+            storage: ParameterFlash::new(p.FLASH, pac::IWDG),
+            restart,
+            power,
+        }
+    }
+}
+
+fn clocks() -> embassy_stm32::Config {
+    let mut config = embassy_stm32::Config::default();
+    let rcc = &mut config.rcc;
+    rcc.hse = Some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
+    rcc.pll_src = PllSource::HSE;
+    rcc.pll = Some(rcc::Pll {
+        prediv: PllPreDiv::DIV4,
+        mul: PllMul::MUL168,
+        divp: Some(PllPDiv::DIV2), // core: 168 MHz
+        divq: Some(PllQDiv::DIV7), // 48 MHz
+        divr: None,
+    });
+    rcc.sys = rcc::Sysclk::PLL1_P;
+    rcc.ahb_pre = AHBPrescaler::DIV1;
+    rcc.apb1_pre = APBPrescaler::DIV4; // 42 MHz; timers 84 MHz
+    rcc.apb2_pre = APBPrescaler::DIV2; // 84 MHz
+    config
+}
+
+/// The radio's own processor measures the battery, and this firmware does not talk to it.
+pub struct NoBattery;
+
+impl Battery for NoBattery {
+    async fn voltage(&mut self) -> Option<f32> {
+        None
+    }
+}
+
+/// The registers that TIM2 has in common with 16-bit timers: all that stopping needs.
+fn motor_timer() -> TimGp16 {
+    // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
+    unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }
+}
+
+#[exception]
+unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+    fault::stop_and_restart(motor_timer())
+}
+
+#[exception]
+unsafe fn DefaultHandler(_: i16) -> ! {
+    fault::stop_and_restart(motor_timer())
+}

@@ -1,0 +1,194 @@
+//! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088, TIM1 for the motors, USART1 for the link.
+//!
+//! Clocks: a crystal of 8 MHz, times 100, halved: 400 MHz for the core, half for the buses, a quarter for their
+//! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would need
+//! revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays off: it
+//! would stand between the core and the DMA buffers.
+
+use super::stm32::clock::SystemClock;
+use super::stm32::fault;
+use super::stm32::imu::{self, BoardImu};
+use super::stm32::light::Lamp;
+use super::stm32::link::{self, Receiver, Transmitter};
+use super::stm32::motors::{Dshot, Pins};
+use super::stm32::restart::{self, Cause};
+use super::stm32::storage::ParameterFlash;
+use super::stm32::watchdog::ChipWatchdog;
+use crate::bmi088::Mounting;
+use crate::hardware::Battery;
+use cortex_m_rt::{ExceptionFrame, exception};
+use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
+use embassy_stm32::exti::ExtiInput;
+use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::pac::timer::TimGp16;
+use embassy_stm32::peripherals::{ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, IWDG1, PC0, TIM1, USART1};
+use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::simple_pwm::PwmPin;
+use embassy_stm32::usart::Uart;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
+
+bind_interrupts!(
+    /// Interrupts and their handlers.
+    #[derive(Debug)]
+    pub struct Interrupts {
+        DMA1_STREAM0 => dma::InterruptHandler<DMA1_CH0>;
+        DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
+        DMA1_STREAM2 => dma::InterruptHandler<DMA1_CH2>;
+        DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
+        DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
+        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        USART1 => usart::InterruptHandler<USART1>;
+    }
+);
+
+/// Motors 1 to 4 are on PE14, PE13, PE11, PE9: channels 4, 3, 2, 1 of TIM1.
+const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
+
+/// As ArduPilot's definition of this board mounts it (roll 180 degrees, then yaw 270, in its axes forward, right, down).
+const MOUNTING: Mounting = Mounting::XLeft;
+
+/// The motors.
+pub type BoardMotors = Dshot<TIM1, DMA1_CH2, Interrupts>;
+
+/// The watchdog.
+pub type BoardWatchdog = ChipWatchdog<IWDG1>;
+
+/// Everything on the board, each part ready for the task that will own it.
+pub struct Board {
+    /// Time since boot.
+    pub clock: SystemClock,
+    /// The sensor, powered up at its first sample.
+    pub imu: BoardImu,
+    /// The motors, silent.
+    pub motors: BoardMotors,
+    /// The watchdog, not started.
+    pub watchdog: BoardWatchdog,
+    /// The battery.
+    pub battery: DividedBattery,
+    /// The green light, off.
+    pub light: Lamp,
+    /// What USART1 receives.
+    pub receiver: Receiver,
+    /// What USART1 sends.
+    pub transmitter: Transmitter,
+    /// Where parameters live.
+    pub storage: ParameterFlash,
+    /// Why the chip started.
+    pub restart: Cause,
+}
+
+impl Board {
+    /// Sets the clocks and takes every peripheral. Once.
+    ///
+    /// # Panics
+    /// The second time.
+    #[must_use]
+    pub fn take() -> Self {
+        let restart = restart::cause();
+        let p = embassy_stm32::init(clocks());
+        if let Some(mut core) = cortex_m::Peripherals::take() {
+            core.SCB.enable_icache();
+        }
+
+        // The motors first: their lines float until here.
+        let pins = Pins(
+            PwmPin::new(p.PE9, OutputType::PushPull),
+            PwmPin::new(p.PE11, OutputType::PushPull),
+            PwmPin::new(p.PE13, OutputType::PushPull),
+            PwmPin::new(p.PE14, OutputType::PushPull),
+        );
+        let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
+
+        let bus = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+        let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
+        let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
+        let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
+        let imu = imu::bmi088(bus, accelerometer, gyroscope, data_ready, MOUNTING);
+
+        let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
+        let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));
+        let (receiver, transmitter) = link::halves(uart);
+
+        Self {
+            clock: SystemClock,
+            imu,
+            motors,
+            watchdog: ChipWatchdog::new(p.IWDG1),
+            battery: DividedBattery::new(p.ADC1, p.PC0),
+            light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
+            receiver,
+            transmitter,
+            storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
+            restart,
+        }
+    }
+}
+
+fn clocks() -> embassy_stm32::Config {
+    let mut config = embassy_stm32::Config::default();
+    let rcc = &mut config.rcc;
+    rcc.hse = Some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
+    rcc.pll1 = Some(rcc::Pll {
+        source: PllSource::HSE,
+        prediv: PllPreDiv::DIV1,
+        mul: PllMul::MUL100,
+        fracn: None,
+        divp: Some(PllDiv::DIV2), // core: 400 MHz
+        divq: Some(PllDiv::DIV8), // SPI2: 100 MHz
+        divr: None,
+    });
+    rcc.sys = rcc::Sysclk::PLL1_P;
+    rcc.ahb_pre = AHBPrescaler::DIV2; // 200 MHz
+    rcc.apb1_pre = APBPrescaler::DIV2; // 100 MHz; timers 200 MHz
+    rcc.apb2_pre = APBPrescaler::DIV2;
+    rcc.apb3_pre = APBPrescaler::DIV2;
+    rcc.apb4_pre = APBPrescaler::DIV2;
+    rcc.voltage_scale = rcc::VoltageScale::Scale1;
+    rcc.mux.adcsel = rcc::mux::Adcsel::PER; // the internal 64 MHz oscillator, divided by the driver
+    config
+}
+
+/// The battery through the board's divider, on PC0.
+pub struct DividedBattery {
+    converter: Adc<'static, ADC1>,
+    pin: Peri<'static, PC0>,
+}
+
+impl DividedBattery {
+    /// The divider of the board's definition.
+    const DIVIDER: f32 = 21.12;
+
+    /// Volts at the pin in one count of 16 bits, the reference being the board's 3.3 V.
+    const VOLTS_PER_COUNT: f32 = 3.3 / 65535.0;
+
+    fn new(adc: Peri<'static, ADC1>, pin: Peri<'static, PC0>) -> Self {
+        let config = AdcConfig { resolution: Some(Resolution::BITS16), averaging: Some(Averaging::Samples16) };
+        Self { converter: Adc::new_with_config(adc, config), pin }
+    }
+}
+
+impl Battery for DividedBattery {
+    /// Takes about 50 us: sixteen conversions of 73 cycles at no more than 32 MHz.
+    async fn voltage(&mut self) -> Option<f32> {
+        let counts = self.converter.blocking_read(&mut self.pin, SampleTime::CYCLES64_5);
+        Some(f32::from(counts) * Self::VOLTS_PER_COUNT * Self::DIVIDER)
+    }
+}
+
+/// The registers that TIM1 has in common with smaller timers: all that stopping needs.
+fn motor_timer() -> TimGp16 {
+    // SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
+    unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }
+}
+
+#[exception]
+unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+    fault::stop_and_restart(motor_timer())
+}
+
+#[exception]
+unsafe fn DefaultHandler(_: i16) -> ! {
+    fault::stop_and_restart(motor_timer())
+}

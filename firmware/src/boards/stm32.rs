@@ -1,0 +1,12 @@
+//! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers.
+
+pub mod bring_up;
+pub mod clock;
+pub mod fault;
+pub mod imu;
+pub mod light;
+pub mod link;
+pub mod motors;
+pub mod restart;
+pub mod storage;
+pub mod watchdog;

@@ -1,0 +1,47 @@
+//! Why the chip started: the first thing to read after something went wrong.
+
+/// What made the chip start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, defmt::Format)]
+pub enum Cause {
+    /// Power came, or fell below what the chip needs.
+    Power,
+    /// The reset pin: a button or a debug probe.
+    Pin,
+    /// The firmware itself, after a panic or a fault.
+    Software,
+    /// The watchdog: the control task did not come back.
+    Watchdog,
+    /// None of these.
+    Unknown,
+}
+
+/// Reads the flags and clears them, so that the next start tells its own.
+#[cfg(feature = "micoair-h743")]
+#[must_use]
+pub fn cause() -> Cause {
+    let register = embassy_stm32::pac::RCC.rsr();
+    let flags = register.read();
+    register.modify(|w| w.set_rmvf(true));
+    first(flags.iwdg1rstf(), flags.sftrstf(), flags.porrstf() || flags.borrstf(), flags.pinrstf())
+}
+
+/// Reads the flags and clears them, so that the next start tells its own.
+#[cfg(feature = "crazyflie-bolt")]
+#[must_use]
+pub fn cause() -> Cause {
+    let register = embassy_stm32::pac::RCC.csr();
+    let flags = register.read();
+    register.modify(|w| w.set_rmvf(true));
+    first(flags.wdgrstf(), flags.sftrstf(), flags.porrstf() || flags.borrstf(), flags.padrstf())
+}
+
+/// Every restart also pulls the reset pin, and power raises more flags still: the most telling one counts.
+fn first(watchdog: bool, software: bool, power: bool, pin: bool) -> Cause {
+    match (power, watchdog, software, pin) {
+        (true, ..) => Cause::Power,
+        (_, true, ..) => Cause::Watchdog,
+        (_, _, true, _) => Cause::Software,
+        (.., true) => Cause::Pin,
+        _ => Cause::Unknown,
+    }
+}

@@ -1,0 +1,76 @@
+//! From the embedded scenario to a pilot: the certificate worked out again on the machine that will fly, and logged.
+//!
+//! It takes a second or two on a Cortex-M4F (double precision is software there), before any motor output is set up to
+//! run. A refused configuration boots as well: it answers, tests motors, and never arms, and says which inequality fails.
+
+use crate::configuration;
+use crate::outputs::Outputs;
+use crate::parameters::Parameters;
+use crate::parameters::table::Name;
+use controller_core::certificate::configuration::{Certified, Refused};
+use controller_core::error::ParameterError;
+use controller_core::flight::Pilot;
+use controller_core::governor::GovernorLimits;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// What control flies with.
+pub struct Boot {
+    /// Decides.
+    pub pilot: Pilot,
+    /// Turns its thrusts into motor commands.
+    pub outputs: Outputs,
+}
+
+impl Boot {
+    /// Certifies the embedded configuration, logs every margin, and makes a pilot of it, certified or grounded.
+    ///
+    /// # Errors
+    /// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
+    #[inline(never)]
+    pub fn new<M: RawMutex>(parameters: &Parameters<M>) -> Result<Self, ParameterError> {
+        let configuration = configuration::embedded()?;
+        let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?)?;
+        let certification = Certified::new(configuration);
+        log(&certification);
+        let limits = GovernorLimits {
+            horizontal_speed: parameters.get(Name::HorizontalSpeed),
+            vertical_speed: parameters.get(Name::VerticalSpeed),
+            ..GovernorLimits::default()
+        };
+        Ok(Self { pilot: Pilot::new(certification.as_ref(), limits), outputs })
+    }
+}
+
+/// Every inequality that decides, with its margin, and the verdict.
+#[cfg(target_os = "none")]
+fn log(certification: &Result<Certified, Refused>) {
+    let certificate = match certification {
+        Ok(certified) => certified.certificate(),
+        Err(Refused::Fails(certificate)) => certificate,
+        Err(Refused::Undefined(error)) => return defmt::error!("not certified: {}", error),
+    };
+    defmt::info!("scenario {=str}", configuration::NAME);
+    for inequality in certificate.inequalities() {
+        let (required, available) = (inequality.required as f32, inequality.available as f32);
+        let (unit, percent) = (inequality.unit, 100.0 * inequality.margin() as f32);
+        match inequality.holds() {
+            true => defmt::info!(
+                "{=str}: {=f32} of {=f32} {=str}, {=f32} % left",
+                inequality.name,
+                required,
+                available,
+                unit,
+                percent
+            ),
+            false => defmt::error!("{=str} FAILS: {=f32} of {=f32} {=str}", inequality.name, required, available, unit),
+        }
+    }
+    match certification {
+        Ok(_) => defmt::info!("certified"),
+        Err(_) => defmt::error!("not certified: this vehicle will not arm"),
+    }
+}
+
+/// A desktop has `host-sim certify` for this.
+#[cfg(not(target_os = "none"))]
+fn log(_certification: &Result<Certified, Refused>) {}

@@ -1,0 +1,41 @@
+//! The IMU task: each sample as it comes, at 1 kHz, stamped with the time it was read.
+//!
+//! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
+//! The first fault after good samples, and the first good sample after faults, are events.
+
+use crate::deadline::within;
+use crate::hardware::{Clock, Fault, Imu};
+use crate::shared::{Severity, Shared};
+use controller_core::flight::ImuSample;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// How long a sample may keep us waiting, us: five periods.
+const PATIENCE: u64 = 5_000;
+
+/// How long to leave a faulty sensor alone, us.
+const RETRY: u64 = 1_000;
+
+/// Runs for ever.
+pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut impl Imu) -> ! {
+    let mut healthy = true;
+    loop {
+        let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
+        match sample {
+            Ok(sample) => shared.imu.put(sample, clock.now()),
+            Err(Fault) => clock.until(clock.now() + RETRY).await,
+        }
+        if sample.is_ok() != healthy {
+            healthy = sample.is_ok();
+            match sample {
+                Ok(_) => shared.announce(Severity::Information, "IMU answers again"),
+                Err(Fault) => shared.announce(Severity::Critical, "IMU does not answer"),
+            }
+        }
+    }
+}
+
+/// Refuses a sample that is not made of numbers.
+fn finite(sample: ImuSample) -> Result<ImuSample, Fault> {
+    let numbers = sample.angular_velocity.iter().chain(&sample.specific_force).all(|component| component.is_finite());
+    if numbers { Ok(sample) } else { Err(Fault) }
+}

@@ -1,0 +1,263 @@
+//! MAVLink frames: found in a stream of bytes, checked, and written.
+//!
+//! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions. Whatever
+//! is not a frame (noise, truncated frames, frames of other dialects) is given up from its first byte only, and the bytes
+//! behind it are looked at again, so a good frame behind a broken one is still found.
+//!
+//! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
+//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an old
+//! pose never comes out as a fresh one.
+//!
+//! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot be
+//! told from noise. Frames of `common` that nobody here wants are checked and skipped whole: bytes inside them that look
+//! like a frame (a log being sent) do nothing.
+//!
+//! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
+
+use mavlink::dialects::common::MavMessage;
+use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, MessageData, calculate_crc};
+
+/// The longest frame: version 2, 255 bytes of payload, signed.
+pub const FRAME_MAX: usize = 280;
+
+/// Bytes that have waited longer than this for the rest of their frame are dropped, us: the age at which a pose is
+/// refused.
+pub const FRAME_AGE_MAX: u64 = 100_000;
+
+/// Bytes before the payload: start, length, sequence, system, component, message.
+const HEADER_V1: usize = 6;
+/// Bytes before the payload: start, length, two of flags, sequence, system, component, three of message.
+const HEADER_V2: usize = 10;
+const CHECKSUM: usize = 2;
+const SIGNATURE: usize = 13;
+
+/// The only incompatibility flag that is understood: a signature follows. It is not verified.
+const SIGNED: u8 = 1;
+
+/// Who sends, and in which order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Header {
+    /// System, 1 to 255.
+    pub system: u8,
+    /// Component.
+    pub component: u8,
+    /// Counts the sender's frames, modulo 256.
+    pub sequence: u8,
+}
+
+/// A frame whose checksum is right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// Protocol version.
+    pub version: MavlinkVersion,
+    /// Who sent it.
+    pub header: Header,
+    /// The message's number.
+    pub message: u32,
+    /// Its fields; version 2 cuts zeros off the end.
+    pub payload: &'a [u8],
+    /// The frame's own checksum, which tells frames with equal headers apart.
+    pub checksum: u16,
+    /// No byte of it arrived before this, us.
+    pub time: u64,
+}
+
+impl Frame<'_> {
+    /// Whether the message is of this type. Version 1 does not cut fields off: there, shorter payloads are something else.
+    #[must_use]
+    pub fn holds<D: MessageData>(&self) -> bool {
+        self.message == D::ID && (self.version == MavlinkVersion::V2 || self.payload.len() >= D::ENCODED_LEN)
+    }
+
+    /// The message, if it is of this type and its enumerations are known ones. Fields cut off are zero.
+    #[must_use]
+    pub fn decode<D: MessageData>(&self) -> Option<D> {
+        if self.holds::<D>() { D::deser(self.version, self.payload).ok() } else { None }
+    }
+
+    /// One byte of the payload; zero where version 2 has cut it off.
+    #[must_use]
+    pub fn byte(&self, offset: usize) -> u8 {
+        self.payload.get(offset).copied().unwrap_or(0)
+    }
+}
+
+/// What the start of the buffer is.
+enum Candidate {
+    /// A frame of so many bytes, checked.
+    Frame(usize),
+    /// Perhaps a frame, once more bytes are there.
+    Incomplete,
+    /// Nothing that starts here.
+    Noise,
+}
+
+/// Finds frames in a stream of bytes.
+pub struct Parser {
+    buffer: [u8; FRAME_MAX],
+    length: usize,
+    /// The frame last handed out, still at the start of the buffer.
+    taken: usize,
+    /// No byte of the buffer arrived before this, us.
+    since: u64,
+    discarded: u32,
+}
+
+impl Parser {
+    /// Nothing received yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { buffer: [0; FRAME_MAX], length: 0, taken: 0, since: 0, discarded: 0 }
+    }
+
+    /// Takes the next byte, which arrived at `now` (us), and returns a frame if there is one. There may be more: ask
+    /// [`Self::next_frame`] until there is none.
+    pub fn push(&mut self, byte: u8, now: u64) -> Option<Frame<'_>> {
+        self.remove(self.taken);
+        self.taken = 0;
+        if now.saturating_sub(self.since) > FRAME_AGE_MAX || self.length == FRAME_MAX {
+            self.discarded = self.discarded.wrapping_add(self.length as u32);
+            self.length = 0;
+        }
+        if self.length == 0 {
+            self.since = now;
+        }
+        if let Some(place) = self.buffer.get_mut(self.length) {
+            *place = byte;
+            self.length += 1;
+        }
+        self.next_frame()
+    }
+
+    /// A frame that is complete already, if there is another.
+    pub fn next_frame(&mut self) -> Option<Frame<'_>> {
+        self.remove(self.taken);
+        self.taken = 0;
+        let mut noise = 0;
+        let found = loop {
+            match candidate(self.buffer.get(noise..self.length).unwrap_or(&[])) {
+                Candidate::Frame(length) => break Some(length),
+                Candidate::Incomplete => break None,
+                Candidate::Noise => noise += 1,
+            }
+        };
+        self.discarded = self.discarded.wrapping_add(noise as u32);
+        self.remove(noise);
+        self.taken = found?;
+        frame(self.buffer.get(..self.taken)?, self.since)
+    }
+
+    /// Bytes so far that were part of no frame, modulo 2^32.
+    #[must_use]
+    pub fn discarded(&self) -> u32 {
+        self.discarded
+    }
+
+    /// Drops bytes from the start of the buffer.
+    fn remove(&mut self, count: usize) {
+        if count > 0 {
+            self.buffer.copy_within(count.min(self.length)..self.length, 0);
+            self.length = self.length.saturating_sub(count);
+        }
+    }
+}
+
+impl Default for Parser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Judges the bytes as far as they are there; an empty buffer waits for more.
+fn candidate(bytes: &[u8]) -> Candidate {
+    let (header, extra) = match *bytes {
+        [] => return Candidate::Incomplete,
+        [MAV_STX, ..] => (HEADER_V1, 0),
+        [MAV_STX_V2] | [MAV_STX_V2, _] => return Candidate::Incomplete,
+        [MAV_STX_V2, _, 0, ..] => (HEADER_V2, 0),
+        [MAV_STX_V2, _, SIGNED, ..] => (HEADER_V2, SIGNATURE),
+        _ => return Candidate::Noise,
+    };
+    let (Some(&payload), Some(message)) = (bytes.get(1), message(bytes)) else { return Candidate::Incomplete };
+    // Messages without such a number, in the dialect or not, cannot be told from noise.
+    let extra_crc = MavMessage::extra_crc(message);
+    if extra_crc == 0 {
+        return Candidate::Noise;
+    }
+    let end = header + usize::from(payload);
+    let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
+        return Candidate::Incomplete;
+    };
+    if calculate_crc(checked, extra_crc) != u16::from_le_bytes([low, high]) {
+        return Candidate::Noise;
+    }
+    let length = end + CHECKSUM + extra;
+    if bytes.len() < length { Candidate::Incomplete } else { Candidate::Frame(length) }
+}
+
+/// The message's number, if the header is there.
+fn message(bytes: &[u8]) -> Option<u32> {
+    match *bytes {
+        [MAV_STX, _, _, _, _, message, ..] => Some(message.into()),
+        [MAV_STX_V2, _, _, _, _, _, _, low, middle, high, ..] => Some(u32::from_le_bytes([low, middle, high, 0])),
+        _ => None,
+    }
+}
+
+/// The parts of a complete frame.
+fn frame(bytes: &[u8], time: u64) -> Option<Frame<'_>> {
+    let (version, header, [sequence, system, component]) = match *bytes {
+        [MAV_STX, _, sequence, system, component, ..] => (MavlinkVersion::V1, HEADER_V1, [sequence, system, component]),
+        [_, _, _, _, sequence, system, component, ..] => (MavlinkVersion::V2, HEADER_V2, [sequence, system, component]),
+        _ => return None,
+    };
+    let end = header + usize::from(*bytes.get(1)?);
+    let &[low, high] = bytes.get(end..end + CHECKSUM)? else { return None };
+    Some(Frame {
+        version,
+        header: Header { system, component, sequence },
+        message: message(bytes)?,
+        payload: bytes.get(header..end)?,
+        checksum: u16::from_le_bytes([low, high]),
+        time,
+    })
+}
+
+/// Writes `message` as a version 2 frame to `buffer` and returns that part of it.
+pub fn encode<'a, D: MessageData>(header: Header, message: &D, buffer: &'a mut [u8; FRAME_MAX]) -> &'a [u8] {
+    let payload: &mut [u8] = buffer.get_mut(HEADER_V2..).unwrap_or_default();
+    let length = message.ser(MavlinkVersion::V2, payload);
+    finish(header, D::ID, D::EXTRA_CRC, length, buffer)
+}
+
+/// As [`encode`], for the bytes of a payload that the dialect's types cannot express; at most 255 of them are sent.
+pub fn encode_payload<'a>(
+    header: Header,
+    message: u32,
+    extra_crc: u8,
+    payload: &[u8],
+    buffer: &'a mut [u8; FRAME_MAX],
+) -> &'a [u8] {
+    let length = payload.len().min(usize::from(u8::MAX));
+    for (place, byte) in buffer.iter_mut().skip(HEADER_V2).zip(payload) {
+        *place = *byte;
+    }
+    finish(header, message, extra_crc, length, buffer)
+}
+
+/// Puts header and checksum around a payload of `length` bytes.
+fn finish(header: Header, message: u32, extra_crc: u8, length: usize, buffer: &mut [u8; FRAME_MAX]) -> &[u8] {
+    let length = length.min(usize::from(u8::MAX));
+    let [low, middle, high, _] = message.to_le_bytes();
+    let Header { system, component, sequence } = header;
+    let start = [MAV_STX_V2, length as u8, 0, 0, sequence, system, component, low, middle, high];
+    for (place, byte) in buffer.iter_mut().zip(start) {
+        *place = byte;
+    }
+    let end = HEADER_V2 + length;
+    let checksum = calculate_crc(buffer.get(1..end).unwrap_or(&[]), extra_crc).to_le_bytes();
+    for (place, byte) in buffer.iter_mut().skip(end).zip(checksum) {
+        *place = byte;
+    }
+    buffer.get(..end + CHECKSUM).unwrap_or(&[])
+}

@@ -1,0 +1,225 @@
+//! Poses: ODOMETRY and ATT_POS_MOCAP, checked and turned into the law's frames.
+//!
+//! | message | accepted | velocity |
+//! |---|---|---|
+//! | ODOMETRY | position in LOCAL_NED or LOCAL_FRD | given: in BODY_FRD, or in the frame of the position |
+//! | ATT_POS_MOCAP | FRD to NED | from differences of positions, see [`Differences`] |
+//!
+//! The pose's time is its arrival on the vehicle's clock: the clocks of sender and vehicle are not compared, so what passed
+//! on the way there is not known, and not part of its age. The sender's own time serves two things: a message whose time
+//! is not after the last one's is a repetition (or was overtaken) and is dropped, and differences are taken over it.
+//!
+//! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
+//! jumps. A field that is used and is not finite, or out of any sensible range, makes the message worthless; covariances
+//! are not looked at (NaN there means unknown).
+
+use super::frame::Frame;
+use crate::frames;
+use controller_core::flight::Pose;
+use controller_core::governor::SPEED_RANGE;
+use core::fmt;
+use mavlink::MessageData;
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// How far from the origin a pose is believed, m.
+pub const POSITION_MAX: f32 = 10_000.0;
+
+/// How far from one a quaternion's length may be; closer ones are normalised.
+pub const LENGTH_TOLERANCE: f32 = 0.05;
+
+/// How long a source must have been silent before another is listened to, or its clock may start again, us.
+pub const SOURCE_SILENCE: u64 = 1_000_000;
+
+/// The longest gap that a difference is taken over, us of the sender's clock.
+pub const GAP_MAX: u64 = 100_000;
+
+/// The shortest, us: less would divide millimetres of noise by next to nothing.
+pub const GAP_MIN: u64 = 1_000;
+
+/// Time constant of the smoothing of differences, s.
+const SMOOTHING: f32 = 0.02;
+
+/// Why a pose was not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PoseRefusal {
+    /// A field in use is NaN or infinite.
+    NotFinite,
+    /// Further away or faster than any vehicle.
+    OutOfRange,
+    /// The quaternion's length is not one.
+    NotARotation,
+    /// Frames that are not converted here.
+    Frame,
+    /// The sender's time is not after that of its last message.
+    Repeated,
+    /// Another source is being listened to.
+    SecondSource,
+    /// ATT_POS_MOCAP without a time: no velocity can be found.
+    NoTime,
+}
+
+impl fmt::Display for PoseRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "Pose refused: a field is not finite",
+            Self::OutOfRange => "Pose refused: too far away or too fast",
+            Self::NotARotation => "Pose refused: quaternion not of unit length",
+            Self::Frame => "Pose refused: use LOCAL_NED and BODY_FRD",
+            Self::Repeated => "Pose refused: its time does not advance",
+            Self::SecondSource => "Pose refused: another source is in use",
+            Self::NoTime => "Pose refused: ATT_POS_MOCAP without a time",
+        })
+    }
+}
+
+/// The source of poses that is listened to.
+#[derive(Debug, Clone, Copy)]
+struct Source {
+    system: u8,
+    component: u8,
+    message: u32,
+    /// The sender's time of the last message, us; zero if it has none.
+    time: u64,
+    /// When that arrived, us.
+    arrived: u64,
+}
+
+/// Turns messages into poses.
+#[derive(Debug, Default)]
+pub struct Poses {
+    source: Option<Source>,
+    differences: Differences,
+}
+
+impl Poses {
+    /// The pose in `frame`. None where there is none (yet): another message, or the first of those whose differences count.
+    ///
+    /// # Errors
+    /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
+    pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Pose>, PoseRefusal> {
+        match frame.message {
+            ODOMETRY_DATA::ID => {
+                // The frames are the only fields that can make it undecodable.
+                let message: ODOMETRY_DATA = frame.decode().ok_or(PoseRefusal::Frame)?;
+                let pose = odometry(&message)?;
+                self.listen(frame, message.time_usec)?;
+                Ok(Some(pose))
+            }
+            ATT_POS_MOCAP_DATA::ID => {
+                let Some(message) = frame.decode::<ATT_POS_MOCAP_DATA>() else { return Ok(None) };
+                let attitude = attitude(message.q)?;
+                let position = position(message.x, message.y, message.z)?;
+                if message.time_usec == 0 {
+                    return Err(PoseRefusal::NoTime);
+                }
+                self.listen(frame, message.time_usec)?;
+                let velocity = self.differences.take(position, message.time_usec)?;
+                Ok(velocity.map(|velocity| Pose { position, velocity, attitude }))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Decides whether this sender is the one listened to and whether its message is a new one.
+    fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<(), PoseRefusal> {
+        let (system, component) = (frame.header.system, frame.header.component);
+        let new = Source { system, component, message: frame.message, time, arrived: frame.time };
+        if let Some(old) = self.source.filter(|old| frame.time.saturating_sub(old.arrived) <= SOURCE_SILENCE) {
+            if (old.system, old.component, old.message) != (system, component, frame.message) {
+                return Err(PoseRefusal::SecondSource);
+            }
+            if time <= old.time && time != 0 {
+                return Err(PoseRefusal::Repeated);
+            }
+        }
+        self.source = Some(new);
+        Ok(())
+    }
+}
+
+/// The velocity of a sender that gives positions only.
+///
+/// Successive positions' difference over the sender's time between them, smoothed by a first-order filter with a time
+/// constant of 20 ms: at 100 Hz that leaves 0.26 of the noise and makes it 25 ms old, differencing included. After a gap of
+/// more than [`GAP_MAX`] it starts again, and there is no pose before the second position.
+#[derive(Debug, Default)]
+pub struct Differences {
+    last: Option<(Vector3<f32>, u64)>,
+    velocity: Option<Vector3<f32>>,
+}
+
+impl Differences {
+    /// The velocity at this position (m) and sender's time (us), if one is known.
+    fn take(&mut self, position: Vector3<f32>, time: u64) -> Result<Option<Vector3<f32>>, PoseRefusal> {
+        let last = self.last.map(|(last, then)| (last, time.saturating_sub(then)));
+        if last.is_some_and(|(_, gap)| gap < GAP_MIN) {
+            return Err(PoseRefusal::Repeated);
+        }
+        self.last = Some((position, time));
+        let Some((last, gap)) = last.filter(|&(_, gap)| gap <= GAP_MAX) else {
+            self.velocity = None;
+            return Ok(None);
+        };
+        let gap = gap as f32 * 1e-6;
+        let difference = (position - last) / gap;
+        check(&difference, SPEED_RANGE)?;
+        let velocity = match self.velocity {
+            Some(velocity) => velocity + (difference - velocity) * (gap / (SMOOTHING + gap)),
+            None => difference,
+        };
+        self.velocity = Some(velocity);
+        Ok(self.velocity)
+    }
+}
+
+/// The pose in an ODOMETRY message. Its body rates are checked but not used: the gyro is nearer.
+pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
+    let frame = message.frame_id;
+    if !matches!(frame, MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_FRD) {
+        return Err(PoseRefusal::Frame);
+    }
+    let velocity = Vector3::new(message.vx, message.vy, message.vz);
+    let rates = Vector3::new(message.rollspeed, message.pitchspeed, message.yawspeed);
+    check(&velocity, SPEED_RANGE)?;
+    check(&rates, f32::MAX)?;
+    let position = position(message.x, message.y, message.z)?;
+    let attitude = attitude(message.q)?;
+    let velocity = match message.child_frame_id {
+        MavFrame::MAV_FRAME_BODY_FRD => UnitQuaternion::new_unchecked(attitude) * frames::body(&velocity),
+        child if child == frame => frames::world(&velocity),
+        _ => return Err(PoseRefusal::Frame),
+    };
+    Ok(Pose { position, velocity, attitude })
+}
+
+/// A position of NED.
+fn position(x: f32, y: f32, z: f32) -> Result<Vector3<f32>, PoseRefusal> {
+    let position = Vector3::new(x, y, z);
+    check(&position, POSITION_MAX)?;
+    Ok(frames::world(&position))
+}
+
+/// An attitude, FRD to NED, scalar first.
+fn attitude([w, x, y, z]: [f32; 4]) -> Result<Quaternion<f32>, PoseRefusal> {
+    let q = Quaternion::new(w, x, y, z);
+    if !q.coords.iter().all(|component| component.is_finite()) {
+        return Err(PoseRefusal::NotFinite);
+    }
+    let length = q.norm();
+    if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
+        return Err(PoseRefusal::NotARotation);
+    }
+    Ok(frames::attitude(&(q / length)))
+}
+
+/// Refuses components that are not finite or greater than `range`.
+fn check(vector: &Vector3<f32>, range: f32) -> Result<(), PoseRefusal> {
+    if !vector.iter().all(|component| component.is_finite()) {
+        Err(PoseRefusal::NotFinite)
+    } else if vector.iter().any(|component| component.abs() > range) {
+        Err(PoseRefusal::OutOfRange)
+    } else {
+        Ok(())
+    }
+}

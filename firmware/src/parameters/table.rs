@@ -1,0 +1,89 @@
+//! What may be set: names, ranges, defaults, units.
+
+/// The parameters, in the table's order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Name {
+    /// MAVLink system id of this vehicle. Taken over at once.
+    SystemId,
+    /// How often attitude and position are sent. Taken over at once.
+    TelemetryRate,
+    /// The governor's horizontal speed limit. Taken over at the next boot.
+    HorizontalSpeed,
+    /// The governor's vertical speed limit. Taken over at the next boot.
+    VerticalSpeed,
+    /// Below this voltage the vehicle warns; 0 never does. Taken over at once.
+    BatteryLow,
+}
+
+/// One row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Which.
+    pub parameter: Name,
+    /// Its MAVLink name, at most 16 bytes.
+    pub name: &'static str,
+    /// The least value allowed.
+    pub least: f32,
+    /// The greatest.
+    pub most: f32,
+    /// Where nothing else was set.
+    pub default: f32,
+    /// The unit, if it has one.
+    pub unit: &'static str,
+    /// Only whole numbers make sense.
+    pub whole: bool,
+}
+
+const fn row(
+    parameter: Name,
+    name: &'static str,
+    [least, most]: [f32; 2],
+    default: f32,
+    unit: &'static str,
+    whole: bool,
+) -> Row {
+    Row { parameter, name, least, most, default, unit, whole }
+}
+
+/// Every parameter. Storage knows them by their place here: add at the end, remove none.
+#[rustfmt::skip]
+pub const PARAMETERS: [Row; 5] = [
+    row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    true),
+    row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  true),
+    row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", false),
+    row(Name::VerticalSpeed,   "GOV_SPEED_Z",  [0.1, 10.0],  2.0,  "m/s", false),
+    row(Name::BatteryLow,      "BAT_LOW",      [0.0, 60.0],  0.0,  "V",   false),
+];
+
+impl Name {
+    /// Its row.
+    #[must_use]
+    pub fn row(self) -> &'static Row {
+        // The table is in the order of the names; a test holds it to that.
+        &PARAMETERS[self as usize]
+    }
+
+    /// The parameter of this MAVLink name, which ends at the first zero byte or fills its 16 bytes.
+    #[must_use]
+    pub fn from_bytes(name: &[u8]) -> Option<Self> {
+        let name = name.split(|&byte| byte == 0).next()?;
+        PARAMETERS.iter().find(|row| row.name.as_bytes() == name).map(|row| row.parameter)
+    }
+
+    /// The parameter in this place of the table.
+    #[must_use]
+    pub fn from_index(index: usize) -> Option<Self> {
+        PARAMETERS.get(index).map(|row| row.parameter)
+    }
+}
+
+impl Row {
+    /// Whether it may have this value.
+    #[must_use]
+    pub fn allows(&self, value: f32) -> bool {
+        // NaN is in no range; a whole number in this one survives the way to an integer and back.
+        (self.least..=self.most).contains(&value) && (!self.whole || value as u32 as f32 == value)
+    }
+}

@@ -1,0 +1,40 @@
+//! The freshest value of something.
+
+use controller_core::flight::Stamped;
+use core::cell::Cell;
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// The freshest value of something, overwritten by each newer one.
+pub struct Latest<M: RawMutex, T: Copy>(Mutex<M, Cell<Option<Stamped<T>>>>);
+
+impl<M: RawMutex, T: Copy> Latest<M, T> {
+    /// Nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Mutex::new(Cell::new(None)))
+    }
+
+    /// Replaces the value.
+    pub fn put(&self, value: T, time: u64) {
+        self.0.lock(|cell| cell.set(Some(Stamped { value, time })));
+    }
+
+    /// The value with its time, left in place.
+    #[must_use]
+    pub fn get(&self) -> Option<Stamped<T>> {
+        self.0.lock(Cell::get)
+    }
+
+    /// The value with its time, taken away.
+    #[must_use]
+    pub fn take(&self) -> Option<Stamped<T>> {
+        self.0.lock(Cell::take)
+    }
+}
+
+impl<M: RawMutex, T: Copy> Default for Latest<M, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,42 @@
+//! What a control tick did and what the line carried, for telemetry and the log.
+
+use controller_core::flight::Mode;
+use controller_core::state::{State, Wrench};
+
+/// One control tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Report {
+    /// Which state of the flight rules the tick left the vehicle in.
+    pub mode: Mode,
+    /// Where the vehicle is and how it moves, as control took it; none before the first pose and IMU sample, or without
+    /// fresh ones.
+    pub state: Option<State>,
+    /// What the law asked for; none while it does not fly.
+    pub wrench: Option<Wrench>,
+    /// How well the ticks keep time.
+    pub timing: Timing,
+}
+
+/// How well control keeps time, since boot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Timing {
+    /// The longest tick, us.
+    pub worst_duration: u32,
+    /// The greatest distance of a tick's start from where the period put it, us.
+    pub worst_jitter: u32,
+    /// Ticks that did not run to their end in time.
+    pub missed: u32,
+}
+
+/// What the link received since boot; each count starts again after 2^32.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Traffic {
+    /// Frames with the right checksum.
+    pub frames: u32,
+    /// Bytes that were part of none.
+    pub discarded: u32,
+    /// Messages that could not be used.
+    pub refused: u32,
+    /// Commands that the line delivered twice.
+    pub repeated: u32,
+}

@@ -1,0 +1,99 @@
+//! Status: a light for people nearby, the battery for everybody, and the log.
+//!
+//! | light | means |
+//! |---|---|
+//! | a short flash once a second | disarmed |
+//! | two short flashes once a second | motor test |
+//! | on | flying |
+//! | slow blinking (1 Hz) | flying, ground station lost |
+//! | fast blinking (5 Hz) | levelling: the pose is lost |
+//! | flickering (10 Hz) | no report from control for [`REPORT_AGE_MAX`] |
+
+mod euler;
+mod log;
+
+use crate::hardware::{Battery, Clock, Light};
+use crate::parameters::table::Name;
+use crate::shared::{Severity, Shared};
+use controller_core::flight::Mode;
+use embassy_futures::select::{Either, select};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+pub use euler::{Euler, euler};
+
+/// Time between steps, us.
+pub const STEP: u64 = 50_000;
+
+/// Time between readings of the battery, us.
+const BATTERY_INTERVAL: u64 = 200_000;
+
+/// The longest a reading may take, us.
+const BATTERY_TIME_MAX: u64 = 20_000;
+
+/// Time between log lines, us.
+const SUMMARY_INTERVAL: u64 = 1_000_000;
+
+/// Time between warnings of a low battery, us.
+const WARNING_INTERVAL: u64 = 10_000_000;
+
+/// A report older than this is none, us.
+pub const REPORT_AGE_MAX: u64 = 1_000_000;
+
+/// Whether the light is on at `now` (us), a multiple of [`STEP`] or close behind one; no mode without a fresh report.
+#[must_use]
+pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
+    // Steps into the present second, 0 to 19.
+    let step = now / STEP % (1_000_000 / STEP);
+    match mode {
+        Some(Mode::Disarmed) => step == 0,
+        Some(Mode::MotorTest) => step == 0 || step == 4,
+        Some(Mode::Flying) => true,
+        Some(Mode::Holding) => step < 10,
+        Some(Mode::Levelling) => step % 4 < 2,
+        None => step % 2 == 0,
+    }
+}
+
+/// Shows, measures and logs for ever.
+pub async fn run<M: RawMutex>(
+    mut light: impl Light,
+    mut battery: impl Battery,
+    clock: &impl Clock,
+    shared: &Shared<M>,
+) -> ! {
+    let (mut step, mut reading, mut summary, mut warning) = (clock.now(), 0, 0, 0);
+    loop {
+        let now = clock.now();
+        let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
+        light.set(is_lit(report.map(|report| report.value.mode), now));
+        if now >= reading {
+            reading = now.saturating_add(BATTERY_INTERVAL);
+            measure(&mut battery, clock, shared, &mut warning).await;
+        }
+        while let Ok(event) = shared.log.try_receive() {
+            log::event(&event);
+        }
+        if now >= summary {
+            summary = now.saturating_add(SUMMARY_INTERVAL);
+            log::summary(report.as_ref(), shared);
+        }
+        // By whole steps, so that the pattern does not drift through the second.
+        step = (step + STEP).max(clock.now());
+        clock.until(step).await;
+    }
+}
+
+/// Reads the battery and warns when it is low, no oftener than `warning` allows.
+async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, shared: &Shared<M>, warning: &mut u64) {
+    let end = clock.now().saturating_add(BATTERY_TIME_MAX);
+    let Either::First(Some(voltage)) = select(battery.voltage(), clock.until(end)).await else { return };
+    if !voltage.is_finite() {
+        return;
+    }
+    let now = clock.now();
+    shared.voltage.put(voltage, now);
+    if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
+        *warning = now.saturating_add(WARNING_INTERVAL);
+        shared.announce(Severity::Warning, format_args!("Battery low: {voltage:.1} V"));
+    }
+}

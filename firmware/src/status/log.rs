@@ -1,0 +1,64 @@
+//! The log: one line a second and one for each event. On boards only; a desktop has the events themselves.
+
+use crate::shared::{Event, Report, Shared};
+use controller_core::flight::Stamped;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// Logs an event.
+#[cfg(target_os = "none")]
+pub fn event(event: &Event) {
+    use crate::shared::Severity;
+    let text = event.text.as_str();
+    match event.severity {
+        Severity::Information => defmt::info!("{=str}", text),
+        Severity::Warning => defmt::warn!("{=str}", text),
+        Severity::Critical => defmt::error!("{=str}", text),
+    }
+}
+
+/// Logs how the vehicle does.
+#[cfg(target_os = "none")]
+pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>) {
+    let Some(Stamped { value: report, time }) = report else {
+        defmt::warn!("no report from control");
+        return;
+    };
+    let timing = report.timing;
+    defmt::info!(
+        "{=u64} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
+        *time / 1000,
+        report.mode,
+        timing.worst_duration,
+        timing.worst_jitter,
+        timing.missed
+    );
+    if let Some(state) = report.state {
+        let p = state.position;
+        let angles = super::euler(&state.attitude);
+        defmt::info!("at {=f32} {=f32} {=f32} m, {} degrees", p.x, p.y, p.z, angles);
+    }
+    if let Some(voltage) = shared.voltage.get() {
+        defmt::info!("battery {=f32} V", voltage.value);
+    }
+    if let Some(traffic) = shared.traffic.get() {
+        let traffic = traffic.value;
+        defmt::info!(
+            "link: {=u32} frames, {=u32} bytes of noise, {=u32} refused",
+            traffic.frames,
+            traffic.discarded,
+            traffic.refused
+        );
+    }
+    let lost = shared.lost_events();
+    if lost > 0 {
+        defmt::warn!("{=u32} events lost", lost);
+    }
+}
+
+/// There is no log on a desktop.
+#[cfg(not(target_os = "none"))]
+pub fn event(_: &Event) {}
+
+/// There is no log on a desktop.
+#[cfg(not(target_os = "none"))]
+pub fn summary<M: RawMutex>(_: Option<&Stamped<Report>>, _: &Shared<M>) {}
