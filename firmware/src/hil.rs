@@ -1,6 +1,7 @@
 //! Hardware in the loop: a simulator takes the motors' commands and answers with what the sensors would say.
 //!
-//! Once on, it stays on until reboot: the motors' own outputs carry stop, and their commands go to the simulator.
+//! It can be turned on while the motors are stopped ([`SelectedMotors`]) and stays on until reboot: the motors' own outputs
+//! carry stop, and their commands go to the simulator.
 //!
 //! | message | way | what |
 //! |---|---|---|
@@ -15,33 +16,39 @@
 //! What an answer says is true one tick after the command whose time it carries, and that is its time stamp. It carries a
 //! time that the vehicle itself has sent, so no clock but the vehicle's makes anything fresh; times to come are refused.
 
+use crate::deadline::within;
 use crate::frames;
-use crate::hardware::{Clock, Fault, MOTORS, MotorCommand, Motors};
+use crate::hardware::{Clock, Fault, MotorCommand, Motors};
+use crate::link::COMPONENT;
 use crate::link::frame::{FRAME_MAX, Frame, Header, Parser, encode};
-use crate::shared::Latest;
-use controller_core::flight::{ImuSample, Pose, Stamped};
+use crate::link::pose::odometry;
+use crate::parameters::table::Name;
+use crate::shared::{Flag, Shared};
+use controller_core::flight::{ImuSample, PERIOD, Stamped};
 use core::cell::Cell;
-use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
 use mavlink::dialects::common::{
-    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavFrame,
-    MavModeFlag, ODOMETRY_DATA,
+    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
+    ODOMETRY_DATA,
 };
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 /// Longest that a message may take to go out, us: then the next tick's is due.
-const SEND_TIMEOUT: u64 = 8_000;
+const SENDING_MAX: u64 = 8_000;
 
-/// Pause after a failed read, us.
-const READ_RETRY: u64 = 1_000;
+/// Bytes taken from the line at once.
+const CHUNK: usize = 64;
 
-/// From a command to the moment that the answer to it is about, us: one tick.
-const PERIOD: u64 = 10_000;
+/// How long the line may be silent before it is asked again, us.
+const SILENCE: u64 = 100_000;
 
-/// Whether a simulator stands in for sensors and motors, and how far the exchange with it is.
+/// Pause before the line is asked again, us.
+const RETRY: u64 = 1_000;
+
+/// The exchange with the simulator: whether there is one, and how far it is.
 pub struct Hil<M: RawMutex> {
     state: Mutex<M, Cell<State>>,
     outgoing: Signal<M, Stamped<MotorCommand>>,
@@ -50,23 +57,18 @@ pub struct Hil<M: RawMutex> {
 #[derive(Clone, Copy)]
 struct State {
     active: bool,
-    /// When the command was given that has no answer yet.
+    /// When the command was given that has no answer yet, us.
     unanswered: Option<u64>,
 }
 
 impl<M: RawMutex> Hil<M> {
-    /// Off, or on from boot.
+    /// No simulator yet.
     #[must_use]
-    pub const fn new(active: bool) -> Self {
-        Self { state: Mutex::new(Cell::new(State { active, unanswered: None })), outgoing: Signal::new() }
+    pub const fn new() -> Self {
+        Self { state: Mutex::new(Cell::new(State { active: false, unanswered: None })), outgoing: Signal::new() }
     }
 
-    /// Turns it on, until reboot. Only to be called while disarmed: the motors stop.
-    pub fn activate(&self) {
-        self.update(|state| State { active: true, ..state });
-    }
-
-    /// Whether a simulator stands in for sensors and motors.
+    /// Whether the simulator has sensors and motors.
     #[must_use]
     pub fn active(&self) -> bool {
         self.state.lock(Cell::get).active
@@ -83,7 +85,7 @@ impl<M: RawMutex> Hil<M> {
     }
 
     fn command(&self, command: MotorCommand, now: u64) {
-        self.update(|state| State { unanswered: Some(now), ..state });
+        self.update(|_| State { active: true, unanswered: Some(now) });
         self.outgoing.signal(Stamped { value: command, time: now });
     }
 
@@ -92,94 +94,106 @@ impl<M: RawMutex> Hil<M> {
     }
 }
 
-/// A board's motors, or the simulator's.
+impl<M: RawMutex> Default for Hil<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A board's motors, or the simulator's. The change is made between a stop and a stop, whatever asked for it.
 pub struct SelectedMotors<'a, M: RawMutex, P, C> {
-    /// Decides which.
-    pub hil: &'a Hil<M>,
     /// The board's own.
     pub pins: P,
+    /// The simulator's.
+    pub hil: &'a Hil<M>,
+    /// Raised when the simulator is wanted.
+    pub wanted: &'a Flag,
     /// The board's time.
     pub clock: C,
 }
 
 impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
-        if !self.hil.active() {
-            return self.pins.write(command).await;
+        if self.hil.active() || self.wanted.is_raised() && command == MotorCommand::Stop {
+            self.hil.command(command, self.clock.now());
+            return self.pins.write(MotorCommand::Stop).await;
         }
-        self.hil.command(command, self.clock.now());
-        self.pins.write(MotorCommand::Stop).await
+        self.pins.write(command).await
     }
 }
 
-/// Sends each command that [`SelectedMotors`] was given, as `system`'s autopilot. Never ends.
-pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut writer: impl Write, clock: &impl Clock, system: u8) -> ! {
+/// Sends the simulator each command that [`SelectedMotors`] was given, for ever.
+pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &impl Clock, shared: &Shared<M>) -> ! {
     let mut buffer = [0; FRAME_MAX];
-    let mut header = Header { system, component: 1, sequence: 0 };
+    let mut sequence: u8 = 0;
     loop {
-        let Stamped { value: command, time } = hil.outgoing.wait().await;
-        let bytes = encode(header, &controls(command, time), &mut buffer);
-        header.sequence = header.sequence.wrapping_add(1);
-        // What does not go out leaves its tick without an answer; that shows as a sensor that grows old.
-        select(writer.write_all(bytes), clock.until(time + SEND_TIMEOUT)).await;
+        let command = hil.outgoing.wait().await;
+        let system = shared.parameters.get(Name::SystemId) as u8;
+        let header = Header { system, component: COMPONENT, sequence };
+        sequence = sequence.wrapping_add(1);
+        // What does not go out is not answered, and shows as sensors that grow old.
+        let _ = within(clock, SENDING_MAX, line.write_all(encode(header, &controls(&command), &mut buffer))).await;
     }
 }
 
-/// Takes the simulator's answers as IMU and pose. Never ends.
-pub async fn receive<M: RawMutex>(
-    hil: &Hil<M>,
-    mut reader: impl Read,
-    clock: &impl Clock,
-    imu: &Latest<M, ImuSample>,
-    pose: &Latest<M, Pose>,
-) -> ! {
+/// Takes the simulator's answers for IMU and pose, for ever.
+pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &impl Clock, shared: &Shared<M>) -> ! {
     let mut parser = Parser::new();
-    let mut buffer = [0; 64];
+    let mut chunk = [0; CHUNK];
     loop {
-        let Ok(count @ 1..) = reader.read(&mut buffer).await else {
-            clock.until(clock.now() + READ_RETRY).await;
+        let Ok(Ok(count @ 1..)) = within(clock, SILENCE, line.read(&mut chunk)).await else {
+            clock.until(clock.now() + RETRY).await;
             continue;
         };
         let now = clock.now();
-        for byte in buffer.iter().take(count) {
-            let mut frame = parser.push(*byte, now);
-            while let Some(found) = frame {
-                take(hil, &found, now, imu, pose);
-                frame = parser.next_frame();
+        for byte in chunk.iter().take(count) {
+            let mut next = parser.push(*byte, now);
+            while let Some(frame) = next {
+                take(hil, &frame, now, shared);
+                next = parser.next_frame();
             }
         }
     }
 }
 
-/// Acts on one frame, if it is one of the two and a simulator is wanted.
-fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame, now: u64, imu: &Latest<M, ImuSample>, pose: &Latest<M, Pose>) {
+/// Acts on one frame, if it is one of the two and the simulator is wanted.
+fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, now: u64, shared: &Shared<M>) {
     if !hil.active() {
         return;
     }
     if let Some(message) = frame.decode::<HIL_SENSOR_DATA>() {
         if let Some(sample) = sample(&message).filter(|_| message.time_usec <= now) {
-            imu.put(sample, message.time_usec + PERIOD);
+            shared.imu.put(sample, message.time_usec + PERIOD);
             hil.answered(message.time_usec);
         }
     } else if let Some(message) = frame.decode::<ODOMETRY_DATA>()
-        && let Some(value) = odometry(&message).filter(|_| message.time_usec <= now)
+        && let Ok(pose) = odometry(&message)
+        && message.time_usec <= now
     {
-        pose.put(value, message.time_usec + PERIOD);
+        shared.pose.put(pose, message.time_usec + PERIOD);
     }
 }
 
 /// The message that tells the simulator a command.
-fn controls(command: MotorCommand, time: u64) -> HIL_ACTUATOR_CONTROLS_DATA {
+fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     let mut controls = [0.0; 16];
-    let mut mode = MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED;
-    if let MotorCommand::Run(motors) = command {
-        mode |= MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
-        for (control, motor) in controls.iter_mut().zip::<[f32; MOTORS]>(motors) {
-            *control = motor;
+    match command.value {
+        MotorCommand::Stop => {}
+        MotorCommand::Run(motors) => {
+            for (control, motor) in controls.iter_mut().zip(motors) {
+                *control = motor;
+            }
+        }
+        MotorCommand::One { motor, level } => {
+            for control in controls.iter_mut().skip(motor).take(1) {
+                *control = level;
+            }
         }
     }
+    let mut mode = MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED;
+    mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, command.value != MotorCommand::Stop);
     let flags = HilActuatorControlsFlags::HIL_ACTUATOR_CONTROLS_FLAGS_LOCKSTEP;
-    HIL_ACTUATOR_CONTROLS_DATA { time_usec: time, flags, controls, mode }
+    HIL_ACTUATOR_CONTROLS_DATA { time_usec: command.time, flags, controls, mode }
 }
 
 /// What the sensors say, if the simulator knows all of it.
@@ -195,24 +209,6 @@ fn sample(message: &HIL_SENSOR_DATA) -> Option<ImuSample> {
     let accelerometer = Vector3::new(message.xacc, message.yacc, message.zacc);
     let whole = message.fields_updated.contains(inertial) && finite(&gyro) && finite(&accelerometer);
     whole.then(|| ImuSample { angular_velocity: frames::body(&gyro), specific_force: frames::body(&accelerometer) })
-}
-
-/// Where the vehicle is, if all of it is finite and in the frames that simulators use.
-fn odometry(message: &ODOMETRY_DATA) -> Option<Pose> {
-    let [w, x, y, z] = message.q;
-    let attitude = Quaternion::new(w, x, y, z);
-    let position = Vector3::new(message.x, message.y, message.z);
-    let velocity = Vector3::new(message.vx, message.vy, message.vz);
-    let framed =
-        message.frame_id == MavFrame::MAV_FRAME_LOCAL_NED && message.child_frame_id == MavFrame::MAV_FRAME_BODY_FRD;
-    let length = attitude.norm();
-    // False for a NaN as well.
-    let whole = framed && finite(&position) && finite(&velocity) && (length - 1.0).abs() < 1e-3;
-    whole.then(|| {
-        let attitude = frames::attitude(&(attitude / length));
-        let rotation = UnitQuaternion::new_unchecked(attitude);
-        Pose { position: frames::world(&position), velocity: rotation * frames::body(&velocity), attitude }
-    })
 }
 
 fn finite(vector: &Vector3<f32>) -> bool {

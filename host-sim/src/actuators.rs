@@ -8,18 +8,19 @@
 //!
 //! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it acts;
 //! - *allocation*: the core's own [`Mixer`], with its order of giving up what the rotors do not have;
-//! - *lag*: speed' = (command - speed) / lag, solved exactly over each plant step; the body feels the thrusts of the step's
-//!   middle, so the error against a continuous solution is of second order in step / lag.
+//! - *lag*: of the rotors' speeds ([`rotors`]).
 //!
 //! A rotor counts as saturated at a tick whose wrench the allocation could not deliver in full.
-//! Rotors start at the speeds that hover. There is no air flow through them, and no spin-up from standstill.
+//! Rotors start at the speeds that hover.
+
+pub mod rotors;
 
 use crate::plant::{Clipping, Diverged, Plant};
 use controller_core::allocation::mixer::{Mixer, Thrusts};
-use controller_core::allocation::{Rotor, Rotors};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
+use rotors::SpinningRotors;
 pub use scenario::actuation::RotorSetup;
 use std::collections::VecDeque;
 use std::fmt;
@@ -48,67 +49,30 @@ impl From<Diverged> for ActuationError {
     }
 }
 
-/// The rotors in motion.
+/// Rotors behind their allocation.
 #[derive(Debug, Clone)]
-struct RotorDynamics {
+struct Allocated {
     mixer: Mixer,
-    rotors: Rotors,
-    /// What is left of a speed error after half a plant step, and after a whole one.
-    decay: (f64, f64),
-    /// Per rotor: speed now and speed commanded, rad/s.
-    speeds: Vec<(f64, f64)>,
+    rotors: SpinningRotors,
 }
 
-impl RotorDynamics {
-    fn new(setup: &RotorSetup, hover: f32, step: f64) -> Self {
-        let hovering = |(rotor, row): (&Rotor, &Vector4<f64>)| {
-            let thrust = (row.x as f32 * hover).clamp(rotor.thrust_min, rotor.thrust_max);
-            f64::from(rotor.speed_at(thrust))
-        };
-        let hovering = setup.rotors.iter().zip(setup.rotors.pseudo_inverse()).map(hovering);
-        let left = |time: f64| if setup.lag > 0.0 { (-time / setup.lag).exp() } else { 0.0 };
-        Self {
-            mixer: Mixer::new(&setup.rotors),
-            rotors: setup.rotors.clone(),
-            decay: (left(0.5 * step), left(step)),
-            speeds: hovering.map(|speed| (speed, speed)).collect(),
-        }
-    }
-
+impl Allocated {
     /// Sends a wrench to the rotors; returns their commanded thrusts and whether they could deliver it.
     fn command(&mut self, wrench: &Wrench) -> Result<(Thrusts, Clipping), InputError> {
         let allocation = self.mixer.allocate(wrench)?;
-        for ((speed, rotor), thrust) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(&allocation.thrusts) {
-            speed.1 = f64::from(rotor.speed_at(*thrust));
-        }
+        self.rotors.command(&allocation.thrusts);
         let clipping = Clipping {
             thrust: allocation.thrust_limited,
             torque: allocation.roll_pitch_limited || allocation.yaw_limited,
         };
         Ok((allocation.thrusts, clipping))
     }
-
-    /// Advances the speeds by one plant step and returns thrust and torque at its middle.
-    fn advance(&mut self) -> (f64, Vector3<f64>) {
-        let (half, whole) = self.decay;
-        let mut thrust = 0.0;
-        let mut torque = Vector3::zeros();
-        let columns = self.rotors.effectiveness();
-        for (((speed, command), rotor), column) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(columns) {
-            let middle = *command + (*speed - *command) * half;
-            *speed = *command + (*speed - *command) * whole;
-            let force = f64::from(rotor.thrust_coefficient) * middle * middle;
-            thrust += force * column.x;
-            torque += Vector3::new(column.y, column.z, column.w) * force;
-        }
-        (thrust, torque)
-    }
 }
 
 /// Delay and rotors between the law and the body.
 #[derive(Debug, Clone)]
 pub struct Actuators {
-    rotors: Option<RotorDynamics>,
+    rotors: Option<Allocated>,
     delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
@@ -123,7 +87,10 @@ impl Actuators {
     #[must_use]
     pub fn new(setup: Option<&RotorSetup>, delay_steps: u64, hover: f32, step: f64) -> Self {
         Self {
-            rotors: setup.map(|setup| RotorDynamics::new(setup, hover, step)),
+            rotors: setup.map(|setup| Allocated {
+                mixer: Mixer::new(&setup.rotors),
+                rotors: SpinningRotors::hovering(setup, hover, step),
+            }),
             delay_steps,
             now: 0,
             waiting: VecDeque::new(),
@@ -162,7 +129,7 @@ impl Actuators {
                         clipping = clipping.or(cut);
                         thrusts = commanded;
                     }
-                    let (thrust, torque) = rotors.advance();
+                    let (thrust, torque) = rotors.rotors.advance();
                     plant.act(thrust, &torque);
                 }
             }

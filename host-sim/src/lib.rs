@@ -4,18 +4,21 @@
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
+//! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`scenario`] | files to validated types; a crate of its own, which the firmware's build reads them with too |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`claims`] | what was claimed against what was flown |
 //! | [`log`], [`plots`] | log.csv and the figures |
 //! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
-//! | [`fly`], [`law`], [`certify`], [`tune`] | the commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
 
 pub mod actuators;
 pub mod certify;
 pub mod claims;
 pub mod flight;
 pub mod fly;
+pub mod ground;
+pub mod hil;
 pub mod law;
 pub mod log;
 pub mod plant;

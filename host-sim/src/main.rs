@@ -1,9 +1,11 @@
 //! Flies scenarios on the desktop and serves the control law to other simulators.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use host_sim::certify::certify;
 use host_sim::claims;
 use host_sim::fly::{FlyError, certification, fly};
+use host_sim::hil::port::{Address, Port};
+use host_sim::hil::{self, HilError, Session};
 use host_sim::law::LawServer;
 use host_sim::log::WholeFile;
 use host_sim::scenario::{Scenario, bounds, check_name};
@@ -12,6 +14,7 @@ use host_sim::tune::{Effort, Requirements, output, tune, widest_bounds};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// A well-posed run whose claims fail.
 const CLAIMS_FAIL: u8 = 1;
@@ -36,6 +39,8 @@ Examples:
   host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
   host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
+  host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
+                                             the vehicle alone, for firmware in an emulator or on a board
 
 A scenario file is TOML: start from one in scenarios/ or vehicles/; docs/scenario-file.md describes every key.
 
@@ -68,6 +73,34 @@ enum Command {
         /// Scenario file whose vehicle and gains are used [default: the paper's, built in]
         file: Option<PathBuf>,
     },
+    /// Be the vehicle of a flight controller that runs elsewhere, lock-step over MAVLink.
+    #[command(after_help = HIL_HELP)]
+    Hil(HilArguments),
+}
+
+#[derive(Args)]
+#[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
+struct HilArguments {
+    /// Scenario file: vehicle, rotors, delay; it starts on the ground below its initial position
+    file: PathBuf,
+    /// Find the flight controller at this address
+    #[arg(long, value_name = "HOST:PORT")]
+    connect: Option<String>,
+    /// Wait at this address for the flight controller
+    #[arg(long, value_name = "HOST:PORT")]
+    listen: Option<String>,
+    /// End after so much vehicle time, s [default: when the other side goes]
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+    /// Withhold the pose from this vehicle time on, s: a pose source that fails
+    #[arg(long, value_name = "SECONDS")]
+    pose_until: Option<f64>,
+    /// Longest wait for the other side, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    patience: f64,
+    /// Write a row for each command: state, commands, thrust
+    #[arg(long, value_name = "FILE.csv")]
+    log: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -122,6 +155,18 @@ One line of 33 numbers in, one line of 4 numbers out, flushed, until end of inpu
 The output uses the filters as they stand, which then advance by the line's dt (0 < dt <= 0.1 s). A line that cannot
 be used is answered by \"error: ...\" on its turn and changes nothing.";
 
+const HIL_HELP: &str = "\
+The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the file's order. Each moves
+the vehicle on by one control period, and is answered by ODOMETRY and HIL_SENSOR with the time of the command. Vehicle time
+counts from the first command.
+
+With QEMU (this firmware's emulated board; its second serial port is for the ground station):
+  qemu-system-arm -M mps2-an386 -display none -monitor none -icount shift=0,sleep=off \\
+    -serial tcp:127.0.0.1:5760,server=on -serial tcp:127.0.0.1:5761,server=on \\
+    -semihosting-config enable=on,target=native -kernel target/arm/thumbv7em-none-eabihf/release/mps2
+  host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
+With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600";
+
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         None => run_fly(None, None),
@@ -129,6 +174,7 @@ fn main() -> ExitCode {
         Some(Command::Certify { file }) => run_certify(file.as_deref()),
         Some(Command::Tune(arguments)) => run_tune(&arguments),
         Some(Command::Law { file }) => run_law(file.as_deref()),
+        Some(Command::Hil(arguments)) => run_hil(&arguments),
     };
     outcome.unwrap_or_else(|message| {
         eprintln!("error: {message}");
@@ -171,6 +217,32 @@ fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {
     let mut server = LawServer::new(&scenario).map_err(|error| error.to_string())?;
     server.serve(io::stdin().lock(), io::stdout().lock()).map_err(|error| error.to_string())?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
+    let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
+    let session = arguments.session()?;
+    let address = match (&arguments.connect, &arguments.listen) {
+        (Some(address), _) => Address::Connect(address.clone()),
+        (None, Some(address)) => Address::Listen(address.clone()),
+        (None, None) => return Err("--connect or --listen: one is needed".to_owned()),
+    };
+    let patience = Duration::try_from_secs_f64(arguments.patience)
+        .ok()
+        .filter(|patience| !patience.is_zero())
+        .ok_or_else(|| format!("--patience: must be greater than zero, found {}", arguments.patience))?;
+    let mut port = Port::open(&address, patience).map_err(|error| error.to_string())?;
+    match hil::serve(&scenario, &mut port, &session, arguments.log.as_deref()) {
+        Ok(summary) => {
+            let _ = writeln!(io::stdout(), "{}: {summary}", scenario.name);
+            Ok(ExitCode::SUCCESS)
+        }
+        Err(error @ HilError::Flight(_)) => {
+            eprintln!("error: {}: {error}", scenario.name);
+            Ok(ExitCode::from(CLAIMS_FAIL))
+        }
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
@@ -246,6 +318,18 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
 /// Whether both paths lead to one file that exists.
 fn same_file(one: &Path, other: &Path) -> bool {
     matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
+
+impl HilArguments {
+    fn session(&self) -> Result<Session, String> {
+        let times = [("--duration", self.duration), ("--pose-until", self.pose_until)];
+        for (name, time) in times {
+            if let Some(time) = time.filter(|time| !(*time >= 0.0 && time.is_finite())) {
+                return Err(format!("{name}: must not be negative, found {time}"));
+            }
+        }
+        Ok(Session { duration: self.duration, pose_until: self.pose_until })
+    }
 }
 
 impl TuneArguments {

@@ -10,7 +10,8 @@
 //! q' needs q and omega; v' needs q; p' needs v), so a step runs the four stages of each level before the next level
 //! and folds the factors and the position's stages together: the same method, half the work.
 //!
-//! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall.
+//! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall. Where a flight needs
+//! them, [`crate::actuators`] and [`crate::ground`] stand around it.
 
 use controller_core::state::Wrench;
 use controller_core::vehicle::{Limits, Vehicle};
@@ -111,6 +112,11 @@ impl Plant {
     /// One integration step under thrust, N, and torque, N m, as they are.
     pub fn act(&mut self, thrust: f64, torque: &Vector3<f64>) {
         self.advance(thrust, torque, 1);
+    }
+
+    /// Puts the body elsewhere, as a contact does.
+    pub fn place(&mut self, state: BodyState) {
+        self.state = state;
     }
 
     /// # Errors

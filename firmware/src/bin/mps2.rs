@@ -1,110 +1,85 @@
-//! The firmware of one board.
+//! The firmware on QEMU's emulated boards: its tasks by priority, and nothing else. A simulator has sensors and motors.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod target {
-    use controller_core::flight::{ImuSample, Pose};
     use defmt_semihosting as _;
-    use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex as Mutex;
-    use firmware::boards::mps2::{self, executors, idle, time::BoardClock, uart, watchdog::BoardWatchdog};
-    use firmware::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
+    use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+    use firmware::boards::mps2::bench::{Lamp, NoBattery, NoMotors};
+    use firmware::boards::mps2::time::BoardClock;
+    use firmware::boards::mps2::watchdog::BoardWatchdog;
+    use firmware::boards::mps2::{self, executors, exit, idle, uart};
+    use firmware::boot::Boot;
+    use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
-    use firmware::shared::Latest;
+    use firmware::link::{receive, transmit};
+    use firmware::shared::Shared;
+    use firmware::status;
     use panic_probe as _;
+    use static_cell::StaticCell;
 
-    static HIL: Hil<Mutex> = Hil::new(true);
-    static IMU: Latest<Mutex, ImuSample> = Latest::new();
-    static POSE: Latest<Mutex, Pose> = Latest::new();
+    static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
+    static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
 
-    struct NoPins;
-    impl Motors for NoPins {
-        async fn write(&mut self, _: MotorCommand) -> Result<(), Fault> {
-            Ok(())
-        }
-    }
-
-    #[embassy_executor::task]
-    async fn hil_receive() {
-        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, &IMU, &POSE).await;
-    }
-
-    #[embassy_executor::task]
-    async fn hil_transmit() {
-        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, 1).await;
-    }
-
-    #[embassy_executor::task]
-    async fn chatter() {
-        let mut next = 1_000_000;
-        loop {
-            BoardClock.until(next).await;
-            defmt::info!("{} s, lost {}", next / 1_000_000, uart::SIMULATOR.lost());
-            next += 1_000_000;
-        }
-    }
-
-    #[embassy_executor::task]
-    async fn control() {
-        let mut motors = SelectedMotors { hil: &HIL, pins: NoPins, clock: BoardClock };
-        let mut next = BoardClock.now() + 10_000;
-        let mut dog = BoardWatchdog::start(50_000);
-        let (mut worst, mut missed, mut slowest, mut stale, mut ticks) = (0u64, 0u32, 0u64, 0u32, 0u32);
-        loop {
-            BoardClock.until(next).await;
-            let now = BoardClock.now();
-            worst = worst.max(now - next);
-            if now - next > 9_000 {
-                missed += 1;
-            }
-            if now - next > 0 || ticks < 6 {
-                cortex_m_semihosting::heprintln!("tick {} at {} late {}", ticks, next, now - next);
-            }
-            let mut command = MotorCommand::Stop;
-            if let (Some(imu), Some(pose)) = (IMU.get(), POSE.get()) {
-                if imu.age(now) > 1000 || pose.age(now) > 1000 {
-                    stale += 1;
-                }
-                command = MotorCommand::Run([0.55; 4]);
-            }
-            let _ = motors.write(command).await;
-            dog.feed();
-            slowest = slowest.max(BoardClock.now() - now);
-            ticks += 1;
-            if ticks == 6 {
-                cortex_m_semihosting::debug::exit(Ok(()));
-            }
-            if ticks % 500 == 0 {
-                cortex_m_semihosting::heprintln!(
-                    "{} ticks late {} us, slowest {} us, missed {}, stale {}, z {}",
-                    ticks,
-                    worst,
-                    slowest,
-                    missed,
-                    stale,
-                    POSE.get().map_or(0.0, |p| p.value.position.z)
-                );
-            }
-            next += 10_000;
-        }
-    }
+    /// How long the control task may take to come back, us.
+    const WATCHDOG: u32 = 50_000;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let core = cortex_m::Peripherals::take().unwrap();
+        let Some(core) = cortex_m::Peripherals::take() else { exit::fail("started twice") };
         mps2::init(core);
-        defmt::info!("{}", firmware::configuration::NAME);
-        let flight = executors::start_flight();
-        let background = executors::start_background();
-        flight.spawn(control().unwrap());
-        flight.spawn(hil_receive().unwrap());
-        flight.spawn(hil_transmit().unwrap());
-        background.spawn(chatter().unwrap());
-        idle::idle(|| false)
+        defmt::info!("{} emulated", firmware::configuration::NAME);
+        static BOOT: StaticCell<Boot> = StaticCell::new();
+        let Ok(boot) = Boot::new(&SHARED.parameters) else { exit::fail("the embedded scenario has not four rotors") };
+        let boot = BOOT.init(boot);
+        SHARED.hil.raise();
+
+        let spawner = executors::start_flight();
+        spawner.spawn(defmt::unwrap!(control(boot)));
+        spawner.spawn(defmt::unwrap!(to_simulator()));
+        spawner.spawn(defmt::unwrap!(from_simulator()));
+        let spawner = executors::start_background();
+        spawner.spawn(defmt::unwrap!(from_ground()));
+        spawner.spawn(defmt::unwrap!(to_ground()));
+        spawner.spawn(defmt::unwrap!(show_status()));
+        idle::idle(|| HIL.awaiting())
+    }
+
+    #[embassy_executor::task]
+    async fn control(boot: &'static mut Boot) {
+        let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: &SHARED.hil, clock: BoardClock };
+        let mut watchdog = BoardWatchdog::start(WATCHDOG);
+        Control::new(&SHARED, &mut boot.pilot, &boot.outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
+    }
+
+    #[embassy_executor::task]
+    async fn to_simulator() {
+        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, &SHARED).await;
+    }
+
+    #[embassy_executor::task]
+    async fn from_simulator() {
+        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, &SHARED).await;
+    }
+
+    #[embassy_executor::task]
+    async fn from_ground() {
+        receive::receive(uart::GROUND.split().0, &BoardClock, &SHARED).await;
+    }
+
+    #[embassy_executor::task]
+    async fn to_ground() {
+        transmit::transmit(uart::GROUND.split().1, &BoardClock, &SHARED).await;
+    }
+
+    #[embassy_executor::task]
+    async fn show_status() {
+        status::run(Lamp, NoBattery, &BoardClock, &SHARED).await;
     }
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    eprintln!("this is firmware: README.md says how to build and flash it");
+    eprintln!("this is firmware: README.md says how to build and emulate it");
 }

@@ -5,11 +5,13 @@
 //! | UART0 | the simulator: sensors in, motors out ([`crate::hil`]) |
 //! | UART1 | the ground station |
 //! | SysTick, timer 0 | [`time`]: what embassy-time counts, and when it wakes |
+//! | LED | [`bench`], which also stands in for what is not there |
 //! | watchdog | [`watchdog`]: ends the emulation |
 //! | two interrupt lines nobody is connected to | the executors, flight above link ([`executors`]) |
 //!
 //! Thread mode only sleeps ([`idle`]). Panics and faults end the emulation with status 1 ([`exit`]).
 
+pub mod bench;
 pub mod executors;
 pub mod exit;
 pub mod idle;

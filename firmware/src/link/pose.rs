@@ -174,7 +174,7 @@ impl Differences {
 }
 
 /// The pose in an ODOMETRY message. Its body rates are checked but not used: the gyro is nearer.
-fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
+pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
     let frame = message.frame_id;
     if !matches!(frame, MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_FRD) {
         return Err(PoseRefusal::Frame);

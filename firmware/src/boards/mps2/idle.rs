@@ -1,6 +1,6 @@
 //! What the processor does when no task has anything to do: it sleeps, unless it waits for the simulator.
 //!
-//! The emulator counts time in instructions (`-icount shift=3,sleep=off`: 8 ns each), and while the processor sleeps, time
+//! The emulator counts time in instructions (`-icount shift=0,sleep=off`: 1 ns each), and while the processor sleeps, time
 //! jumps to the next alarm. So ticks come on time however slow the machine underneath is, and an hour of waiting takes no
 //! time. But a jump must not pass over the answer of the simulator, which lives in the machine's own time: from the moment
 //! the motors' commands have gone out until the sensors' answer is in, the processor stays awake, and time creeps on with

@@ -1,0 +1,163 @@
+//! `hil`: the vehicle for a flight controller that runs elsewhere, in an emulator or on a board, in lock-step.
+//!
+//! ```text
+//! flight controller -- HIL_ACTUATOR_CONTROLS --> one control period of rotors, body and ground
+//!                   <-- ODOMETRY, HIL_SENSOR --
+//! ```
+//!
+//! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs, the
+//! flight is the same. Both answers carry the time of the command that they answer; HIL_SENSOR comes last. Time is the
+//! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]).
+
+pub mod messages;
+pub mod pace;
+pub mod port;
+pub mod vehicle;
+
+use crate::log::WholeFile;
+use crate::progress::Progress;
+use pace::Pace;
+use port::{Port, PortError};
+use scenario::Scenario;
+use std::fmt;
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use vehicle::{HilVehicle, Moved};
+
+/// How a session is run.
+#[derive(Debug, Clone, Default)]
+pub struct Session {
+    /// Vehicle time after which it ends, s; none: when the other side goes.
+    pub duration: Option<f64>,
+    /// Vehicle time from which poses are withheld, s.
+    pub pose_until: Option<f64>,
+}
+
+/// Why a session could not be run, or not to its end.
+#[derive(Debug)]
+pub enum HilError {
+    /// The scenario cannot be flown this way.
+    Scenario(String),
+    /// The connection failed.
+    Port(PortError),
+    /// The other side sent something impossible, or the motion is no longer finite.
+    Flight(String),
+    /// The log cannot be written.
+    Log(io::Error),
+}
+
+impl fmt::Display for HilError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scenario(what) | Self::Flight(what) => f.write_str(what),
+            Self::Port(error) => write!(f, "{error}"),
+            Self::Log(error) => write!(f, "--log: cannot be written: {error}"),
+        }
+    }
+}
+
+/// What a session was.
+#[derive(Debug, Clone)]
+pub struct Summary {
+    /// How regular the commands were.
+    pub pace: Pace,
+    /// Where the vehicle ended, m.
+    pub position: [f64; 3],
+    /// Each touchdown: vehicle time, s, speed, m/s, and tilt, rad.
+    pub touchdowns: Vec<(f64, f64, f64)>,
+    /// How long it took from the first command on.
+    pub took: Duration,
+    /// Whether the other side went before the duration was over.
+    pub left: bool,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.position;
+        writeln!(f, "{}, in {:.1} s", self.pace, self.took.as_secs_f64())?;
+        for (time, speed, tilt) in &self.touchdowns {
+            writeln!(
+                f,
+                "touched the ground at {time:.2} s with {speed:.3} m/s, leaning {:.1} degrees",
+                tilt.to_degrees()
+            )?;
+        }
+        let end = if self.left { "the other side went" } else { "the duration was over" };
+        write!(f, "{end}; vehicle at {x:.4} {y:.4} {z:.4} m")
+    }
+}
+
+/// Serves one flight controller with the scenario's vehicle until the duration is over or the other side goes.
+///
+/// # Errors
+/// [`HilError`].
+pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Option<&Path>) -> Result<Summary, HilError> {
+    let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
+    let mut log = log.map(Log::create).transpose().map_err(HilError::Log)?;
+    let period = scenario.timing.period();
+    let ticks = |seconds: f64| (seconds / period).round() as u64;
+    let (end, pose_end) = (session.duration.map(ticks), session.pose_until.map(ticks));
+    let mut progress = end.map(|end| Progress::new("flying", end));
+    let mut pace = Pace::new(scenario.timing.period_us);
+    let mut touchdowns = Vec::new();
+    let mut started = None;
+    let left = loop {
+        if end.is_some_and(|end| pace.ticks() >= end) {
+            break false;
+        }
+        let Some(controls) = port.receive().map_err(HilError::Port)? else { break true };
+        started.get_or_insert_with(Instant::now);
+        let tick = pace.ticks();
+        let time = tick as f64 * period;
+        pace.take(controls.time);
+        let Moved { state, specific_force, thrust, touchdown } =
+            vehicle.advance(&controls).map_err(|what| HilError::Flight(format!("at {time} s: {what}")))?;
+        if let Some(touchdown) = touchdown {
+            touchdowns.push((time, touchdown.speed, touchdown.tilt));
+        }
+        if let Some(log) = &mut log {
+            log.row(time, &state, &controls, thrust).map_err(HilError::Log)?;
+        }
+        let pose = pose_end.is_none_or(|end| tick < end);
+        port.answer(&controls, &state, &specific_force, pose).map_err(HilError::Port)?;
+        if let Some(progress) = &mut progress {
+            progress.show(pace.ticks());
+        }
+    };
+    if let Some(log) = log {
+        log.file.finish().map_err(HilError::Log)?;
+    }
+    let position = vehicle.state().position;
+    let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());
+    Ok(Summary { pace, position: position.into(), touchdowns, took, left })
+}
+
+/// A row for each command: the state one period after it, the commands, the thrust at the end.
+struct Log {
+    file: WholeFile,
+}
+
+impl Log {
+    const HEADER: &'static str =
+        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_0,command_1,command_2,command_3";
+
+    fn create(path: &Path) -> io::Result<Self> {
+        let mut file = WholeFile::create(path)?;
+        writeln!(file, "{}", Self::HEADER)?;
+        Ok(Self { file })
+    }
+
+    fn row(&mut self, time: f64, s: &scenario::body::BodyState, c: &messages::Controls, thrust: f64) -> io::Result<()> {
+        let (p, v, q, w) = (&s.position, &s.velocity, &s.attitude, &s.angular_velocity);
+        write!(self.file, "{time:.6}")?;
+        for value in [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z, thrust] {
+            write!(self.file, ",{value:?}")?;
+        }
+        write!(self.file, ",{}", u8::from(c.armed))?;
+        for command in c.commands {
+            write!(self.file, ",{command:?}")?;
+        }
+        writeln!(self.file)
+    }
+}

@@ -1,0 +1,109 @@
+//! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
+
+use firmware::frames;
+use firmware::link::frame::{FRAME_MAX, Frame, Header, encode};
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
+};
+use nalgebra::{UnitQuaternion, Vector3};
+use scenario::body::BodyState;
+
+/// Motors that a flight controller commands.
+pub const MOTORS: usize = 4;
+
+/// This side's MAVLink system: beside the vehicle's own.
+const SYSTEM: u8 = 142;
+
+/// One tick's motor commands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Controls {
+    /// The flight controller's time, us.
+    pub time: u64,
+    /// Whether it drives the motors.
+    pub armed: bool,
+    /// 0 to 1 each, in the rotors' order.
+    pub commands: [f32; MOTORS],
+}
+
+impl Controls {
+    /// The commands in a frame, if it holds any.
+    #[must_use]
+    pub fn from_frame(frame: &Frame<'_>) -> Option<Self> {
+        let message: HIL_ACTUATOR_CONTROLS_DATA = frame.decode()?;
+        let armed = message.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        let [a, b, c, d, ..] = message.controls;
+        Some(Self { time: message.time_usec, armed, commands: [a, b, c, d] })
+    }
+}
+
+/// Puts the session's answers into bytes, counting them.
+#[derive(Debug, Default)]
+pub struct Encoder {
+    sequence: u8,
+}
+
+impl Encoder {
+    /// Appends where the vehicle is as an ODOMETRY.
+    pub fn odometry(&mut self, time: u64, state: &BodyState, bytes: &mut Vec<u8>) {
+        let measured = state.measured();
+        let attitude = UnitQuaternion::new_unchecked(state.attitude);
+        let velocity = attitude.inverse() * state.velocity;
+        let position = frames::world(&measured.position);
+        let velocity = frames::body(&velocity.map(|component| component as f32));
+        let rates = frames::body(&measured.angular_velocity);
+        let q = frames::attitude(&measured.attitude);
+        self.append(
+            &ODOMETRY_DATA {
+                time_usec: time,
+                x: position.x,
+                y: position.y,
+                z: position.z,
+                q: [q.w, q.i, q.j, q.k],
+                vx: velocity.x,
+                vy: velocity.y,
+                vz: velocity.z,
+                rollspeed: rates.x,
+                pitchspeed: rates.y,
+                yawspeed: rates.z,
+                frame_id: MavFrame::MAV_FRAME_LOCAL_NED,
+                child_frame_id: MavFrame::MAV_FRAME_BODY_FRD,
+                ..ODOMETRY_DATA::default()
+            },
+            bytes,
+        );
+    }
+
+    /// Appends gyro and accelerometer, body frame, as a HIL_SENSOR.
+    pub fn sensor(&mut self, time: u64, state: &BodyState, specific_force: &Vector3<f64>, bytes: &mut Vec<u8>) {
+        let gyro = frames::body(&state.measured().angular_velocity);
+        let force = frames::body(&specific_force.map(|component| component as f32));
+        use HilSensorUpdatedFlags as Field;
+        self.append(
+            &HIL_SENSOR_DATA {
+                time_usec: time,
+                xacc: force.x,
+                yacc: force.y,
+                zacc: force.z,
+                xgyro: gyro.x,
+                ygyro: gyro.y,
+                zgyro: gyro.z,
+                fields_updated: Field::HIL_SENSOR_UPDATED_XACC
+                    | Field::HIL_SENSOR_UPDATED_YACC
+                    | Field::HIL_SENSOR_UPDATED_ZACC
+                    | Field::HIL_SENSOR_UPDATED_XGYRO
+                    | Field::HIL_SENSOR_UPDATED_YGYRO
+                    | Field::HIL_SENSOR_UPDATED_ZGYRO,
+                ..HIL_SENSOR_DATA::default()
+            },
+            bytes,
+        );
+    }
+
+    fn append(&mut self, message: &impl MessageData, bytes: &mut Vec<u8>) {
+        let header = Header { system: SYSTEM, component: 1, sequence: self.sequence };
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut buffer = [0; FRAME_MAX];
+        bytes.extend_from_slice(encode(header, message, &mut buffer));
+    }
+}

@@ -1,0 +1,170 @@
+//! The connection to the flight controller: TCP, every wait bounded.
+
+use super::messages::{Controls, Encoder};
+use firmware::link::frame::Parser;
+use nalgebra::Vector3;
+use scenario::body::BodyState;
+use std::fmt;
+use std::io::{self, BufRead, BufReader, ErrorKind, Write};
+use std::net::{TcpListener, TcpStream};
+use std::time::{Duration, Instant};
+
+/// Pause between attempts to connect or to find somebody who does.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Where the other side is to be found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Address {
+    /// It listens there.
+    Connect(String),
+    /// It will come here.
+    Listen(String),
+}
+
+/// Why there is no connection, or none any more.
+#[derive(Debug)]
+pub enum PortError {
+    /// Nobody was there in time.
+    Nobody(Address, Duration, Option<io::Error>),
+    /// The address cannot be used.
+    Address(String, io::Error),
+    /// The other side said nothing for so long.
+    Silent(Duration),
+    /// The connection broke.
+    Broken(io::Error),
+}
+
+impl fmt::Display for PortError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nobody(Address::Connect(address), waited, error) => {
+                write!(f, "--connect: nobody listens on {address} for {} s", waited.as_secs_f64())?;
+                error.as_ref().map_or(Ok(()), |error| write!(f, ": {error}"))
+            }
+            Self::Nobody(Address::Listen(address), waited, _) => {
+                write!(f, "--listen: nobody connects to {address} for {} s", waited.as_secs_f64())
+            }
+            Self::Address(address, error) => write!(f, "{address}: cannot be used: {error}"),
+            Self::Silent(waited) => write!(f, "no motor command for {} s", waited.as_secs_f64()),
+            Self::Broken(error) => write!(f, "the connection broke: {error}"),
+        }
+    }
+}
+
+/// A connected flight controller.
+pub struct Port {
+    reader: BufReader<TcpStream>,
+    parser: Parser,
+    writer: TcpStream,
+    patience: Duration,
+    encoder: Encoder,
+    bytes: Vec<u8>,
+}
+
+impl Port {
+    /// Finds the other side; `patience` bounds this and every later wait.
+    ///
+    /// # Errors
+    /// [`PortError`] if there is nobody in time or the address cannot be used.
+    pub fn open(address: &Address, patience: Duration) -> Result<Self, PortError> {
+        let stream = match address {
+            Address::Connect(to) => connect(to, address, patience)?,
+            Address::Listen(on) => listen(on, address, patience)?,
+        };
+        Self::over(stream, patience).map_err(PortError::Broken)
+    }
+
+    fn over(stream: TcpStream, patience: Duration) -> io::Result<Self> {
+        stream.set_nonblocking(false)?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(patience))?;
+        stream.set_write_timeout(Some(patience))?;
+        let writer = stream.try_clone()?;
+        let reader = BufReader::new(stream);
+        Ok(Self { reader, parser: Parser::new(), writer, patience, encoder: Encoder::default(), bytes: Vec::new() })
+    }
+
+    /// The next command; none when the other side has gone. Other messages, and what is none, are skipped.
+    ///
+    /// # Errors
+    /// [`PortError`] if no byte comes in time or the connection breaks.
+    pub fn receive(&mut self) -> Result<Option<Controls>, PortError> {
+        loop {
+            let bytes = match self.reader.fill_buf() {
+                Ok([]) => return Ok(None),
+                Ok(bytes) => bytes,
+                Err(error) => {
+                    return match error.kind() {
+                        ErrorKind::ConnectionReset => Ok(None),
+                        ErrorKind::WouldBlock | ErrorKind::TimedOut => Err(PortError::Silent(self.patience)),
+                        _ => Err(PortError::Broken(error)),
+                    };
+                }
+            };
+            for (taken, byte) in (1..).zip(bytes) {
+                // Time does not matter here: a stream neither loses nor ages anything.
+                if let Some(controls) = self.parser.push(*byte, 0).and_then(|frame| Controls::from_frame(&frame)) {
+                    self.reader.consume(taken);
+                    return Ok(Some(controls));
+                }
+            }
+            let taken = bytes.len();
+            self.reader.consume(taken);
+        }
+    }
+
+    /// Answers a command with where the vehicle is one period later, with its pose or without.
+    ///
+    /// # Errors
+    /// [`PortError`] if the connection breaks; a side that has gone is for [`Self::receive`] to find.
+    pub fn answer(
+        &mut self,
+        controls: &Controls,
+        state: &BodyState,
+        specific_force: &Vector3<f64>,
+        pose: bool,
+    ) -> Result<(), PortError> {
+        self.bytes.clear();
+        if pose {
+            self.encoder.odometry(controls.time, state, &mut self.bytes);
+        }
+        self.encoder.sensor(controls.time, state, specific_force, &mut self.bytes);
+        match self.writer.write_all(&self.bytes) {
+            Err(error) if !matches!(error.kind(), ErrorKind::BrokenPipe | ErrorKind::ConnectionReset) => {
+                Err(PortError::Broken(error))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn connect(to: &str, address: &Address, patience: Duration) -> Result<TcpStream, PortError> {
+    let started = Instant::now();
+    loop {
+        match TcpStream::connect(to) {
+            Ok(stream) => return Ok(stream),
+            Err(error) if error.kind() == ErrorKind::InvalidInput => return Err(PortError::Address(to.into(), error)),
+            Err(error) if started.elapsed() >= patience => {
+                return Err(PortError::Nobody(address.clone(), patience, Some(error)));
+            }
+            Err(_) => std::thread::sleep(PAUSE),
+        }
+    }
+}
+
+fn listen(on: &str, address: &Address, patience: Duration) -> Result<TcpStream, PortError> {
+    let refuse = |error| PortError::Address(on.to_owned(), error);
+    let listener = TcpListener::bind(on).map_err(refuse)?;
+    listener.set_nonblocking(true).map_err(refuse)?;
+    let started = Instant::now();
+    loop {
+        match listener.accept() {
+            Ok((stream, _)) => return Ok(stream),
+            Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(PortError::Broken(error)),
+            Err(_) if started.elapsed() >= patience => {
+                return Err(PortError::Nobody(address.clone(), patience, None));
+            }
+            Err(_) => std::thread::sleep(PAUSE),
+        }
+    }
+}

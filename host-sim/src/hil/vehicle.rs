@@ -1,0 +1,156 @@
+//! The vehicle of a session: delay, rotors, body and ground, moved by motor commands one control period at a time.
+//!
+//! It starts on the ground, below where the scenario starts, level, with its rotors standing still. A command u of a rotor
+//! means u^2 of its greatest thrust, as the firmware's thrust curve has it.
+
+use super::messages::{Controls, MOTORS};
+use crate::actuators::rotors::SpinningRotors;
+use crate::ground::{Ground, Touchdown};
+use crate::plant::Plant;
+use controller_core::allocation::{Rotor, ThrustCurve};
+use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::body::BodyState;
+use std::collections::VecDeque;
+
+/// Height of the ground, m.
+const GROUND: f64 = 0.0;
+
+/// What a command led to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moved {
+    /// Where the vehicle is a period later.
+    pub state: BodyState,
+    /// What an accelerometer shows then, m/s^2, body frame.
+    pub specific_force: Vector3<f64>,
+    /// The rotors' thrust then, N.
+    pub thrust: f64,
+    /// The last touchdown on the way there.
+    pub touchdown: Option<Touchdown>,
+}
+
+/// A vehicle that a flight controller elsewhere flies.
+#[derive(Debug, Clone)]
+pub struct HilVehicle {
+    plant: Plant,
+    ground: Ground,
+    rotors: SpinningRotors,
+    curves: Vec<ThrustCurve>,
+    steps: u64,
+    delay: u64,
+    /// Plant steps since the start.
+    now: u64,
+    /// Thrusts on their way, N, with the step at which they act.
+    waiting: VecDeque<(u64, Vec<f32>)>,
+}
+
+impl HilVehicle {
+    /// The scenario's, standing on the ground.
+    ///
+    /// # Errors
+    /// In words, if the scenario has not as many rotors as there are motor commands.
+    pub fn new(scenario: &Scenario) -> Result<Self, String> {
+        let configuration = &scenario.configuration;
+        let Some(setup) = scenario.rotors.as_ref().filter(|setup| setup.rotors.len() == MOTORS) else {
+            let found = scenario.rotors.as_ref().map_or(0, |setup| setup.rotors.len());
+            return Err(format!("{}: rotors: a flight controller commands {MOTORS}, found {found}", scenario.name));
+        };
+        let step = scenario.timing.step();
+        let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial);
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+        let curves = setup.rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+        Ok(Self {
+            plant: Plant::new(configuration.vehicle(), configuration.limits(), step, state),
+            ground,
+            rotors: SpinningRotors::stopped(setup, step),
+            curves,
+            steps: scenario.timing.steps_per_tick.into(),
+            delay: scenario.delay_steps,
+            now: 0,
+            waiting: VecDeque::new(),
+        })
+    }
+
+    /// The present state.
+    #[must_use]
+    pub fn state(&self) -> &BodyState {
+        self.plant.state()
+    }
+
+    /// Takes one command and moves on by one control period.
+    ///
+    /// # Errors
+    /// In words, if a command is not from 0 to 1, or the motion is not finite afterwards.
+    pub fn advance(&mut self, controls: &Controls) -> Result<Moved, String> {
+        if let Some(bad) = controls.commands.iter().find(|command| !(0.0..=1.0).contains(*command)) {
+            return Err(format!("a motor command is not from 0 to 1: {bad}"));
+        }
+        let thrust = |(curve, command): (&ThrustCurve, f32)| curve.thrust(command, 1.0);
+        let thrusts = self.curves.iter().zip(controls.commands).map(thrust).collect();
+        self.waiting.push_back((self.now + self.delay, thrusts));
+        let (mut thrust, mut touchdown) = (0.0, None);
+        for _ in 0..self.steps {
+            while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+                self.rotors.command(&thrusts);
+            }
+            let torque;
+            (thrust, torque) = self.rotors.advance();
+            touchdown = self.ground.act(&mut self.plant, thrust, &torque).or(touchdown);
+            self.now += 1;
+        }
+        self.plant.check().map_err(|error| error.to_string())?;
+        let state = *self.plant.state();
+        Ok(Moved { state, specific_force: self.ground.specific_force(&state, thrust), thrust, touchdown })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study() -> Scenario {
+        Scenario::load(std::path::Path::new("../vehicles/study.toml")).unwrap()
+    }
+
+    fn all(command: f32) -> Controls {
+        Controls { time: 0, armed: true, commands: [command; MOTORS] }
+    }
+
+    /// The command that hovers: u^2 of 4 x 5.57e-6 x 800^2 N is the weight.
+    const HOVER: f32 = 0.562_486;
+
+    #[test]
+    fn it_stands_below_the_scenarios_start_until_it_is_told_to_rise() {
+        let mut vehicle = HilVehicle::new(&study()).unwrap();
+        for _ in 0..100 {
+            let moved = vehicle.advance(&all(HOVER - 0.01)).unwrap();
+            assert_eq!(moved.state.position, Vector3::new(1.0, 0.0, 0.0));
+            assert!((moved.specific_force - Vector3::z() * 9.81).norm() < 1e-5);
+        }
+        let mut height = 0.0;
+        for _ in 0..100 {
+            height = vehicle.advance(&all(HOVER + 0.01)).unwrap().state.position.z;
+        }
+        assert!((0.1..0.2).contains(&height), "{height}");
+    }
+
+    #[test]
+    fn a_command_acts_after_the_scenarios_delay() {
+        let mut vehicle = HilVehicle::new(&study()).unwrap();
+        assert_eq!(vehicle.advance(&all(1.0)).unwrap().thrust, 0.0);
+        assert!(vehicle.advance(&all(1.0)).unwrap().thrust > 0.1);
+    }
+
+    #[test]
+    fn impossible_commands_are_refused_in_words() {
+        let mut vehicle = HilVehicle::new(&study()).unwrap();
+        for command in [f32::NAN, -0.1, 1.1] {
+            assert!(vehicle.advance(&all(command)).unwrap_err().contains("0 to 1"));
+        }
+    }
+
+    #[test]
+    fn a_scenario_without_rotors_is_refused_in_words() {
+        assert!(HilVehicle::new(&Scenario::paper().unwrap()).unwrap_err().contains("rotors"));
+    }
+}

@@ -1,0 +1,129 @@
+"""Flies the whole firmware on emulated Cortex-M boards with a real MAVLink client, and holds it to the flight rules.
+
+Usage: flight.py MACHINE RUN...   with RUN one of: flight, vanishing-client, failing-pose
+
+Every time is the vehicle's. Figures that are printed were measured in that run.
+"""
+
+import sys
+
+from rig import Rig
+from station import Station  # noqa: F401  (fails early where pymavlink is missing)
+
+START = (1.0, 0.0, 0.0)
+HOVER = (1.0, 0.0, 1.5)
+
+# What the flight rules promise, s; controller-core/src/flight/rules.rs.
+POSE_AGE_MAX = 0.1
+LEVELLING_MAX = 1.0
+SILENCE_MAX = 2.5
+TICK = 0.01
+
+FLYING, HOLDING = 3, 4
+
+
+def take_off(station):
+    station.until("heartbeat and telemetry", lambda: station.mode and station.position, 60.0)
+    assert station.distance(START) < 1e-3, station.position
+    assert not station.armed
+    station.wait(1.0)
+    station.command_arm(True)
+    print(f"    hover reached in {station.go(HOVER, 0.05, 20.0):.2f} s")
+    station.wait(3.0)
+
+
+def land(station):
+    station.go((station.target[0], station.target[1], 0.0), 0.05, 20.0)
+    station.wait(2.0)
+    station.command_arm(False)
+    station.wait(0.5)
+
+
+def flight(machine):
+    """Boot, arm, take position, hover, a step of 1 m, land, disarm."""
+    with Rig(machine) as rig:
+        station = rig.station
+        take_off(station)
+        worst = station.worst_distance(HOVER, 5.0)
+        print(f"    hover held within {1e3 * worst:.1f} mm for 5 s")
+        assert worst <= 0.05, worst
+        there = (HOVER[0], HOVER[1] + 1.0, HOVER[2])
+        print(f"    1 m step within 0.1 m in {station.go(there, 0.1, 5.0):.2f} s")
+        station.wait(3.0)
+        assert station.worst_distance(there, 3.0) <= 0.05
+        land(station)
+        rig.land()
+        rig.check_pace()
+        assert rig.rows[-1]["armed"] == 0 and rig.rows[-1]["thrust"] < 0.05
+        assert abs(rig.rows[-1]["pz"]) < 0.01
+        # The simulator's own record: no telemetry in between.
+        assert max(row["pz"] for row in rig.rows) < HOVER[2] + 0.05
+
+
+def vanishing_client(machine):
+    """A ground station that says nothing more, in the middle of a manoeuvre: the vehicle holds, and obeys again."""
+    with Rig(machine) as rig:
+        station = rig.station
+        take_off(station)
+        station.go((HOVER[0], HOVER[1] + 8.0, HOVER[2]), 7.0, 10.0)
+        silent, station.alive = station.now, False
+        # From here on it only listens.
+        station.until("holding", lambda: station.heard("Ground station lost"), SILENCE_MAX + 1.0)
+        after = station.heard("Ground station lost") - silent
+        print(f"    holding position {after:.2f} s after the last word")
+        # The last heartbeat may be as old as their interval; texts and telemetry come a few hundredths later.
+        assert SILENCE_MAX - Station.HEARTBEAT <= after <= SILENCE_MAX + 0.1, after
+        station.wait(6.0)
+        assert station.armed and station.mode == HOLDING
+        held = station.position
+        worst = station.worst_distance(held, 10.0)
+        print(f"    held within {1e3 * worst:.1f} mm for 10 s, {held[1]:.2f} m along the way")
+        assert worst <= 0.05 and held[1] < HOVER[1] + 7.9
+        station.target, station.alive = None, True
+        station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
+        station.target = (held[0], held[1], 0.0)
+        land(station)
+        rig.land()
+        rig.check_pace()
+
+
+def failing_pose(machine):
+    """A pose source that stops at a hover: level at hover thrust for a second, then stop."""
+    stops = 25.0
+    with Rig(machine, ["--pose-until", stops]) as rig:
+        station = rig.station
+        take_off(station)
+        station.until("stop", lambda: station.heard("Stopped: no pose"), stops)
+        station.until("disarmed", lambda: not station.armed, 2.0)
+        lost, stopped = station.heard("Pose lost"), station.heard("Stopped: no pose")
+        print(f"    stopped {stopped - lost:.2f} s after the pose was given up, by telemetry")
+        station.wait(1.0)
+        rig.land()
+        rig.check_pace()
+    # By the simulator's record. The last pose answers the last command before `stops` and is true a tick later.
+    last_pose = max(row["t"] for row in rig.rows if row["t"] < stops - TICK / 2) + TICK
+    off = min(row["t"] for row in rig.rows if row["t"] > stops and row["armed"] == 0)
+    print(f"    motors off {off - last_pose:.3f} s after the last pose")
+    assert abs(off - last_pose - (POSE_AGE_MAX + LEVELLING_MAX)) <= 2 * TICK + 1e-9, off - last_pose
+    levelling = [row for row in rig.rows if last_pose + POSE_AGE_MAX <= row["t"] < off]
+    lean = max(2.0 * (row["qx"] ** 2 + row["qy"] ** 2) ** 0.5 for row in levelling)
+    drop = levelling[0]["pz"] - levelling[-1]["pz"]
+    print(f"    levelling: leaned {lean:.4f} rad at most, sank {1e3 * drop:.0f} mm")
+    assert lean < 0.02 and abs(drop) < 0.05
+    assert all(row["armed"] == 0 for row in rig.rows if row["t"] >= off)
+    assert rig.rows[-1]["pz"] < 0.01
+
+
+RUNS = {"flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
+
+
+def main():
+    machine, *names = sys.argv[1:]
+    for name in names:
+        print(f"== {machine}: {name}", flush=True)
+        RUNS[name](machine)
+    print(f"== {machine}: all as the flight rules say")
+
+
+if __name__ == "__main__":
+    main()

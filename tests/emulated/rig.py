@@ -1,0 +1,103 @@
+"""The rig: an emulated board, the simulated vehicle on its first serial port, a ground station on its second."""
+
+import csv
+import pathlib
+import re
+import socket
+import subprocess
+import tempfile
+
+from station import Station
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+SIMULATOR = TOP / "target/release/host-sim"
+IMAGES = TOP / "target/emulated"
+VEHICLE = TOP / "vehicles/study.toml"
+
+# 1 ns an instruction, and no waiting while the processor sleeps: see firmware/src/boards/mps2/idle.rs.
+TIME = "shift=0,sleep=off"
+
+# Longest wait of any process for another, seconds of this machine's time. Only a hang reaches it.
+PATIENCE = 180.0
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Rig:
+    """One boot of one machine, from power on to the report of what the vehicle did."""
+
+    def __init__(self, machine, simulator_options=()):
+        self.machine = machine
+        self.options = [str(option) for option in simulator_options]
+
+    def __enter__(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="emulated-flight-")
+        folder = pathlib.Path(self.folder.name)
+        self.log = folder / "log.csv"
+        self.said = open(folder / "board.txt", "w+")
+        self.report = open(folder / "simulator.txt", "w+")
+        vehicle, ground = free_port(), free_port()
+        serial = lambda port: ["-serial", f"tcp:127.0.0.1:{port},server=on,wait=on"]
+        self.processes = []
+        # The board waits with its first instruction until both are connected.
+        self.start(["qemu-system-arm", "-M", self.machine, "-display", "none", "-monitor", "none", "-icount", TIME,
+                    *serial(vehicle), *serial(ground), "-semihosting-config", "enable=on,target=native",
+                    "-kernel", IMAGES / self.machine], subprocess.DEVNULL, self.said)
+        self.start([SIMULATOR, "hil", "--connect", f"127.0.0.1:{vehicle}", "--patience", PATIENCE, "--log", self.log,
+                    *self.options, VEHICLE], self.report, self.report)
+        try:
+            self.station = Station(f"tcp:127.0.0.1:{ground}", PATIENCE)
+        except BaseException:
+            self.stop()
+            raise
+        return self
+
+    def start(self, command, out, err):
+        command = [str(word) for word in command]
+        self.processes.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err))
+
+    def __exit__(self, kind, error, trace):
+        if error is not None:
+            print(f"    the board said:\n{self.read(self.said)}    the simulator said:\n{self.read(self.report)}")
+        self.stop()
+        self.folder.cleanup()
+
+    def stop(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.terminate()
+            process.wait(PATIENCE)
+        self.said.close()
+        self.report.close()
+
+    @staticmethod
+    def read(file):
+        file.flush()
+        file.seek(0)
+        return file.read()
+
+    def land(self):
+        """Switches the board off and reads what the simulator saw."""
+        board, simulator = self.processes
+        assert board.poll() is None, f"the emulation ended by itself, status {board.returncode}"
+        self.station.close()
+        board.terminate()
+        board.wait(PATIENCE)
+        assert simulator.wait(PATIENCE) == 0, "the simulator failed"
+        self.summary = self.read(self.report)
+        pace = re.search(r"(\d+) ticks, (\d+) to (\d+) us apart .* (\d+) missed, in ([\d.]+) s", self.summary)
+        assert pace, self.summary
+        self.ticks, self.shortest, self.longest, self.missed = (int(figure) for figure in pace.groups()[:4])
+        self.took = float(pace.group(5))
+        with open(self.log) as file:
+            self.rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+    def check_pace(self):
+        """No tick missed, and jitter below 1 % of the period, in emulated time."""
+        assert self.missed == 0, self.summary
+        assert self.shortest > 9_900 and self.longest < 10_100, self.summary
+        print(f"    {self.ticks} ticks {self.shortest} to {self.longest} us apart, none missed; took {self.took:.0f} s")
