@@ -23,7 +23,7 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
     loop {
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         match sample {
-            Ok(_) if shared.hil.active() => {}
+            Ok(_) if shared.hil.is_raised() => {}
             Ok(sample) => shared.imu.put(sample, clock.now()),
             Err(Fault) => clock.until(clock.now() + RETRY).await,
         }

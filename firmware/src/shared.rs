@@ -29,7 +29,6 @@ pub use flag::Flag;
 pub use latest::Latest;
 pub use report::{Report, Timing, Traffic};
 
-use crate::hil::Hil;
 use crate::link::Reply;
 use crate::parameters::Parameters;
 use controller_core::flight::{ImuSample, Pose, Refusal, Request};
@@ -104,7 +103,7 @@ pub struct Shared<M: RawMutex> {
     /// The same events on their way to the log.
     pub log: Channel<M, Event, EVENTS>,
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
-    pub hil: Hil<M>,
+    pub hil: Flag,
     /// What the receiving half of the link gives the sending half to say.
     pub replies: Channel<M, Reply, REPLIES>,
     /// What may be set from the ground.
@@ -130,7 +129,7 @@ impl<M: RawMutex> Shared<M> {
             traffic: Latest::new(),
             events: Channel::new(),
             log: Channel::new(),
-            hil: Hil::new(false),
+            hil: Flag::new(),
             replies: Channel::new(),
             parameters: Parameters::new(),
             lost: AtomicU32::new(0),

@@ -160,7 +160,7 @@ fn a_simulator_takes_over_only_while_disarmed() {
         let shared = Local::new();
         report(&shared, mode, 0);
         Fed::new(&shared).message(&message, 0);
-        assert_eq!(shared.hil.active(), taken, "{mode:?}");
+        assert_eq!(shared.hil.is_raised(), taken, "{mode:?}");
         assert_eq!(replies(&shared).len(), 1);
     }
 }

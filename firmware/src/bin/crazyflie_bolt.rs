@@ -25,6 +25,7 @@ mod target {
     use static_cell::StaticCell;
 
     type Shared = firmware::shared::Shared<CriticalSectionRawMutex>;
+    type Hil = hil::Hil<CriticalSectionRawMutex>;
 
     /// Control interrupts everything but the drivers' own interrupts.
     static CONTROL: InterruptExecutor = InterruptExecutor::new();
@@ -38,6 +39,8 @@ mod target {
         defmt::info!("started by {} on Crazyflie Bolt 1.1", board.restart);
         static SHARED: StaticCell<Shared> = StaticCell::new();
         let shared = SHARED.init_with(Shared::new);
+        static HIL: StaticCell<Hil> = StaticCell::new();
+        let hil = HIL.init_with(Hil::new);
         let parameters = Storage::new(board.storage, 0..storage::SIZE);
         let mut parameters = defmt::unwrap!(parameters.map_err(|_| "the parameters' sectors are no storage"));
         block_on(parameters.load(&SystemClock, shared));
@@ -49,7 +52,7 @@ mod target {
 
         interrupt::UART4.set_priority(Priority::P6);
         let spawner = CONTROL.start(interrupt::UART4);
-        spawner.spawn(defmt::unwrap!(control(shared, boot, board.motors, board.watchdog)));
+        spawner.spawn(defmt::unwrap!(control(shared, hil, boot, board.motors, board.watchdog)));
 
         interrupt::UART5.set_priority(Priority::P7);
         let spawner = SENSOR.start(interrupt::UART5);
@@ -59,16 +62,22 @@ mod target {
         THREAD.init(Executor::new()).run(|spawner| {
             spawner.spawn(defmt::unwrap!(receive(shared, board.receiver)));
             spawner.spawn(defmt::unwrap!(transmit(shared, board.transmitter)));
-            spawner.spawn(defmt::unwrap!(simulated_sensors(shared, board.simulator_receiver)));
-            spawner.spawn(defmt::unwrap!(simulated_motors(shared, board.simulator_transmitter)));
+            spawner.spawn(defmt::unwrap!(simulated_sensors(shared, hil, board.simulator_receiver)));
+            spawner.spawn(defmt::unwrap!(simulated_motors(shared, hil, board.simulator_transmitter)));
             spawner.spawn(defmt::unwrap!(show(shared, board.light, board.battery)));
             spawner.spawn(defmt::unwrap!(keep(shared, parameters)));
         })
     }
 
     #[embassy_executor::task]
-    async fn control(shared: &'static Shared, boot: &'static mut Boot, pins: BoardMotors, mut watchdog: BoardWatchdog) {
-        let mut motors = SelectedMotors { hil: &shared.hil, pins, clock: SystemClock };
+    async fn control(
+        shared: &'static Shared,
+        hil: &'static Hil,
+        boot: &'static mut Boot,
+        pins: BoardMotors,
+        mut watchdog: BoardWatchdog,
+    ) {
+        let mut motors = SelectedMotors { pins, hil, wanted: &shared.hil, clock: SystemClock };
         Control::new(shared, &mut boot.pilot, &boot.outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
     }
 
@@ -88,13 +97,13 @@ mod target {
     }
 
     #[embassy_executor::task]
-    async fn simulated_sensors(shared: &'static Shared, line: SimulatorReceiver) {
-        hil::receive(&shared.hil, line, &SystemClock, &shared.imu, &shared.pose).await;
+    async fn simulated_sensors(shared: &'static Shared, hil: &'static Hil, line: SimulatorReceiver) {
+        hil::receive(hil, line, &SystemClock, shared).await;
     }
 
     #[embassy_executor::task]
-    async fn simulated_motors(shared: &'static Shared, line: SimulatorTransmitter) {
-        hil::transmit(&shared.hil, line, &SystemClock, 1).await;
+    async fn simulated_motors(shared: &'static Shared, hil: &'static Hil, line: SimulatorTransmitter) {
+        hil::transmit(hil, line, &SystemClock, shared).await;
     }
 
     #[embassy_executor::task]

@@ -125,7 +125,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             self.put(&position);
         } else if comes(&mut self.schedule.heartbeat, HEARTBEAT_INTERVAL, now) {
             let mode = report.map(|report| report.value.mode);
-            self.put(&telemetry::heartbeat(mode, self.shared.hil.active()));
+            self.put(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
         } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
             self.status(report.as_ref(), now);
         } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
