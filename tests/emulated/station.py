@@ -27,7 +27,8 @@ class Station:
         self.texts = []  # (vehicle time, text)
         self.acknowledged = {}
         self.target = None
-        self.alive = True
+        self.alive = True  # sends, not only listens
+        self.last_heartbeat = None
         self.due = {"heartbeat": 0.0, "setpoint": 0.0}
 
     def close(self):
@@ -54,7 +55,7 @@ class Station:
         now = self.now or 0.0
         # Before there is telemetry there is no vehicle time; the vehicle's own heartbeats set the pace then.
         if now >= self.due["heartbeat"] or (self.now is None and kind == "HEARTBEAT"):
-            self.due["heartbeat"] = now + self.HEARTBEAT
+            self.due["heartbeat"], self.last_heartbeat = now + self.HEARTBEAT, now
             self.line.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
         if self.target is not None and now >= self.due["setpoint"]:
             self.due["setpoint"] = now + self.SETPOINT
