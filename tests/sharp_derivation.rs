@@ -316,7 +316,7 @@ fn rounding_takes_the_laws_own_filters_hardly_beyond_step_1() {
         let mut filter = FilterState::ZERO;
         for ubar in [gains.m_p, -gains.m_p, gains.m_p] {
             for _ in 0..settling {
-                filter = transition.advance(&filter, &Vector3::repeat(ubar), gains.m_p);
+                filter = transition.advance(&filter, &Vector3::repeat(ubar));
                 let (u_f, u_s) = (f64::from(filter.filtered.x), f64::from(filter.intermediate.x));
                 let second = |input: f64| (k_f * (k_f * (u_f - u_s) - k_s * (u_s - input))).abs();
                 let greatest = second(level).max(second(-level));

@@ -38,6 +38,7 @@ const VEHICLE: VehicleParameters =
     VehicleParameters { mass: 0.46, inertia: Vector3::new(2.24e-3, 2.9e-3, 5.3e-3), gravity: 9.81 };
 const LIMITS: LimitParameters = LimitParameters { thrust_max: 7.0, torque_max: Vector3::new(0.5, 0.5, 0.5) };
 const TURN: f64 = 0.418_879_02;
+#[allow(clippy::approx_constant)] // the digits of that file, to the bit
 const REFERENCE: HarmonicParameters = HarmonicParameters {
     center: [-3.0, 1.0, 4.5],
     amplitude: [1.0; 3],
