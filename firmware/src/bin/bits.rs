@@ -26,7 +26,9 @@ mod target {
             }
         };
         debug::exit(code);
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 
     fn replay() -> Result<heapless::String<64>, &'static str> {
@@ -44,7 +46,9 @@ mod target {
     fn panicked(info: &PanicInfo<'_>) -> ! {
         hprintln!("{}", info);
         debug::exit(EXIT_FAILURE);
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 }
 

@@ -19,12 +19,16 @@ mod target {
     fn main() -> ! {
         let step: Step = Controller::step;
         black_box(step);
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 
     #[panic_handler]
     fn panicked(_: &PanicInfo<'_>) -> ! {
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 }
 

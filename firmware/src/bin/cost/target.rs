@@ -49,8 +49,8 @@ impl Cost {
     }
 }
 
-/// The measured call: state and reference in, wrench out.
-type Step = fn(&mut Controller, &State, &Reference) -> Result<Wrench, InputError>;
+/// The measured call: state and reference in, wrench out, with what the control task reports of it or without.
+type Step<T> = fn(&mut Controller, &State, &Reference) -> Result<T, InputError>;
 
 type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
@@ -58,24 +58,35 @@ fn wrench_only(controller: &mut Controller, state: &State, reference: &Reference
     controller.step(state, reference).map(|(wrench, _)| wrench)
 }
 
+/// The wrench, the position error and theta~.
+type Reported = (Wrench, Vector3<f32>, Vector3<f32>);
+
+fn reported(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Reported, InputError> {
+    controller.step(state, reference).map(|(wrench, diagnostics)| (wrench, diagnostics.position_error, diagnostics.mrp))
+}
+
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let code = if measure() { EXIT_SUCCESS } else { EXIT_FAILURE };
     debug::exit(code);
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
     hprintln!("{}", info);
     debug::exit(EXIT_FAILURE);
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 /// Everything, as a table; whether it could be measured at all.
 fn measure() -> bool {
     let counter = cortex_m::Peripherals::take().and_then(|peripherals| Counter::start(peripherals.SYST));
-    let Some(mut counter) = counter else {
+    let Some(counter) = counter else {
         hprintln!("time does not follow instructions here: run QEMU with -icount shift=6");
         return false;
     };
@@ -83,7 +94,7 @@ fn measure() -> bool {
         hprintln!("{}: the embedded configuration is refused", configuration::NAME);
         return false;
     };
-    let Ok(certified) = certified(&mut counter, &embedded) else {
+    let Ok(certified) = certified(&counter, &embedded) else {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return false;
     };
@@ -98,6 +109,8 @@ fn measure() -> bool {
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
+    let Some(cost) = flight.report(&settled, &circle) else { return false };
+    cost.print("step, circle, with errors to report");
     allocation.print("allocation, circle");
     let mut recovering = Cost::default();
     let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
@@ -113,7 +126,7 @@ fn measure() -> bool {
 
 /// Certifies `configuration`, measured.
 #[allow(clippy::result_large_err)] // the core's own error
-fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Certified, Refused> {
+fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certified, Refused> {
     type Certify = fn(Configuration) -> Result<Certified, Refused>;
     let certify: Certify = black_box(Certified::new);
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
@@ -139,7 +152,7 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
-        let step: Step = black_box(wrench_only);
+        let step: Step<Wrench> = black_box(wrench_only);
         let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
@@ -155,6 +168,20 @@ impl Flight<'_> {
         }
 
         Some((state, cost))
+    }
+
+    /// The steps at `state` for [`STEPS`] references, of which the errors are reported too.
+    fn report(&mut self, state: &State, trajectory: &dyn Trajectory) -> Option<Cost> {
+        let step: Step<Reported> = black_box(reported);
+        let mut cost = Cost::default();
+        self.controller.reset();
+        for tick in 0..STEPS {
+            let reference = black_box(trajectory.at(tick * PERIOD_US));
+            let (instructions, result) = self.counter.short(|| step(self.controller, state, &reference));
+            black_box(result.ok()?);
+            cost.add(instructions);
+        }
+        Some(cost)
     }
 }
 
