@@ -68,6 +68,17 @@ impl Memory {
     pub const RESET: Self = Self { filter: FilterState::ZERO, lift: None };
 }
 
+/// What a flight needs of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Command {
+    /// T and tau.
+    pub wrench: Wrench,
+    /// p~, m, world.
+    pub position_error: Vector3<f32>,
+    /// theta~.
+    pub mrp: Vector3<f32>,
+}
+
 /// What a step went through, at the state it was given and before the filters advance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Diagnostics {
@@ -178,6 +189,16 @@ impl Controller {
     #[cfg(any(test, feature = "uncertified"))]
     pub fn restore(&mut self, memory: Memory) {
         self.memory = memory;
+    }
+
+    /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    #[inline(never)]
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
+        let (wrench, Diagnostics { position_error, mrp, .. }) = self.step(state, reference)?;
+        Ok(Command { wrench, position_error, mrp })
     }
 
     /// One tick of the law.

@@ -5,19 +5,19 @@
 
 #[cfg(target_os = "none")]
 mod target {
-    use controller_core::controller::{Controller, Diagnostics};
+    use controller_core::controller::{Command, Controller};
     use controller_core::error::InputError;
     use controller_core::reference::Reference;
-    use controller_core::state::{State, Wrench};
+    use controller_core::state::State;
     use core::hint::black_box;
     use core::panic::PanicInfo;
     use firmware as _; // the vectors
 
-    type Step = fn(&mut Controller, &State, &Reference) -> Result<(Wrench, Diagnostics), InputError>;
+    type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let step: Step = Controller::step;
+        let step: Step = Controller::command;
         black_box(step);
         loop {
             cortex_m::asm::wfi();

@@ -5,7 +5,7 @@ use crate::counter::Counter;
 use crate::stack;
 use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
-use controller_core::controller::Controller;
+use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
@@ -49,21 +49,10 @@ impl Cost {
     }
 }
 
-/// The measured call: state and reference in, wrench out, with what the control task reports of it or without.
-type Step<T> = fn(&mut Controller, &State, &Reference) -> Result<T, InputError>;
+/// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
+type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
 type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
-
-fn wrench_only(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Wrench, InputError> {
-    controller.step(state, reference).map(|(wrench, _)| wrench)
-}
-
-/// The wrench, the position error and theta~.
-type Reported = (Wrench, Vector3<f32>, Vector3<f32>);
-
-fn reported(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Reported, InputError> {
-    controller.step(state, reference).map(|(wrench, diagnostics)| (wrench, diagnostics.position_error, diagnostics.mrp))
-}
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -109,8 +98,6 @@ fn measure() -> bool {
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
-    let Some(cost) = flight.report(&settled, &circle) else { return false };
-    cost.print("step, circle, with errors to report");
     allocation.print("allocation, circle");
     let mut recovering = Cost::default();
     let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
@@ -152,15 +139,15 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
-        let step: Step<Wrench> = black_box(wrench_only);
+        let step: Step = black_box(Controller::command);
         let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, wrench) = self.counter.short(|| step(self.controller, &state, &reference));
+            let (instructions, command) = self.counter.short(|| step(self.controller, &state, &reference));
             cost.add(instructions);
-            let wrench = wrench.ok()?;
+            let wrench = command.ok()?.wrench;
             let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
             allocation.add(instructions);
             let achieved = allocated.ok()?.achieved;
@@ -168,20 +155,6 @@ impl Flight<'_> {
         }
 
         Some((state, cost))
-    }
-
-    /// The steps at `state` for [`STEPS`] references, of which the errors are reported too.
-    fn report(&mut self, state: &State, trajectory: &dyn Trajectory) -> Option<Cost> {
-        let step: Step<Reported> = black_box(reported);
-        let mut cost = Cost::default();
-        self.controller.reset();
-        for tick in 0..STEPS {
-            let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, result) = self.counter.short(|| step(self.controller, state, &reference));
-            black_box(result.ok()?);
-            cost.add(instructions);
-        }
-        Some(cost)
     }
 }
 
