@@ -197,7 +197,8 @@ fn motor_timer() -> TimGp16 {
 }
 
 #[exception]
-unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    fault::log_callers(frame);
     fault::stop_and_restart(motor_timer())
 }
 
