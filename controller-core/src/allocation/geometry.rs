@@ -15,12 +15,13 @@
 //!
 //! Tilted rotors, and rotors that push down, are beyond this module.
 
+use super::attainable::normal;
 use super::collected;
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
 use core::ops::Deref;
 use heapless::Vec;
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 
 /// The fewest rotors that can span thrust and three torques.
 pub const ROTORS_MIN: usize = 4;
@@ -74,6 +75,7 @@ pub enum Spin {
 impl Spin {
     /// The sign s of the drag torque on the body about +z.
     #[must_use]
+    #[inline]
     pub fn sign(self) -> f32 {
         match self {
             Self::Clockwise => 1.0,
@@ -102,17 +104,20 @@ pub struct Rotor {
 impl Rotor {
     /// Thrust, N, at a speed in rad/s.
     #[must_use]
+    #[inline]
     pub fn thrust_at(&self, speed: f32) -> f32 {
         self.thrust_coefficient * speed * speed
     }
 
     /// Speed, rad/s, at a thrust in N (negative ones count as zero).
     #[must_use]
+    #[inline]
     pub fn speed_at(&self, thrust: f32) -> f32 {
         math::sqrt(thrust.max(0.0) / self.thrust_coefficient)
     }
 
     /// The wrench (T, tau_x, tau_y, tau_z) of one newton of its thrust.
+    #[inline]
     fn column(&self) -> Vector4<f64> {
         let yaw = f64::from(self.spin.sign()) * f64::from(self.drag_coefficient) / f64::from(self.thrust_coefficient);
         Vector4::new(1.0, f64::from(self.position.y), -f64::from(self.position.x), yaw)
@@ -149,7 +154,7 @@ impl Rotors {
     /// # Errors
     /// Names the field, with the rotor's number from 0; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
     /// combination of the others to within [`INDEPENDENCE`].
-    #[inline(never)]
+    #[inline]
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
         let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
@@ -184,6 +189,7 @@ impl Rotors {
     ///
     /// # Errors
     /// As [`Rotors::new`]; a bad arm shows as the positions it makes, bad speeds as the thrusts.
+    #[inline]
     pub fn quad_x(quad: QuadX) -> Result<Self, ParameterError> {
         let side = quad.arm * core::f32::consts::FRAC_1_SQRT_2;
         require_positive(quad.arm, "rotors.arm")?;
@@ -208,39 +214,49 @@ impl Rotors {
 
     /// Column i of B: the wrench (T, tau_x, tau_y, tau_z) of one newton of rotor i.
     #[must_use]
+    #[inline]
     pub fn effectiveness(&self) -> &[Vector4<f64>] {
         &self.columns
     }
 
     /// Row i of B+: the thrust of rotor i, N, per unit of (T, tau_x, tau_y, tau_z), least sum of squares.
     #[must_use]
+    #[inline]
     pub fn pseudo_inverse(&self) -> &[Vector4<f64>] {
         &self.inverse
     }
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
+    #[inline]
     pub(super) fn scale(&self) -> &Vector4<f64> {
         &self.scale
     }
 
     /// Works out B, its scaling and B+, if the rows of B are independent enough.
-    #[inline(never)]
+    #[inline]
     fn spanning(rotors: Vec<Rotor, ROTORS_MAX>) -> Option<Self> {
         let columns: Vec<Vector4<f64>, ROTORS_MAX> = collected(rotors.iter().map(Rotor::column));
-        let squares: Vector4<f64> = columns.iter().map(|column| column.component_mul(column)).sum();
+        let squares: Vector4<f64> = columns.iter().map(|column| math::component_product(column, column)).sum();
         if !squares.iter().all(|square| *square > 0.0) {
             return None;
         }
         let scale = squares.map(|square| 1.0 / math::sqrt_f64(square));
-        let scaled = || columns.iter().map(|column| column.component_mul(&scale));
+        let scaled = || columns.iter().map(|column| math::component_product(column, &scale));
         // The rows' cosines. The diagonal of the inverse is 1/sin^2 of each row's angle to the span of the others.
-        let cosines: Matrix4<f64> = scaled().map(|column| column * column.transpose()).sum();
-        let inverted = cosines.cholesky()?.inverse();
-        let independent = |of_row: &f64| *of_row > 0.0 && *of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
-        if !inverted.diagonal().iter().all(independent) {
+        let row = |select: fn(&Vector4<f64>) -> f64| -> Vector4<f64> {
+            scaled().map(|column| column * select(&column)).sum()
+        };
+        let (x, y, z, w) = (row(|c| c.x), row(|c| c.y), row(|c| c.z), row(|c| c.w));
+        let inverted =
+            [(&x, normal(&y, &z, &w)), (&y, normal(&x, &z, &w)), (&z, normal(&x, &y, &w)), (&w, normal(&x, &y, &z))]
+                .map(|(row, normal)| normal / math::dot(&normal, row));
+        let independent = |of_row: f64| of_row > 0.0 && of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
+        let [x, y, z, w] = &inverted;
+        if ![x.x, y.y, z.z, w.w].into_iter().all(independent) {
             return None;
         }
-        let inverse = collected(scaled().map(|column| (inverted * column).component_mul(&scale)));
+        let solved = |column: Vector4<f64>| Vector4::from(inverted.map(|row| math::dot(&row, &column)));
+        let inverse = collected(scaled().map(|column| math::component_product(&solved(column), &scale)));
         Some(Self { rotors, columns, scale, inverse })
     }
 }
@@ -248,6 +264,7 @@ impl Rotors {
 impl Deref for Rotors {
     type Target = [Rotor];
 
+    #[inline]
     fn deref(&self) -> &[Rotor] {
         &self.rotors
     }
@@ -256,6 +273,7 @@ impl Deref for Rotors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Matrix4;
 
     fn hummingbird() -> QuadX {
         QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 }

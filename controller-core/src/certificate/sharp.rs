@@ -34,6 +34,11 @@ use nalgebra::Vector3;
 const TILT_CELLS: u32 = 48;
 /// Cells of a quarter turn, for the direction of a horizontal vector.
 const ANGLE_CELLS: usize = 24;
+/// Cosine and sine of one such cell, pi/48.
+const CELL_COS: f64 = 0.997_858_923_238_603_5;
+const CELL_SIN: f64 = 0.065_403_129_230_143_07;
+/// More than 24 turns by one cell are off by.
+const OUTWARDS: f64 = 1e-14;
 /// Cells of p between zero and its greatest value, for the split of u'.
 const SPLIT_CELLS: usize = 24;
 /// Cells of |psi'|.
@@ -53,6 +58,7 @@ pub struct DesiredRates {
 impl DesiredRates {
     /// The componentwise lesser of two bounds.
     #[must_use]
+    #[inline]
     pub fn min(&self, other: &Self) -> Self {
         Self {
             angular_velocity: self.angular_velocity.min(other.angular_velocity),
@@ -62,6 +68,7 @@ impl DesiredRates {
     }
 
     /// These bounds raised to hold for another cell too.
+    #[inline]
     fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
         Self {
             angular_velocity: self.angular_velocity.max(velocity),
@@ -73,6 +80,7 @@ impl DesiredRates {
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: what |omega_d'| <= a and |omega_d| <= v can ask for in any body frame.
 #[must_use]
+#[inline]
 pub fn feedforward_torque(inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Vector3<f64> {
     let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).abs();
     inertia * acceleration + differences * (0.5 * velocity * velocity)
@@ -87,6 +95,7 @@ struct Parts {
 
 impl Parts {
     /// The greatest of each part.
+    #[inline]
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { tilting: 0.0, yawing: 0.0 };
         all.iter().fold(nothing, |worst, parts| Self {
@@ -96,7 +105,7 @@ impl Parts {
     }
 
     /// |self + other|^2 at most.
-    #[inline(never)]
+    #[inline]
     fn square_of_sum(&self, other: &Self) -> f64 {
         let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
         tilting * tilting + yawing * yawing
@@ -125,6 +134,7 @@ struct Shares {
 
 impl Shares {
     /// The greatest of each part.
+    #[inline]
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { stretch: 0.0, length: 0.0, product: 0.0, mixed: 0.0 };
         all.iter().fold(nothing, |worst, shares| Self {
@@ -151,6 +161,7 @@ struct Tilt {
 }
 
 impl Tilt {
+    #[inline]
     fn between(upright_end: f64, tilted_end: f64, vertical_least: f64) -> Self {
         let secant = math::hypot(1.0, tilted_end);
         let secant_least = math::hypot(1.0, upright_end);
@@ -168,6 +179,7 @@ impl Tilt {
     /// the slope, and whose vertical part is at most `vertical`.
     ///
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
+    #[inline]
     fn tangential(&self, horizontal: f64, vertical: f64, direction: &Direction) -> Tangential {
         let climbing = self.sin * vertical;
         let flattened = self.sin_least * horizontal * direction.cos_least;
@@ -178,18 +190,21 @@ impl Tilt {
     }
 
     /// L u'' for a direction of u''.
+    #[inline]
     fn linear_part(&self, reach: &Reachable, direction: &Direction) -> Parts {
         let Tangential { length, mixed } = self.tangential(reach.horizontal_snap, reach.vertical_snap, direction);
         Parts { tilting: length, yawing: self.tan * mixed }
     }
 
     /// omega_d for u' and |psi'| = `yaw_rate`.
+    #[inline]
     fn velocity(&self, jerk: &Tangential, yaw_rate: f64) -> Parts {
         let Tangential { length, mixed } = *jerk;
         Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
     }
 
     /// The shares of u' in the cell `split`, for p at most `longest`.
+    #[inline]
     fn shares(&self, reach: &Reachable, longest: f64, split: usize) -> Shares {
         let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
         let total = reach.jerk * reach.jerk;
@@ -203,7 +218,7 @@ impl Tilt {
     }
 
     /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their parts.
-    #[inline(never)]
+    #[inline]
     fn quadratic_part(&self, heading: &HeadingCell, shares: &Shares) -> Parts {
         let HeadingCell { rate, acceleration } = *heading;
         let Shares { stretch, length, product, mixed } = *shares;
@@ -220,6 +235,7 @@ impl Tilt {
 
 /// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which an
 /// upper bound already says that they change nothing.
+#[inline]
 fn acceleration_square(
     tilt: &Tilt,
     linear: &[Parts; ANGLE_CELLS],
@@ -245,6 +261,7 @@ fn acceleration_square(
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
+#[inline]
 fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
     let x = (0.5 * total).max(least).min(most);
     math::sqrt_f64(x * (total - x).max(0.0))
@@ -259,14 +276,16 @@ struct Direction {
 }
 
 impl Direction {
-    /// The cells of [0, pi/2]; the other quadrants mirror it.
+    /// The cells of [0, pi/2]; the other quadrants mirror it. From end to end the angle is turned on by one cell; what
+    /// rounding does to that is far below [`OUTWARDS`], by which every value is moved to its safe side.
+    #[inline]
     fn quarter_turn() -> [Self; ANGLE_CELLS] {
-        let cell = core::f64::consts::FRAC_PI_2 / ANGLE_CELLS as f64;
-        core::array::from_fn(|i| {
-            let (least, most) = (cell * i as f64, cell * (i + 1) as f64);
-            // The last cell's cosine must not come out below zero by rounding: it is squared.
-            let cos_least = math::cos_f64(most).max(0.0);
-            Self { cos_greatest: math::cos_f64(least), cos_least, sin_greatest: math::sin_f64(most) }
+        let (mut cos, mut sin) = (1.0, 0.0);
+        core::array::from_fn(|_| {
+            let cos_greatest = cos + OUTWARDS;
+            (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
+            // A cosine below zero must not come out: it is squared.
+            Self { cos_greatest, cos_least: (cos - OUTWARDS).max(0.0), sin_greatest: sin + OUTWARDS }
         })
     }
 }
@@ -281,6 +300,7 @@ struct HeadingCell {
 impl HeadingCell {
     /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end. The
     /// fastest first: they are the likeliest to matter.
+    #[inline]
     fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
@@ -294,6 +314,7 @@ impl HeadingCell {
     }
 
     /// The greatest of each part.
+    #[inline]
     fn worst(all: &[Self]) -> Self {
         let still = Self { rate: 0.0, acceleration: 0.0 };
         all.iter().fold(still, |worst, cell| Self {
@@ -305,6 +326,7 @@ impl HeadingCell {
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
+#[inline]
 pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
@@ -339,4 +361,23 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
         }
     }
     greatest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cell_of_the_quarter_turn_holds_its_cosines_and_sines_by_a_hair() {
+        let cell = core::f64::consts::FRAC_PI_2 / ANGLE_CELLS as f64;
+        for (i, direction) in Direction::quarter_turn().iter().enumerate() {
+            let (near, far) = (cell * i as f64, cell * (i + 1) as f64);
+            let outwards = [
+                direction.cos_greatest - libm::cos(near),
+                libm::cos(far) - direction.cos_least,
+                direction.sin_greatest - libm::sin(far),
+            ];
+            assert!(outwards.iter().all(|by| (0.0..2.0 * OUTWARDS).contains(by)), "{i}: {outwards:?}");
+        }
+    }
 }

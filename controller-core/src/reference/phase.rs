@@ -48,6 +48,7 @@ impl Phase {
 }
 
 /// An angle in radians as 2^-64 turns, modulo a full one.
+#[inline]
 #[must_use]
 pub fn turns(angle: f64) -> u64 {
     let turns = angle / TAU;
