@@ -67,12 +67,14 @@ pub struct Form {
 impl Form {
     /// Whether every inequality holds.
     #[must_use]
+    #[inline]
     pub fn holds(&self) -> bool {
         self.inequalities.iter().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
     #[must_use]
+    #[inline]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(&self.inequalities)
     }
@@ -101,7 +103,7 @@ impl Certificate {
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
-    #[inline(never)]
+    #[inline]
     pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
         let printed = form(configuration, Derivation::Printed);
         let sharp = form(configuration, Derivation::Sharp);
@@ -110,24 +112,28 @@ impl Certificate {
     }
 
     /// Everything that decides: the sharp form's inequalities, then two for each rotor.
+    #[inline]
     pub fn inequalities(&self) -> impl Iterator<Item = &Inequality> {
         self.sharp.inequalities.iter().chain(self.rotors.iter().flat_map(|rotor| [&rotor.least, &rotor.greatest]))
     }
 
     /// Whether the configuration is certified: everything that decides holds.
     #[must_use]
+    #[inline]
     pub fn holds(&self) -> bool {
         self.inequalities().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
     #[must_use]
+    #[inline]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(self.inequalities())
     }
 }
 
 /// Bounds on the desired rates with the position feedback at `m_p` (zero: the reference alone).
+#[inline]
 fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation) -> DesiredRates {
     let (gains, bounds) = (configuration.gains(), configuration.bounds());
     let gravity = f64::from(configuration.vehicle().gravity);
@@ -143,6 +149,7 @@ fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation
     }
 }
 
+#[inline]
 fn form(configuration: &Configuration, derivation: Derivation) -> Form {
     let (vehicle, limits, gains) = (configuration.vehicle(), configuration.limits(), configuration.gains());
     let bounds = configuration.bounds();
@@ -185,6 +192,7 @@ fn form(configuration: &Configuration, derivation: Derivation) -> Form {
 }
 
 /// iota of Theorem 2. The sharp form uses what the saturation reaches at |theta| = 1 + delta instead of its limit.
+#[inline]
 fn feedback_torque(configuration: &Configuration, derivation: Derivation) -> f64 {
     let gains = configuration.gains();
     let (m_theta, m_omega) = (f64::from(gains.m_theta), f64::from(gains.m_omega));

@@ -69,6 +69,7 @@ pub struct GovernorLimits {
 }
 
 impl Default for GovernorLimits {
+    #[inline]
     fn default() -> Self {
         Self { horizontal_speed: 5.0, vertical_speed: 2.0, snap_ramp: 0.1, heading_ramp: 0.2, timeout: 0.5 }
     }
@@ -91,18 +92,21 @@ pub enum GovernorError {
 }
 
 impl From<ParameterError> for GovernorError {
+    #[inline]
     fn from(error: ParameterError) -> Self {
         Self::Parameter(error)
     }
 }
 
 impl From<InputError> for GovernorError {
+    #[inline]
     fn from(error: InputError) -> Self {
         Self::Start(error)
     }
 }
 
 impl fmt::Display for GovernorError {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter(error) => write!(f, "{error}"),
@@ -153,7 +157,7 @@ impl Governor {
     /// # Errors
     /// [`GovernorError::Parameter`] for a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too
     /// unlike each other for the integers; otherwise as [`Self::restart`].
-    #[inline(never)]
+    #[inline]
     pub fn new(
         bounds: ReferenceBounds,
         limits: GovernorLimits,
@@ -204,6 +208,7 @@ impl Governor {
     /// # Errors
     /// [`GovernorError::Start`] for numbers not finite or out of range, [`GovernorError::NoWayOn`] for a reference outside
     /// the bounds or about to leave them. The governor goes on as before then.
+    #[inline]
     pub fn restart(&mut self, from: &Reference) -> Result<(), GovernorError> {
         from.check()?;
         crate::state::check_vector(&from.position, POSITION_RANGE, "initial.position")?;
@@ -232,11 +237,13 @@ impl Governor {
     }
 
     /// Hands a steady knot to the smoother.
+    #[inline]
     fn settle(&mut self, knot: &Knot) {
         self.smoother.start(self.length(&knot.position), self.length(&(knot.velocity * self.period)));
     }
 
     /// Metres as length units.
+    #[inline]
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
         metres.map(|component| (component * self.windows.per_metre) as i64)
     }
@@ -245,6 +252,7 @@ impl Governor {
     ///
     /// # Errors
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
+    #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         setpoint.check()?;
         self.goal_age = 0;
@@ -269,6 +277,7 @@ impl Governor {
     }
 
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
+    #[inline]
     pub fn stop(&mut self) {
         self.goal = Goal::Stop;
         self.turn = TurnGoal::Stop;
@@ -276,12 +285,14 @@ impl Governor {
 
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
+    #[inline]
     pub fn at_rest(&self) -> bool {
         let commanded = self.pursue() != Vector3::zeros();
         self.bridge.is_none() && !commanded && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
+    #[inline]
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
@@ -305,6 +316,7 @@ impl Governor {
     }
 
     /// One tick on the bridge; the smoother starts where it ends.
+    #[inline]
     fn cross(&mut self, bridge: &Bridge, elapsed: u32) -> Knot {
         let knot = bridge.knot(elapsed as f32);
         if elapsed < bridge.duration() {
@@ -317,6 +329,7 @@ impl Governor {
     }
 
     /// The commanded acceleration of this tick.
+    #[inline]
     fn pursue(&self) -> Vector3<i32> {
         let (x, u) = (self.smoother.commanded(), self.smoother.speed());
         let still = Vector3::zeros();
@@ -338,6 +351,7 @@ impl Governor {
 
     /// Where the command must be for the averages to come out on a moving point, relative to where that was last seen,
     /// and how fast it must move, units a tick.
+    #[inline]
     fn ahead(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>) -> (Vector3<i64>, Vector3<i64>) {
         // The command at hand is where it was a tick ago.
         let age = (self.goal_age as f32 - 1.0) * self.period;
@@ -346,6 +360,7 @@ impl Governor {
     }
 
     /// The heading's goal of this tick.
+    #[inline]
     fn turn_goal(&self) -> TurnGoal {
         let stale = self.turn_age > self.timeout;
         match self.turn {

@@ -39,6 +39,13 @@
 //!   an input it cannot use ([`error::InputError`]) and leaves the controller's memory as it was.
 //! - Elementary functions come from [`math`] alone and nothing is fused: the same bits on every machine.
 //!
+//! # What is compiled where
+//!
+//! The law's step, [`controller::Controller::command`], is compiled in this crate and for speed. Certificate, allocation,
+//! governor and flight rules are marked `#[inline]`: the crate that calls them compiles them, as it is compiled itself,
+//! and the firmware is compiled for size. Without that they would take 30 KB more of a board's flash. What they are
+//! marked with says nothing about calls: in the firmware most of them are calls.
+//!
 //! # Features
 //!
 //! - `defmt`: errors can be written to defmt logs. Such a build checks on a desktop but links only for targets with a defmt logger.

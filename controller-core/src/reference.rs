@@ -94,6 +94,7 @@ impl ReferenceBounds {
     ///
     /// # Errors
     /// Names the first field that is not.
+    #[inline]
     pub fn validated(self) -> Result<Self, ParameterError> {
         for (value, field) in [
             (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
@@ -111,6 +112,7 @@ impl ReferenceBounds {
 
     /// Whether `reference` lies inside, with a relative allowance for single-precision rounding.
     #[must_use]
+    #[inline]
     pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
         let a = &reference.acceleration;
         let within = |value: f32, bound: f32| value <= bound * (1.0 + allowance) + allowance;

@@ -55,6 +55,7 @@ pub(super) struct Generator {
 }
 
 /// The generators of some of the rotors, in the order given.
+#[inline]
 pub(super) fn generators<'a>(rotors: &Rotors, chosen: impl Iterator<Item = &'a usize>) -> Vec<Generator, ROTORS_MAX> {
     let one = |index: &usize| {
         let rotor = rotors.get(*index)?;
@@ -74,7 +75,7 @@ struct Slab {
 
 impl Slab {
     /// The slab between the faces with `normal`, and the cosine between normal and direction; none where they are parallel.
-    #[inline(never)]
+    #[inline]
     fn new(
         rotors: &Rotors,
         generators: &[Generator],
@@ -102,6 +103,7 @@ pub(super) struct Slabs<const N: usize>(Vec<Slab, N>);
 
 impl<const N: usize> Slabs<N> {
     /// The zonotope of `generators`, open along `open` if given; `direction` is d, in the wrench's own units.
+    #[inline]
     pub(super) fn new(
         rotors: &Rotors,
         generators: &[Generator],
@@ -135,6 +137,7 @@ impl<const N: usize> Slabs<N> {
     }
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if there is none, nearly so.
+    #[inline]
     pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
         self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
             let at = slab.normal.dot(wrench);
@@ -145,7 +148,7 @@ impl<const N: usize> Slabs<N> {
 }
 
 /// The vector normal to three others in four dimensions: the cross product's bigger sister.
-#[inline(never)]
+#[inline]
 pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
     let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
     Vector4::new(
@@ -157,13 +160,13 @@ pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Ve
 }
 
 /// sum_i |normal| . |b_i| high_i: the size of what rounding is relative to.
-#[inline(never)]
+#[inline]
 fn magnitude(generators: &[Generator], normal: &Vector4<f64>) -> f64 {
     generators.iter().map(|generator| dot(&normal.abs(), &generator.column.abs()) * generator.high).sum()
 }
 
 /// The zonotope's least and greatest component along `normal`.
-#[inline(never)]
+#[inline]
 fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
     generators.iter().fold((0.0, 0.0), |(low, high), generator| {
         let at = dot(normal, &generator.column);
@@ -184,6 +187,7 @@ struct Edge {
 }
 
 impl Edge {
+    #[inline]
     fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
         let part = (point - self.start).dot(&self.per_length).clamp(0.0, 1.0);
         self.start + self.along * part
@@ -195,7 +199,7 @@ impl Edge {
 pub(super) struct Polygon(Vec<Edge, { 2 * ROTORS_MAX }>);
 
 impl Polygon {
-    #[inline(never)]
+    #[inline]
     pub(super) fn new(rotors: &Rotors) -> Self {
         let arms = || rotors.effectiveness().iter().map(|column| Vector2::new(column.y, column.z));
         let mut edges = Vec::new();
@@ -234,6 +238,7 @@ impl Polygon {
     }
 
     /// The point itself if it lies in the polygon, else the nearest one of the polygon's edges.
+    #[inline]
     pub(super) fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
         if self.0.iter().all(|edge| edge.outward.dot(&(point - edge.start)) <= 0.0) {
             return *point;

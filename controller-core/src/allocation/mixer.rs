@@ -59,6 +59,7 @@ pub struct Allocation {
 impl Allocation {
     /// Whether the wrench asked for is the wrench delivered (to rounding).
     #[must_use]
+    #[inline]
     pub fn is_exact(&self) -> bool {
         !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
     }
@@ -76,6 +77,7 @@ struct Actuator {
 }
 
 impl Actuator {
+    #[inline]
     fn clip(&self, thrust: f32) -> f32 {
         thrust.max(self.least).min(self.greatest)
     }
@@ -110,7 +112,7 @@ pub struct Mixer {
 impl Mixer {
     /// Prepares the mixer; configuration time.
     #[must_use]
-    #[inline(never)]
+    #[inline]
     pub fn new(rotors: &Rotors) -> Self {
         let single = |v: &Vector4<f64>| v.map(|x| x as f32);
         let actuator = |((rotor, column), share)| {
@@ -151,6 +153,7 @@ impl Mixer {
     ///
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
+    #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
         check_vector(&Vector3::new(wrench.thrust, 0.0, 0.0), STATE_RANGE, "wrench.thrust")?;
         check_vector(&wrench.torque, STATE_RANGE, "wrench.torque")?;
@@ -166,22 +169,26 @@ impl Mixer {
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
+    #[inline]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         let sum = self.sum(thrusts);
         Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
     }
 
     /// B+ w.
+    #[inline]
     fn preferred(&self, wrench: &Vector4<f32>) -> Thrusts {
         collected(self.actuators.iter().map(|actuator| actuator.share.dot(wrench)))
     }
 
     /// B f.
+    #[inline]
     fn sum(&self, thrusts: &[f32]) -> Vector4<f32> {
         self.actuators.iter().zip(thrusts).map(|(actuator, thrust)| actuator.column * *thrust).sum()
     }
 
     /// Step 2: the attainable wrench that stands in for `asked`.
+    #[inline]
     fn attainable(&self, asked: &Vector4<f32>) -> Vector4<f32> {
         let torque = self.roll_pitch.nearest(&Vector2::new(asked.y, asked.z));
         let thrust = within(asked.x, self.thrust.range(&Vector4::new(0.0, torque.x, torque.y, 0.0)));
@@ -190,6 +197,7 @@ impl Mixer {
     }
 
     /// Step 3: thrusts within their ranges for an attainable `wrench`.
+    #[inline]
     fn deliver(&self, wrench: &Vector4<f32>) -> Thrusts {
         let mut thrusts = self.preferred(wrench);
         let mut rest = *wrench;
@@ -215,12 +223,14 @@ impl Mixer {
         thrusts
     }
 
+    #[inline]
     fn clip(&self, thrusts: &mut Thrusts) {
         for (thrust, actuator) in thrusts.iter_mut().zip(&self.actuators) {
             *thrust = actuator.clip(*thrust);
         }
     }
 
+    #[inline]
     fn report(&self, thrusts: Thrusts, asked: &Vector4<f32>, given: &Vector4<f32>) -> Allocation {
         Allocation {
             achieved: self.wrench(&thrusts),
@@ -233,6 +243,7 @@ impl Mixer {
 }
 
 /// `value` moved into a range.
+#[inline]
 fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
     value.max(least).min(greatest)
 }
@@ -241,7 +252,7 @@ fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
 ///
 /// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
 /// handing its thrust over to them never magnifies an error.
-#[inline(never)]
+#[inline]
 fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
     let (mut best, mut largest) = (Vec::new(), 0.0);
     for choice in 0_u32..1 << rotors.len() {

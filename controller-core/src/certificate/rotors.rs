@@ -50,6 +50,7 @@ pub struct RotorReport {
 ///
 /// # Errors
 /// If the form's bounds are not finite; the constructors before it leave no way to that.
+#[inline]
 pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
     let Some(rotors) = configuration.rotors() else {
         return Ok(Vec::new());
@@ -68,6 +69,7 @@ pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorRe
     Ok(list(rotors, &commands, hover))
 }
 
+#[inline]
 fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
     let mut reports = Vec::new();
     for ((demand, row), (least, greatest)) in

@@ -56,6 +56,7 @@ pub(super) struct Chain {
 }
 
 /// A reference without acceleration.
+#[inline]
 fn steady(position: Vector3<f32>, velocity: Vector3<f32>, heading: &Heading) -> Reference {
     let zero = Vector3::zeros();
     Reference { position, velocity, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
@@ -80,6 +81,7 @@ impl Chain {
     }
 
     /// How many rotors there are.
+    #[inline]
     pub fn rotors(&self) -> usize {
         self.rotors
     }
@@ -88,7 +90,7 @@ impl Chain {
     ///
     /// # Errors
     /// The governor's; it goes on as before then.
-    #[inline(never)]
+    #[inline]
     pub fn start(&mut self, position: Vector3<f32>, heading: &Heading) -> Result<(), GovernorError> {
         let reference = steady(position, Vector3::zeros(), heading);
         self.governor.restart(&reference)?;
@@ -100,6 +102,7 @@ impl Chain {
     }
 
     /// Turns to levelling: a hover at the last heading, the law reset.
+    #[inline]
     pub fn level(&mut self) {
         self.reference = steady(self.reference.position, Vector3::zeros(), &self.reference.heading);
         self.controller.reset();
@@ -110,12 +113,13 @@ impl Chain {
     ///
     /// # Errors
     /// As [`Self::start`].
-    #[inline(never)]
+    #[inline]
     pub fn regain(&mut self, pose: &Pose) -> Result<(), GovernorError> {
         self.governor.restart(&steady(pose.position, pose.velocity, &self.reference.heading))
     }
 
     /// Brings the reference to rest.
+    #[inline]
     pub fn hold(&mut self) {
         self.governor.stop();
     }
@@ -124,11 +128,13 @@ impl Chain {
     ///
     /// # Errors
     /// Names the field the governor refuses.
+    #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), &'static str> {
         self.governor.accept(setpoint).map_err(field)
     }
 
     /// Whether the last thrusts have been held for long enough.
+    #[inline]
     pub fn is_refused(&self) -> bool {
         self.refusals >= REFUSALS_MAX
     }
@@ -137,6 +143,7 @@ impl Chain {
     ///
     /// # Errors
     /// What the law or the mixer cannot use.
+    #[inline]
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         self.reference = self.governor.tick();
         self.step(state)
@@ -146,6 +153,7 @@ impl Chain {
     ///
     /// # Errors
     /// As [`Self::fly`].
+    #[inline]
     pub fn fly_level(
         &mut self,
         attitude: Quaternion<f32>,
@@ -155,6 +163,7 @@ impl Chain {
         self.step(&State { position, velocity, attitude, angular_velocity })
     }
 
+    #[inline]
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
         let Command { wrench, position_error, mrp } = self.controller.command(state, &self.reference)?;
@@ -172,6 +181,7 @@ impl Chain {
     }
 
     /// This tick's thrusts, N, in the rotors' order; the last ones if it was refused, none before the first.
+    #[inline]
     pub fn thrusts(&self) -> Option<&Thrusts> {
         self.thrusts.as_ref()
     }

@@ -17,6 +17,7 @@ pub const STAMP_LEAD_MAX: u64 = 1_000;
 pub const BODY_RATE_MAX: f32 = 100.0;
 
 /// Whether a time stamp can be of something that has happened.
+#[inline]
 pub(super) fn is_in_time(time: u64, now: u64) -> bool {
     time <= now.saturating_add(STAMP_LEAD_MAX)
 }
@@ -34,6 +35,7 @@ pub(super) trait Measurement: Copy {
 }
 
 /// Passes a vector that is finite and within `range`.
+#[inline]
 fn require(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), &'static str> {
     check_vector(vector, range, field).map_err(|_| field)
 }
@@ -41,6 +43,7 @@ fn require(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(),
 impl Measurement for ImuSample {
     const TIME: &'static str = "imu.time";
 
+    #[inline]
     fn checked(self) -> Result<Self, &'static str> {
         require(&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity")?;
         require(&self.specific_force, STATE_RANGE, "imu.specific_force")?;
@@ -51,6 +54,7 @@ impl Measurement for ImuSample {
 impl Measurement for Pose {
     const TIME: &'static str = "pose.time";
 
+    #[inline]
     fn checked(self) -> Result<Self, &'static str> {
         let Self { position, velocity, attitude } = self;
         require(&position, POSITION_RANGE, "pose.position")?;
@@ -75,6 +79,7 @@ impl<T: Measurement> Newest<T> {
 
     /// Considers what is offered in the tick at `now`; the same measurement may be offered again and again, and one older
     /// than what is here is passed over. Returns it if it is new and usable.
+    #[inline]
     pub fn offer(&mut self, offered: Option<Stamped<T>>, now: u64) -> Option<Stamped<T>> {
         let Stamped { value, time } =
             offered.filter(|offered| self.usable.as_ref().is_none_or(|kept| offered.time > kept.time))?;
@@ -89,11 +94,13 @@ impl<T: Measurement> Newest<T> {
     }
 
     /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
+    #[inline]
     pub fn within(&self, age_max: u64, now: u64) -> Option<Stamped<T>> {
         self.usable.filter(|kept| kept.age(now) <= age_max && is_in_time(kept.time, now))
     }
 
     /// The field for which the newest one offered cannot be used, if so.
+    #[inline]
     pub fn unusable(&self) -> Option<&'static str> {
         self.unusable
     }

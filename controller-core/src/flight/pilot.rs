@@ -39,6 +39,7 @@ impl Pilot {
     /// arms, and says why. On a desktop it takes 36 KB of stack (a tick takes 2 KB): to be called before
     /// anything else needs it.
     #[must_use]
+    #[inline]
     pub fn new(certification: Result<&Certified, &Refused>, limits: GovernorLimits) -> Self {
         Self {
             chain: match certification {
@@ -56,17 +57,20 @@ impl Pilot {
 
     /// The mode after the last tick.
     #[must_use]
+    #[inline]
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
     /// Why it can never arm, if so.
     #[must_use]
+    #[inline]
     pub fn grounded(&self) -> Option<Grounded> {
         self.chain.as_ref().err().copied()
     }
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
+    #[inline]
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         self.measure(inputs);
         let answer = inputs.request.map(|request| self.answer(request, inputs));
@@ -80,6 +84,7 @@ impl Pilot {
     }
 
     /// Takes the newest measurements, and carries the attitude on.
+    #[inline]
     fn measure(&mut self, inputs: &Inputs) {
         let now = inputs.now;
         self.imu.offer(inputs.imu, now);
@@ -93,7 +98,7 @@ impl Pilot {
     }
 
     /// Whether a request is granted. Granting an arm request readies the chain for it.
-    #[inline(never)]
+    #[inline]
     fn answer(&mut self, request: Request, inputs: &Inputs) -> Result<(), Refusal> {
         permission::to_leave(self.mode, inputs.disarm)?;
         match request {
@@ -111,6 +116,7 @@ impl Pilot {
     }
 
     /// What the rules need to know in this tick.
+    #[inline]
     fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>) -> Conditions {
         let now = inputs.now;
         let elapsed = now.saturating_sub(self.since);
@@ -137,6 +143,7 @@ impl Pilot {
     }
 
     /// Does what entering a mode takes. What arming and regaining the pose take is done where they are found possible.
+    #[inline]
     fn enter(&mut self, transition: &Transition, inputs: &Inputs) {
         self.mode = transition.to;
         self.since = inputs.now;
@@ -147,6 +154,7 @@ impl Pilot {
         }
     }
 
+    #[inline]
     fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
         match (&mut self.chain, self.mode) {
             (Ok(chain), Mode::Flying) => chain.accept(setpoint).map_err(Refusal::Setpoint),
@@ -155,6 +163,7 @@ impl Pilot {
     }
 
     /// What the mode does in this tick.
+    #[inline]
     fn output(&mut self, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         if self.mode == Mode::MotorTest {
             return (Output::Test { rotor: self.test.rotor, level: self.test.level }, None);
@@ -180,6 +189,7 @@ impl Pilot {
 }
 
 /// Whether the ground station has been silent for too long.
+#[inline]
 fn is_silent(inputs: &Inputs) -> bool {
     inputs.ground_station.is_none_or(|heard| {
         !is_in_time(heard, inputs.now) || inputs.now.saturating_sub(heard) >= GROUND_STATION_SILENCE_MAX

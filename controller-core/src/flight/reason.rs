@@ -59,6 +59,7 @@ impl Reason {
 
     /// The reason in words.
     #[must_use]
+    #[inline]
     pub const fn text(self) -> &'static str {
         match self {
             Self::ArmCommanded => "Armed",
@@ -78,6 +79,7 @@ impl Reason {
 }
 
 impl fmt::Display for Reason {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.text())
     }
@@ -96,18 +98,21 @@ pub enum Grounded {
 }
 
 impl From<ParameterError> for Grounded {
+    #[inline]
     fn from(error: ParameterError) -> Self {
         Self::Parameter(error.field)
     }
 }
 
 impl From<GovernorError> for Grounded {
+    #[inline]
     fn from(error: GovernorError) -> Self {
         Self::Parameter(blamed(error))
     }
 }
 
 impl From<&Refused> for Grounded {
+    #[inline]
     fn from(refused: &Refused) -> Self {
         match refused {
             Refused::Fails(certificate) => {
@@ -120,6 +125,7 @@ impl From<&Refused> for Grounded {
 }
 
 /// The field that keeps a governor from starting.
+#[inline]
 pub(super) fn blamed(error: GovernorError) -> &'static str {
     match error {
         GovernorError::Parameter(ParameterError { field, .. }) | GovernorError::NoWayOn { field } => field,
@@ -128,6 +134,7 @@ pub(super) fn blamed(error: GovernorError) -> &'static str {
 }
 
 /// The input that an error is about.
+#[inline]
 pub(super) fn field(error: InputError) -> &'static str {
     match error {
         InputError::NotFinite { field } | InputError::OutOfRange { field } | InputError::NotARotation { field } => {
@@ -138,6 +145,7 @@ pub(super) fn field(error: InputError) -> &'static str {
 }
 
 impl fmt::Display for Grounded {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
@@ -184,6 +192,7 @@ pub enum Refusal {
 }
 
 impl fmt::Display for Refusal {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Grounded(grounded) => return grounded.fmt(f),

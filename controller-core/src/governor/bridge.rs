@@ -46,6 +46,7 @@ pub(super) struct Bridge {
 impl Bridge {
     /// The shortest fade-out of `start` inside `bounds`, with durations in proportion to `window` ticks; `None` if there is
     /// none in the family.
+    #[inline]
     pub fn search(start: &Knot, bounds: &ReferenceBounds, period: f32, window: usize) -> Option<Self> {
         let durations = DURATIONS.map(|share| (share * window as f32) as u32 + 1);
         let mut best: Option<Self> = None;
@@ -68,11 +69,13 @@ impl Bridge {
     }
 
     /// Ticks until the motion is steady.
+    #[inline]
     pub fn duration(&self) -> u32 {
         self.durations.iter().copied().max().unwrap_or(0)
     }
 
     /// Whether every tick after the start is inside: a glance first, since most candidates are far outside.
+    #[inline]
     fn is_inside(&self, bounds: &ReferenceBounds) -> bool {
         let glances = self
             .durations
@@ -89,6 +92,7 @@ impl Bridge {
     }
 
     /// The reference `ticks` after the start.
+    #[inline]
     pub fn knot(&self, ticks: f32) -> Knot {
         let time = ticks * self.period;
         let mut knot = Knot {
@@ -122,6 +126,7 @@ impl Bridge {
 }
 
 /// A polynomial (lowest coefficient first) and its first four derivatives at `x`, by Horner's rule.
+#[inline]
 fn derivatives(coefficients: &[f32; 8], x: f32) -> [f32; 5] {
     let [mut value, mut first, mut second, mut third, mut fourth] = [0.0; 5];
     for coefficient in coefficients.iter().rev() {
@@ -134,11 +139,13 @@ fn derivatives(coefficients: &[f32; 8], x: f32) -> [f32; 5] {
     [value, first, second, third, fourth]
 }
 
+#[inline]
 fn square(x: f32) -> f32 {
     x * x
 }
 
 /// Whether a state has nothing to fade out.
+#[inline]
 pub(super) fn is_steady(knot: &Knot) -> bool {
     [knot.acceleration, knot.jerk, knot.snap].iter().all(|vector| *vector == Vector3::zeros())
 }
@@ -156,6 +163,7 @@ pub(super) struct TurnBridge {
 
 impl TurnBridge {
     /// The slowest fade-out of at most `longest` ticks whose heading stays inside `bounds`.
+    #[inline]
     pub fn search(rate: f32, acceleration: f32, bounds: &ReferenceBounds, period: f32, longest: u32) -> Option<Self> {
         (1..=longest)
             .rev()
@@ -163,6 +171,7 @@ impl TurnBridge {
             .find(|bridge| (1..=bridge.duration).all(|tick| bridge.is_inside(tick, bounds)))
     }
 
+    #[inline]
     fn is_inside(&self, tick: u32, bounds: &ReferenceBounds) -> bool {
         let (_, rate, acceleration) = self.at(tick);
         let second = math::sqrt(acceleration * acceleration + square(rate * rate));
@@ -170,6 +179,7 @@ impl TurnBridge {
     }
 
     /// The angle turned since the start (rad), psi' and psi'' at `tick`.
+    #[inline]
     pub fn at(&self, tick: u32) -> (f32, f32, f32) {
         let duration = self.duration as f32 * self.period;
         let (time, left) = (tick as f32 * self.period, 1.0 - tick as f32 / self.duration as f32);

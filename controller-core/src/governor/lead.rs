@@ -34,6 +34,7 @@ pub(super) struct Lead {
 
 impl Lead {
     /// How far ahead of where a point was `age` seconds ago the command must be (m), and how fast it must move (m/s).
+    #[inline]
     pub fn of(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>, age: f32) -> (Vector3<f32>, Vector3<f32>) {
         let lead = self.delay + age;
         let spread = 0.5 * (lead * lead - self.variance);
@@ -60,6 +61,7 @@ impl Lead {
 }
 
 /// An angle of a few radians as a phase.
+#[inline]
 fn phase(angle: f32) -> u64 {
     const PER_RADIAN: f32 = 4_294_967_296.0 / core::f32::consts::TAU;
     ((angle * PER_RADIAN) as i64 as u64) << 32

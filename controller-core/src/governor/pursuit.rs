@@ -24,16 +24,19 @@ struct Cylinder {
 }
 
 impl Cylinder {
+    #[inline]
     fn new(horizontal: f32, vertical: f32) -> Self {
         Self { per_horizontal: 1.0 / horizontal, per_vertical: 1.0 / vertical }
     }
 
     /// ||y||: at most one inside.
+    #[inline]
     fn measure(&self, y: &Vector3<f32>) -> f32 {
         (math::sqrt(y.x * y.x + y.y * y.y) * self.per_horizontal).max(y.z.abs() * self.per_vertical)
     }
 
     /// `y` brought inside along its own direction; as it is if inside. Rounds towards zero.
+    #[inline]
     fn limited(&self, y: Vector3<i64>) -> Vector3<i64> {
         let single = y.map(|component| component as f32);
         let measure = self.measure(&single);
@@ -50,6 +53,7 @@ pub(super) struct Pursuit {
 
 impl Pursuit {
     /// Speeds in m/s.
+    #[inline]
     pub fn new(windows: &Windows, horizontal_speed: f32, vertical_speed: f32, period: f32) -> Self {
         let unit = windows.per_metre * period;
         Self {
@@ -59,17 +63,20 @@ impl Pursuit {
     }
 
     /// The acceleration that takes velocity `u` to `wanted`, as far as one tick may.
+    #[inline]
     pub fn towards_velocity(&self, wanted: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
         self.accelerations.limited(self.speeds.limited(wanted) - u).map(|component| component as i32)
     }
 
     /// The acceleration of one tick towards a resting target `error` away.
+    #[inline]
     pub fn towards_position(&self, error: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
         self.towards_velocity(self.approach(error, BRAKING_SHARE), u)
     }
 
     /// The acceleration of one tick towards a target `error` away that moves with `feed` and accelerates with
     /// `acceleration` (units per tick squared). Braking is planned with what following it leaves.
+    #[inline]
     pub fn towards_moving(
         &self,
         error: Vector3<i64>,
@@ -82,6 +89,7 @@ impl Pursuit {
     }
 
     /// The greatest velocity along `error` from which braking, with a share of the acceleration, ends on the target.
+    #[inline]
     fn approach(&self, error: Vector3<i64>, share: f32) -> Vector3<i64> {
         let single = error.map(|component| component as f32);
         let distance = self.accelerations.measure(&single) / share;

@@ -53,6 +53,7 @@ pub struct Setpoint {
 
 impl Setpoint {
     /// Checks that every field is finite and in range.
+    #[inline]
     pub(super) fn check(&self) -> Result<(), InputError> {
         match &self.motion {
             Motion::Position(position) => check_vector(position, POSITION_RANGE, "setpoint.position")?,

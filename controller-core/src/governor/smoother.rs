@@ -56,6 +56,7 @@ pub(super) struct Smoother {
 }
 
 impl Smoother {
+    #[inline]
     pub fn new(windows: &Windows, period: f32) -> Self {
         let [first, second, third] = windows.lengths;
         let unit = 1.0 / (windows.per_metre * windows.product() as f32);
@@ -90,6 +91,7 @@ impl Smoother {
     }
 
     /// Starts as if always in steady motion: the knot at hand has `position` (units) and `speed` (units a tick).
+    #[inline]
     pub fn start(&mut self, position: Vector3<i64>, speed: Vector3<i64>) {
         self.history = [Vector3::zeros(); HISTORY];
         self.speed = speed;
@@ -100,6 +102,7 @@ impl Smoother {
     }
 
     /// Advances by one tick of commanded acceleration, in units per tick squared.
+    #[inline]
     pub fn push(&mut self, acceleration: Vector3<i32>) {
         self.newest = (self.newest + 1) % HISTORY;
         if let Some(slot) = self.history.get_mut(self.newest) {
@@ -122,21 +125,25 @@ impl Smoother {
     }
 
     /// The commanded position x_0, units.
+    #[inline]
     pub fn commanded(&self) -> &Vector3<i64> {
         &self.commanded
     }
 
     /// The commanded velocity u, units a tick.
+    #[inline]
     pub fn speed(&self) -> &Vector3<i64> {
         &self.speed
     }
 
     /// Whether nothing moves, nor will unless commanded.
+    #[inline]
     pub fn at_rest(&self) -> bool {
         self.speed == Vector3::zeros() && self.trail == Vector3::zeros() && self.difference == [Vector3::zeros(); 4]
     }
 
     /// The knot at hand: one behind the newest control point but one, the last with all differences known.
+    #[inline]
     pub fn knot(&self) -> Knot {
         let [first, second, third, fourth] = &self.difference;
         let here = second - third;
@@ -156,6 +163,7 @@ impl Smoother {
 }
 
 /// `sum` / `count`, rounded to the nearest.
+#[inline]
 fn divided(sum: i64, count: i64) -> i64 {
     (sum + count / 2).checked_div_euclid(count).unwrap_or(0)
 }

@@ -71,6 +71,7 @@ pub(super) struct Turning {
 }
 
 impl Turning {
+    #[inline]
     pub fn new(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         require_positive(bounds.heading_rate, "reference_bounds.heading_rate")?;
         require_positive(bounds.heading_second_derivative, "reference_bounds.heading_second_derivative")?;
@@ -101,6 +102,7 @@ impl Turning {
     }
 
     /// The B that a rate (rad/s) leaves, units per tick squared.
+    #[inline]
     fn strongest_at(&self, rate: f32) -> i64 {
         let second = self.bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
         let left = (second * second - rate * rate * rate * rate).max(0.0);
@@ -108,6 +110,7 @@ impl Turning {
     }
 
     /// Starts from `heading`.
+    #[inline]
     pub fn start(&mut self, heading: &Heading) -> Result<(), GovernorError> {
         let direction = heading.direction();
         let phase = (turns(math::atan2(f64::from(direction.y), f64::from(direction.x))) >> SPARE_BITS) as i64;
@@ -136,6 +139,7 @@ impl Turning {
     }
 
     /// Starts the average as if it had always turned at `rate` (rad/s) and is at `phase` now.
+    #[inline]
     fn settle(&mut self, phase: i64, rate: f32) {
         // A rate exactly at its bound could be rounded across it, seven times by 6e-8 until it is emitted.
         let most = self.bounds.heading_rate * (1.0 - 4.5e-7);
@@ -152,6 +156,7 @@ impl Turning {
     }
 
     /// Advances by one tick towards `goal`.
+    #[inline]
     pub fn tick(&mut self, goal: &TurnGoal) {
         if let Some((bridge, elapsed)) = self.bridge {
             let elapsed = elapsed + 1;
@@ -166,6 +171,7 @@ impl Turning {
     }
 
     /// The commanded acceleration towards `goal`, units per tick squared.
+    #[inline]
     fn command(&self, goal: &TurnGoal) -> i64 {
         let wanted = match *goal {
             TurnGoal::Stop => 0,
@@ -179,6 +185,7 @@ impl Turning {
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
+    #[inline]
     fn approach(&self, phase: i64) -> i64 {
         let error = phase.wrapping_sub(self.commanded).wrapping_shl(SPARE_BITS) >> SPARE_BITS;
         let strongest = BRAKING_SHARE * self.strongest as f32;
@@ -189,6 +196,7 @@ impl Turning {
         (strongest * approach_speed(distance.abs()).copysign(distance)) as i64
     }
 
+    #[inline]
     fn push(&mut self, acceleration: i64) {
         self.newest = (self.newest + 1) % TURN_HISTORY;
         let oldest = (self.newest + TURN_HISTORY - self.length) % TURN_HISTORY;
@@ -205,17 +213,20 @@ impl Turning {
     }
 
     /// Whether nothing turns and `goal` asks for nothing else.
+    #[inline]
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
         let still = self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0;
         self.bridge.is_none() && still && self.command(goal) == 0
     }
 
     /// By how many ticks a steady turn comes out late.
+    #[inline]
     pub fn delay(&self) -> f32 {
         (self.length as f32 - 1.0) * 0.5 + 1.0
     }
 
     /// The heading at hand.
+    #[inline]
     pub fn heading(&self) -> Heading {
         if let Some((bridge, elapsed)) = self.bridge {
             let (angle, rate, acceleration) = bridge.at(elapsed);
@@ -232,11 +243,13 @@ impl Turning {
 }
 
 /// An angle (rad) as a phase in units.
+#[inline]
 pub(super) fn phase(angle: f32) -> i64 {
     (turns(f64::from(angle)) >> SPARE_BITS) as i64
 }
 
 /// A rate (rad/s) in units a tick; an angle with `period` one.
+#[inline]
 pub(super) fn units(rate: f32, period: f32) -> i64 {
     (rate * period * PER_RADIAN) as i64
 }

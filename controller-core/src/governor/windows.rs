@@ -45,6 +45,7 @@ pub(super) struct Windows {
 
 impl Windows {
     /// The windows for `bounds` at `period` seconds a tick.
+    #[inline]
     pub fn design(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         require_positive(bounds.horizontal_acceleration, "reference_bounds.horizontal_acceleration")?;
         require_positive(bounds.vertical_acceleration, "reference_bounds.vertical_acceleration")?;
@@ -66,6 +67,7 @@ impl Windows {
     }
 
     /// Window lengths for a share of the acceleration bounds, if they fit the history.
+    #[inline]
     fn lengths(bounds: &ReferenceBounds, share: f32, period: f32, third: usize) -> Option<[usize; 3]> {
         let (horizontal, vertical) = (bounds.horizontal_acceleration, bounds.vertical_acceleration);
         let diameter = 2.0 * share * math::sqrt(horizontal * horizontal + vertical * vertical);
@@ -77,6 +79,7 @@ impl Windows {
     }
 
     /// Chooses the length unit: as fine as the integers allow.
+    #[inline]
     fn scaled(bounds: &ReferenceBounds, share: f32, period: f32, lengths: [usize; 3]) -> Result<Self, ParameterError> {
         let horizontal = bounds.horizontal_acceleration * share * period * period;
         let vertical = bounds.vertical_acceleration * share * period * period;
@@ -104,17 +107,20 @@ impl Windows {
     }
 
     /// T_1 in ticks: how long a full reversal of acceleration takes.
+    #[inline]
     pub fn first(&self) -> usize {
         let [first, _, _] = self.lengths;
         first
     }
 
     /// The product of the lengths: what sums are divided by to become averages.
+    #[inline]
     pub fn product(&self) -> i64 {
         self.lengths.iter().map(|&length| length as i64).product()
     }
 
     /// By how many ticks a steady motion comes out late.
+    #[inline]
     pub fn delay(&self) -> f32 {
         let total: usize = self.lengths.iter().sum();
         // A window of N ticks delays by (N-1)/2; the spline's newest control point lies two ticks ahead of its output.
@@ -122,6 +128,7 @@ impl Windows {
     }
 
     /// The spread (variance, in ticks squared) of the averages' weights, the quintic spline's included.
+    #[inline]
     pub fn variance(&self) -> f32 {
         self.lengths.iter().map(|&length| (length as f32 * length as f32 - 1.0) / 12.0).sum::<f32>() + 0.5
     }
@@ -131,6 +138,7 @@ impl Windows {
 const FITTING_STEPS: usize = 280;
 
 /// The least whole number of ticks that lasts `duration` seconds, at least one.
+#[inline]
 pub(super) fn ticks(duration: f32, period: f32) -> usize {
     let exact = duration / period * (1.0 + ROUNDING_ROOM);
     let whole = exact as usize;
