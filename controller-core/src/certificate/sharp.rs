@@ -80,6 +80,11 @@ impl Parts {
         let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
         tilting * tilting + yawing * yawing
     }
+
+    /// The greater of each part.
+    fn max(self, other: &Self) -> Self {
+        Self { tilting: self.tilting.max(other.tilting), yawing: self.yawing.max(other.yawing) }
+    }
 }
 
 /// A vector's part orthogonal to rho, divided by n: its length |v| and what it can turn the yaw by, \[v\].
@@ -142,14 +147,24 @@ impl Tilt {
         Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
     }
 
-    /// N for |psi'| and |psi''| at most those of `heading` and the share of p in u' within the cell `split`.
-    fn quadratic_part(&self, reach: &Reachable, heading: &HeadingCell, longest: f64, split: u32) -> Parts {
-        let [least, most] = [split, split + 1].map(|end| longest * f64::from(end) / f64::from(SPLIT_CELLS));
-        let stretch = math::sqrt_f64(reach.jerk * reach.jerk - least * least) / self.magnitude;
-        let length = most / self.magnitude;
-        let product =
-            greatest_product(reach.jerk * reach.jerk, least * least, most * most) / (self.magnitude * self.magnitude);
-        let mixed = 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude);
+    /// The splits of u' with p at most `longest`.
+    fn splits(&self, reach: &Reachable, longest: f64) -> [Split; SPLIT_CELLS as usize] {
+        core::array::from_fn(|split| {
+            let [least, most] = [split, split + 1].map(|end| longest * end as f64 / f64::from(SPLIT_CELLS));
+            let length = most / self.magnitude;
+            let product = greatest_product(reach.jerk * reach.jerk, least * least, most * most);
+            Split {
+                stretch: math::sqrt_f64(reach.jerk * reach.jerk - least * least) / self.magnitude,
+                length,
+                product: product / (self.magnitude * self.magnitude),
+                mixed: 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude),
+            }
+        })
+    }
+
+    /// N for |psi'| and |psi''| at most those of `heading` and a split of u'.
+    fn quadratic_part(&self, heading: &HeadingCell, split: &Split) -> Parts {
+        let Split { stretch, length, product, mixed } = *split;
         let HeadingCell { rate, acceleration } = *heading;
         let yaw = rate * self.secant + self.tan * mixed;
         let yawing = acceleration * self.secant
@@ -159,6 +174,19 @@ impl Tilt {
             + 0.5 * length * length * (1.0 + 2.0 * self.tan * self.tan);
         Parts { tilting: math::hypot(2.0 * product, length * yaw), yawing }
     }
+}
+
+/// One cell of the split of u' into p and r, each at its greatest, over n.
+#[derive(Clone, Copy)]
+struct Split {
+    /// r / n.
+    stretch: f64,
+    /// p / n.
+    length: f64,
+    /// p r / n^2.
+    product: f64,
+    /// `[p]` / n.
+    mixed: f64,
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
@@ -197,7 +225,7 @@ struct HeadingCell {
 
 impl HeadingCell {
     /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end.
-    fn all(bounds: &ReferenceBounds) -> impl Iterator<Item = Self> {
+    fn all(bounds: &ReferenceBounds) -> impl DoubleEndedIterator<Item = Self> {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
         let fastest = rate_bound.min(math::sqrt_f64(second_bound));
@@ -236,12 +264,18 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
         }
         let longest = longest.min(reach.jerk);
         let linear = directions.map(|direction| tilt.linear_part(reach, &direction));
+        let splits = tilt.splits(reach, longest);
+        // No part is negative and rounding is monotonic, so no direction does better than this. Beginning with the fastest
+        // headings, it tells of nearly all others that they need not be tried one by one.
+        let outermost = linear.iter().fold(nothing, |a, b| a.max(b));
         let mut acceleration_square: f64 = 0.0;
-        for heading in HeadingCell::all(bounds) {
-            for split in 0..SPLIT_CELLS {
-                let quadratic = tilt.quadratic_part(reach, &heading, longest, split);
-                for linear in &linear {
-                    acceleration_square = acceleration_square.max(linear.square_of_sum(&quadratic));
+        for heading in HeadingCell::all(bounds).rev() {
+            for split in &splits {
+                let quadratic = tilt.quadratic_part(&heading, split);
+                if outermost.square_of_sum(&quadratic) > acceleration_square {
+                    for linear in &linear {
+                        acceleration_square = acceleration_square.max(linear.square_of_sum(&quadratic));
+                    }
                 }
             }
         }
