@@ -120,6 +120,7 @@ fn measure() -> bool {
         return false;
     }
     governing.print("governor tick");
+    hprintln!("times: at one instruction a cycle, which no processor promises");
     hprintln!("one instruction is {} ticks of SysTick", counter.ticks_per_instruction());
     true
 }
@@ -132,12 +133,9 @@ fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Cer
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
     let copy = configuration.clone();
     let (instructions, certified) = counter.long(|| certify(copy));
-    hprintln!(
-        "certificate: {:.0} instructions, {} B of stack, result {} B",
-        instructions,
-        bytes,
-        size_of::<Certified>()
-    );
+    let [bolt, h743] = CLOCKS.map(|clock| instructions / clock * 1e-6);
+    hprintln!("certificate: {:.0} instructions, {:.2} s at 168 MHz, {:.2} s at 480 MHz", instructions, bolt, h743);
+    hprintln!("             {} B of stack beside the result's {} B", bytes, size_of::<Certified>());
     certified
 }
 
