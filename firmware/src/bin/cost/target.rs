@@ -98,14 +98,16 @@ fn measure() -> bool {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return false;
     };
-    let Ok(mut controller) = Controller::new(&certified, PERIOD) else { return false };
+    let Ok(controller) = Controller::new(&certified, PERIOD) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
+    let plain = embedded.with_gains(*embedded.gains()).ok().and_then(|plain| Certified::new(plain).ok());
+    let Some(plain) = plain.and_then(|plain| Controller::new(&plain, PERIOD).ok()) else { return false };
     let mixer = Mixer::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@480MHz");
-    let mut flight = Flight { controller: &mut controller, mixer: &mixer, certified: &certified, counter: &counter };
+    let mut flight = Flight { controller, mixer: &mixer, certified: &certified, counter: &counter };
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
@@ -116,6 +118,9 @@ fn measure() -> bool {
     let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
+    let mut flight = Flight { controller: plain, ..flight };
+    let Some((_, cost)) = flight.fly(settled, &circle, &mut Cost::default()) else { return false };
+    cost.print("step, circle, the paper's T = m |u|");
     if !govern(&counter, &embedded, &mut governing) {
         return false;
     }
@@ -141,7 +146,7 @@ fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Cer
 
 /// A flight under the law, with what it needs.
 struct Flight<'a> {
-    controller: &'a mut Controller,
+    controller: Controller,
     mixer: &'a Mixer,
     certified: &'a Certified,
     counter: &'a Counter,
@@ -156,7 +161,7 @@ impl Flight<'_> {
         self.controller.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, wrench) = self.counter.short(|| step(self.controller, &state, &reference));
+            let (instructions, wrench) = self.counter.short(|| step(&mut self.controller, &state, &reference));
             cost.add(instructions);
             let wrench = wrench.ok()?;
             let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
@@ -175,7 +180,7 @@ impl Flight<'_> {
         self.controller.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, result) = self.counter.short(|| step(self.controller, state, &reference));
+            let (instructions, result) = self.counter.short(|| step(&mut self.controller, state, &reference));
             black_box(result.ok()?);
             cost.add(instructions);
         }
