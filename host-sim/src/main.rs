@@ -162,7 +162,7 @@ counts from the first command.
 
 With QEMU (this firmware's emulated board; its second serial port is for the ground station):
   qemu-system-arm -M mps2-an386 -display none -monitor none -icount shift=0,sleep=off \\
-    -serial tcp:127.0.0.1:5760,server=on -serial tcp:127.0.0.1:5761,server=on \\
+    -serial tcp:127.0.0.1:5760,server=on,nodelay=on -serial tcp:127.0.0.1:5761,server=on \\
     -semihosting-config enable=on,target=native -kernel target/arm/thumbv7em-none-eabihf/release/mps2
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600";

@@ -8,7 +8,6 @@ Every time is the vehicle's. Figures that are printed were measured in that run.
 import sys
 
 from rig import Rig
-from station import Station  # noqa: F401  (fails early where pymavlink is missing)
 
 START = (1.0, 0.0, 0.0)
 HOVER = (1.0, 0.0, 1.5)
@@ -35,6 +34,7 @@ def take_off(station):
 def land(station):
     station.go((station.target[0], station.target[1], 0.0), 0.05, 20.0)
     station.wait(2.0)
+    station.target = None
     station.command_arm(False)
     station.wait(0.5)
 
@@ -65,20 +65,21 @@ def vanishing_client(machine):
     with Rig(machine) as rig:
         station = rig.station
         take_off(station)
-        station.go((HOVER[0], HOVER[1] + 8.0, HOVER[2]), 7.0, 10.0)
-        silent, station.alive = station.now, False
+        far = 40.0
+        station.go((HOVER[0], HOVER[1] + far, HOVER[2]), far - 1.0, 10.0)
+        station.alive = False
         # From here on it only listens.
         station.until("holding", lambda: station.heard("Ground station lost"), SILENCE_MAX + 1.0)
-        after = station.heard("Ground station lost") - silent
-        print(f"    holding position {after:.2f} s after the last word")
-        # The last heartbeat may be as old as their interval; texts and telemetry come a few hundredths later.
-        assert SILENCE_MAX - Station.HEARTBEAT <= after <= SILENCE_MAX + 0.1, after
+        after = station.heard("Ground station lost") - station.last_heartbeat
+        print(f"    holding position {after:.2f} s after the last heartbeat")
+        # Both times are those of the telemetry that came last: up to two intervals and this machine's delays old.
+        assert abs(after - SILENCE_MAX) <= 0.2, after
         station.wait(6.0)
         assert station.armed and station.mode == HOLDING
         held = station.position
         worst = station.worst_distance(held, 10.0)
-        print(f"    held within {1e3 * worst:.1f} mm for 10 s, {held[1]:.2f} m along the way")
-        assert worst <= 0.05 and held[1] < HOVER[1] + 7.9
+        print(f"    held within {1e3 * worst:.1f} mm for 10 s, {held[1]:.2f} m along a way of {far} m")
+        assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
         station.target, station.alive = None, True
         station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
         station.target = (held[0], held[1], 0.0)
@@ -97,7 +98,7 @@ def failing_pose(machine):
         station.until("disarmed", lambda: not station.armed, 2.0)
         lost, stopped = station.heard("Pose lost"), station.heard("Stopped: no pose")
         print(f"    stopped {stopped - lost:.2f} s after the pose was given up, by telemetry")
-        station.wait(1.0)
+        station.wait_for_heartbeats(2)
         rig.land()
         rig.check_pace()
     # By the simulator's record. The last pose answers the last command before `stops` and is true a tick later.

@@ -51,6 +51,11 @@ impl SpinningRotors {
         }
     }
 
+    /// Per rotor: speed now and speed commanded, rad/s.
+    pub fn speeds(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.speeds.iter()
+    }
+
     /// Advances the speeds by one plant step and returns thrust, N, and torque, N m, at its middle.
     pub fn advance(&mut self) -> (f64, Vector3<f64>) {
         let (half, whole) = self.decay;
