@@ -39,9 +39,13 @@ pub struct TorqueCommand {
 #[inline(always)]
 #[must_use]
 pub fn rotate_back(q: &Quaternion<f32>, v: &Vector3<f32>) -> Vector3<f32> {
-    let axis = q.imag();
-    let across = (axis + axis).cross(v);
-    v - across * q.w + axis.cross(&across)
+    let (axis, w) = (q.imag(), q.w);
+    let t = (axis + axis).cross(v);
+    Vector3::new(
+        v.x - w * t.x + axis.y * t.z - axis.z * t.y,
+        v.y - w * t.y + axis.z * t.x - axis.x * t.z,
+        v.z - w * t.z + axis.x * t.y - axis.y * t.x,
+    )
 }
 
 /// The attitude law's constants.

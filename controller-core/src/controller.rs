@@ -38,20 +38,20 @@
 //! ```
 
 use crate::attitude::{AttitudeLaw, TorqueCommand};
-use crate::attitude_reference::attitude_reference;
+use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::configuration::Certified;
 use crate::error::{InputError, ParameterError};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
-use crate::position::{FilterState, FilterTransition, PositionLaw};
+use crate::position::{CommandRates, FilterState, FilterTransition, PositionLaw};
 use crate::projection::projected_thrust;
 use crate::reference::{DERIVATIVE_RANGE, Reference};
-use crate::state::{State, Wrench, sum_of_squares};
+use crate::state::{State, Wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
 
-/// Inputs whose squares add up to less are all within their ranges, the narrowest of which is [`DERIVATIVE_RANGE`]; a tenth
-/// of its square leaves the sum's rounding room.
+/// Inputs and outputs whose squares add up to less are finite and within their ranges, the narrowest of which is
+/// [`DERIVATIVE_RANGE`]; a tenth of its square leaves the sum's rounding room.
 const USUAL_SQUARES: f32 = 0.1 * DERIVATIVE_RANGE * DERIVATIVE_RANGE;
 
 /// Everything the law remembers from one tick to the next.
@@ -66,6 +66,17 @@ pub struct Memory {
 impl Memory {
     /// What a reset leaves: x_f = 0, the path to be lifted anew.
     pub const RESET: Self = Self { filter: FilterState::ZERO, lift: None };
+}
+
+/// What a flight needs of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Command {
+    /// T and tau.
+    pub wrench: Wrench,
+    /// p~, m, world.
+    pub position_error: Vector3<f32>,
+    /// theta~.
+    pub mrp: Vector3<f32>,
 }
 
 /// What a step went through, at the state it was given and before the filters advance.
@@ -180,6 +191,16 @@ impl Controller {
         self.memory = memory;
     }
 
+    /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    #[inline(never)]
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
+        let (wrench, Diagnostics { position_error, mrp, .. }) = self.step(state, reference)?;
+        Ok(Command { wrench, position_error, mrp })
+    }
+
     /// One tick of the law.
     ///
     /// # Errors
@@ -188,58 +209,36 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        // Nearly every input passes this one comparison. What does not is looked at field by field.
-        let turning = Vector3::new(reference.heading.rate(), reference.heading.acceleration(), 0.0);
-        let squares = sum_of_squares(&[
-            &state.position,
-            &state.velocity,
-            &state.angular_velocity,
-            &reference.position,
-            &reference.velocity,
-            &reference.acceleration,
-            &reference.jerk,
-            &reference.snap,
-            &turning,
-        ]);
-        let usual = squares <= USUAL_SQUARES && state.has_unit_attitude();
-        if !usual {
-            state.check()?;
-            reference.check()?;
-        }
-        if reference.acceleration.z <= self.gains.m_p - self.vehicle.gravity {
-            return Err(InputError::FallsTooFast);
-        }
-
+        let FilterState { filtered, intermediate } = self.memory.filter;
         let command = self.position_law.command(state, reference, &self.memory.filter);
-        let desired = attitude_reference(
-            &command.acceleration_command,
-            &command.jerk_command,
-            &command.snap_command,
-            &reference.heading,
-        );
-        let error = desired.error(&state.attitude);
-        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
-        let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } =
-            self.attitude_law.command(
-                &lifted.quaternion,
-                &state.angular_velocity,
-                &desired.angular_velocity,
-                &desired.angular_acceleration,
-            );
+        let desired = DesiredAttitude::new(&command.acceleration_command, &reference.heading);
+        let CommandRates { jerk_command, snap_command } =
+            self.position_law.rates(reference, &self.memory.filter, &command.feedback);
+        let motion = desired.motion(&jerk_command, &snap_command, &reference.heading);
+        let is_rotation = state.has_unit_attitude();
         let mass = self.vehicle.mass;
         let thrust = match self.thrust_floor {
-            None => mass * desired.magnitude,
+            None => mass * desired.magnitude(),
             Some(floor) => projected_thrust(mass, &command.acceleration_command, &state.attitude, floor),
         };
+        let error = desired.error(&state.attitude);
+        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
+        let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } = self
+            .attitude_law
+            .command(&lifted.quaternion, &state.angular_velocity, &motion.velocity, &motion.acceleration);
         let wrench = Wrench { thrust, torque };
-        // Inputs in range can still overflow together, on a reference that all but cancels gravity.
-        if !(wrench.thrust + torque.x + torque.y + torque.z).is_finite() {
-            return Err(InputError::OutOfRange { field: "reference" });
+
+        // Nothing is remembered yet, so this is early enough to look at the input. Nearly every one passes at once.
+        let climbs = reference.acceleration.z > self.gains.m_p - self.vehicle.gravity;
+        let usual = state.squares() + reference.squares() + wrench.squares() <= USUAL_SQUARES;
+        if !(is_rotation && climbs && usual) {
+            self.examine(state, reference, thrust + torque.sum())?;
         }
 
-        let FilterState { filtered, intermediate } = self.memory.filter;
-        self.memory =
-            Memory { filter: self.transition.advance(&self.memory.filter, &command.feedback), lift: Some(lifted.lift) };
+        self.memory.filter = self.transition.advance(&self.memory.filter, &command.feedback);
+        if lifted.jumped {
+            self.memory.lift = Some(lifted.lift);
+        }
         let diagnostics = Diagnostics {
             position_error: command.position_error,
             velocity_error: command.velocity_error,
@@ -249,9 +248,9 @@ impl Controller {
             filtered,
             intermediate,
             acceleration_command: command.acceleration_command,
-            desired_attitude: desired.attitude,
-            desired_angular_velocity: desired.angular_velocity,
-            desired_angular_acceleration: desired.angular_acceleration,
+            desired_attitude: desired.attitude(),
+            desired_angular_velocity: motion.velocity,
+            desired_angular_acceleration: motion.acceleration,
             attitude_error: lifted.quaternion,
             mrp: lifted.mrp,
             lift_sign: lifted.lift.sign,
@@ -260,6 +259,19 @@ impl Controller {
             rate_feedback,
         };
         Ok((wrench, diagnostics))
+    }
+
+    /// What is wrong with an input that stands out, if anything.
+    #[cold]
+    #[inline(never)]
+    fn examine(&self, state: &State, reference: &Reference, wrench_sum: f32) -> Result<(), InputError> {
+        state.check()?;
+        reference.check()?;
+        if reference.acceleration.z <= self.gains.m_p - self.vehicle.gravity {
+            return Err(InputError::FallsTooFast);
+        }
+        // Inputs in range can still overflow together, on a reference that all but cancels gravity.
+        if wrench_sum.is_finite() { Ok(()) } else { Err(InputError::OutOfRange { field: "reference" }) }
     }
 }
 

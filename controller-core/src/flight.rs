@@ -14,7 +14,8 @@
 //!
 //! Until there is an estimator, position, velocity and attitude come from the pose source and body rates from the gyro.
 //! Between poses the attitude is carried on by gyro; position and velocity stay what they were, for
-//! [`rules::POSE_AGE_MAX`] at most.
+//! [`rules::POSE_AGE_MAX`] at most. Poses that come more seldom than that are flown all the same, each for as long, with
+//! levelling in between; each begins a braking anew, so setpoints get nowhere then.
 
 mod chain;
 #[cfg(test)]

@@ -55,7 +55,7 @@
 //!
 //! | paper | what it says | here | checked by |
 //! |---|---|---|---|
-//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh`], [`position::PositionLaw::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
+//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh_of_double`], [`position::PositionLaw::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
 //! | Section II | R(q), phi(q), Upsilon(theta), T(theta) | [`mrp::rotation`], [`mrp::from_quaternion`], [`mrp::shadow`], [`mrp::kinematics`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from`, `the_shadow_of_the_shadow_is_the_parameter_and_unit_length_is_the_border`, `parameters_move_as_their_kinematics_say` |
 //! | (1) | rotation from MRP, sign put right | [`mrp::to_rotation`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from` |
 //! | (2a), (2b) | the rigid body | `host_sim::plant`; its constants are [`vehicle::Vehicle`] | host-sim/src/plant/tests.rs: `agrees_with_a_plain_integration_of_the_printed_equations` |
@@ -64,7 +64,7 @@
 //! | (3) | how a reference moves | [`reference::Reference`], [`governor::Governor::tick`] | core/tests/harmonic.rs, core/tests/waypoints.rs: `each_derivative_is_the_slope_of_the_one_below`; tests/governor_campaign.rs: `a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive` |
 //! | (4a) | g > K_a3, thrust for the reference | [`certificate::Certificate`], rows A1 | certificate.rs: `references_that_the_vehicle_cannot_follow_at_all_fail_assumption_1`, `a_reference_that_leaves_no_upward_thrust_is_no_configuration` |
 //! | (4b) | torque for the reference; U* are Lemma 1's with M_p = 0 | [`certificate::printed::desired_rates`], rows A1 | certificate.rs: `references_that_the_vehicle_cannot_follow_at_all_fail_assumption_1` |
-//! | (5) | R_d from rho and heading | [`attitude_reference::AttitudeReference::attitude`] | attitude_reference.rs: `body_z_points_along_the_command_and_body_x_over_the_heading`; the independent law |
+//! | (5) | R_d from rho and heading | [`attitude_reference::DesiredAttitude::attitude`] | attitude_reference.rs: `body_z_points_along_the_command_and_body_x_over_the_heading`; the independent law |
 //! | Problem 1 | what is to be achieved | [`controller::Controller`] | tests/recovery.rs: `a_thousand_random_attitudes_and_spins_settle_within_six_seconds`; tests/paper.rs: `the_papers_experiment_meets_every_published_figure` |
 //! | (6) | u = u_f + g e3 + p_d'' | [`position::PositionCommand::acceleration_command`] | the independent law |
 //! | (7) | the two filters | [`position::FilterTransition`] | tests/independent_law.rs: `memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks`; tests/bounds.rs: `filter_states_stay_in_their_box_to_the_last_bit` |
@@ -75,13 +75,13 @@
 //! | (10a), (10b) | T_min, T_max | [`certificate::Form::thrust`], [`certificate::configuration::Configuration::greatest_thrust_floor`] | certificate.rs: `theorem_1s_interval_is_the_published_one`; host-sim/src/claims.rs: `theorem_1_gives_the_papers_published_interval` |
 //! | (11), (12) | dynamics of z, V_1 | proof only | tests/lyapunov/position.rs: `v_1_falls_at_any_z_and_filter_states`; held inputs: tests/lyapunov/held_inputs.rs: `v_1_seldom_rises_with_inputs_held_at_100_hz` |
 //! | (13a) to (15) | exponential rate of V_1 | proof only; no rate is stated here | none |
-//! | (16) | omega_d | [`attitude_reference::AttitudeReference::angular_velocity`] | tests/kinematics.rs: `desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight`; the independent law |
-//! | (17) | omega_d' | [`attitude_reference::AttitudeReference::angular_acceleration`] | as (16); attitude_reference.rs: `a_turning_heading_over_a_level_vehicle_is_pure_yaw` |
+//! | (16) | omega_d | [`attitude_reference::AngularMotion::velocity`] | tests/kinematics.rs: `desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight`; the independent law |
+//! | (17) | omega_d' | [`attitude_reference::AngularMotion::acceleration`] | as (16); attitude_reference.rs: `a_turning_heading_over_a_level_vehicle_is_pure_yaw` |
 //! | Lemma 1 | bounds on omega_d, omega_d', as printed | [`certificate::printed::desired_rates`], [`certificate::reachable::half_l1_norm`] | certificate.rs: `table_1_is_refused_as_printed_and_in_yaw_only`; tests/sharp_derivation.rs: `the_filters_reach_what_step_1_says_and_no_more` |
 //! | Lemma 1, sharper | docs/sharp-bound.md | [`certificate::sharp::desired_rates`], [`certificate::reachable::Reachable`] | certificate.rs: `table_1_is_certified_by_the_sharp_bound_within_the_published_figures`; tests/adversary.rs: `with_table_1_the_adversary_is_strong_and_the_bound_stands`, `the_bound_stands_with_300_random_configurations`; tests/sharp_derivation.rs: `every_part_of_the_angular_acceleration_is_within_its_bound` |
 //! | (18) | a step of Lemma 1 | inside U_rho' U_v' of [`certificate::printed::desired_rates`] | none by itself |
 //! | R~, omega~ | attitude and body-rate error | [`controller::Diagnostics::attitude_error`], [`controller::Diagnostics::angular_velocity_error`] | the independent law; tests/attitude_sign.rs: `output_and_memory_do_not_depend_on_the_sign_of_the_quaternion` |
-//! | s_theta, s_omega, tau_c, tau | the saturated attitude law | [`attitude::radial_saturation`], [`attitude::torque_command`] | the independent law |
+//! | s_theta, s_omega, tau_c, tau | the saturated attitude law | [`attitude::AttitudeLaw::command`] | the independent law |
 //! | (19): C, F, D, G of H_theta | jump to the shadow at 1 + delta | [`path_lifting::switching_scalar`], [`path_lifting::lift`] | path_lifting.rs: `the_switch_happens_at_one_plus_delta` |
 //! | (20) | dynamics of the attitude errors | the vehicle's; not in the law | tests/lyapunov/attitude.rs: `v_2_falls_along_flows_for_rate_errors_up_to_20_rad_per_s` |
 //! | Theorem 2 | stability of the attitude loop; torque bounds | [`certificate::Certificate`], rows T2 | tests/lyapunov/attitude.rs: the next rows' tests; tests/certified_flights.rs: `two_hundred_certified_configurations_never_leave_their_bounds`, `configurations_that_the_adversary_beats_do_leave_their_limits` |
@@ -106,7 +106,7 @@
 //! | the paper | here | where | checked by |
 //! |---|---|---|---|
 //! | (1) has a minus before its middle term, which with the paper's own R(q), phi and T describes the transpose | plus | [`mrp::to_rotation`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from` |
-//! | the radial saturations hold the gain and are applied to an argument that is scaled already | the gain acts once | [`attitude::torque_command`] | the independent law |
+//! | the radial saturations hold the gain and are applied to an argument that is scaled already | the gain acts once | [`attitude::AttitudeLaw::command`] | the independent law |
 //! | the output of H_l has m; nothing says where q_hat and m* start | m*; they start from the lift with q_0 >= 0 and m* = +1, at q_0 = 0 from the one whose first non-zero vector component is positive | [`path_lifting::lift`] | path_lifting.rs: `a_fresh_lift_takes_the_shorter_way`, `an_exact_half_turn_lifts_to_its_positive_axis` |
 //! | the switch is tested on \|phi\|, infinite at q_0 = -1 | on q_0, which is the same test without the division | [`path_lifting::switching_scalar`] | path_lifting.rs: `the_switch_happens_at_one_plus_delta` |
 //! | nu_d lies on the sphere S^2; torques are bounded without modulus | nu_d lies on the circle; \|tau_i\| is bounded | [`heading::Heading`], [`certificate::Form::torque`] | heading.rs: `derivatives_and_rates_say_the_same`; tests/certified_flights.rs: `two_hundred_certified_configurations_never_leave_their_bounds` |

@@ -19,6 +19,8 @@
 
 use crate::math;
 use crate::mrp;
+use crate::state::length_squared;
+use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3};
 
 /// The mechanism's memory.
@@ -39,6 +41,8 @@ pub struct Lifted {
     pub mrp: Vector3<f32>,
     /// The memory after this instant's jumps.
     pub lift: Lift,
+    /// Whether the memory is another than before: it jumped, or was lifted afresh.
+    pub jumped: bool,
 }
 
 /// The scalar part at which |phi(q)| = 1 + `delta`.
@@ -56,12 +60,13 @@ pub fn switching_scalar(delta: f32) -> f32 {
 #[inline(always)]
 #[must_use]
 pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {
-    let length = math::sqrt(error.norm_squared());
-    let Lift { memory, mut sign } = match previous {
+    let length = math::sqrt(length_squared(error));
+    let mut jumped = previous.is_none();
+    let Lift { mut memory, mut sign } = match previous {
         Some(lift) => *lift,
         None => Lift { memory: *error * (canonical_sign(error) / length), sign: 1.0 },
     };
-    let agreement = memory.coords.dot(&error.coords);
+    let agreement = memory.w * error.w + memory.i * error.i + memory.j * error.j + memory.k * error.k;
     let nearest = if agreement > 0.0 {
         1.0
     } else if agreement < 0.0 {
@@ -70,12 +75,17 @@ pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: 
         canonical_sign(error)
     };
     if sign * nearest * error.w <= switching_scalar * length {
+        cold_path();
         sign = -sign;
+        jumped = true;
     }
     let quaternion = *error * (sign * nearest / length);
-    let follows = agreement.abs() <= (1.0 - alpha) * length;
-    let memory = if follows { quaternion * sign } else { memory };
-    Lifted { quaternion, mrp: mrp::from_quaternion(&quaternion), lift: Lift { memory, sign } }
+    if agreement.abs() <= (1.0 - alpha) * length {
+        cold_path();
+        memory = quaternion * sign;
+        jumped = true;
+    }
+    Lifted { quaternion, mrp: mrp::from_quaternion(&quaternion), lift: Lift { memory, sign }, jumped }
 }
 
 /// The sign of the one of ±q with q_0 > 0, or at q_0 = 0 with its first non-zero vector component positive.

@@ -8,15 +8,17 @@
 //! | ubar_p = -sigma_p(k_p z_1 + k_v z_2), sigma_p(s) = M_p tanh(s / M_p) | `feedback` | Section IV, VI |
 //! | u = u_f + g e3 + p_d'' | `acceleration_command` | (PositionControlLaw) |
 //! | u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar_p) | [`FilterTransition`] | (FilterDynamics) |
-//! | u' = u_f' + p_d''' | `jerk_command` | from the two above |
-//! | u'' = -k_f (u_f' - u_s') + p_d'''' | `snap_command` | from the two above |
+//! | u' = u_f' + p_d''' | [`CommandRates::jerk_command`] | from the two above |
+//! | u'' = -k_f (u_f' - u_s') + p_d'''' | [`CommandRates::snap_command`] | from the two above |
 //!
 //! All vectors are in the world frame; u in m/s^2. The filters are linear and their input is held between ticks, so they
 //! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
 //!
 //! The tick does not form z: the argument of tanh, (k_p z_1 + k_v z_2) / M_p, is linear in p~, v~, u_f and u_s, with weights
 //!
-//! k_p / M_p,  (k_p (1/k_f + 1/k_s) + k_v) / M_p,  (k_p / (k_s k_f) + k_v / k_f) / M_p,  k_v / (k_s M_p).
+//! k_p / M_p,  (k_p (1/k_f + 1/k_s) + k_v) / M_p,  (k_p / (k_s k_f) + k_v / k_f) / M_p,  k_v / (k_s M_p),
+//!
+//! and halves of these, because tanh is worked out from half its argument.
 
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::gains::{GainParameters, Gains};
@@ -107,13 +109,13 @@ pub struct PositionLaw {
     second_lag: f32,
     /// 1 / k_s, s.
     first_lag: f32,
-    /// Weights of p~, v~, u_f and u_s in (k_p z_1 + k_v z_2) / M_p.
-    weights: [f32; 4],
+    /// Weights of p~, v~, u_f and u_s in (k_p z_1 + k_v z_2) / (2 M_p).
+    half_weights: [f32; 4],
     /// g, m/s^2.
     gravity: f32,
 }
 
-/// What the position law asks of the attitude, with the quantities it went through.
+/// What the position law commands, with the quantities it went through.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionCommand {
     /// p~, m.
@@ -128,6 +130,11 @@ pub struct PositionCommand {
     pub feedback: Vector3<f32>,
     /// u, m/s^2.
     pub acceleration_command: Vector3<f32>,
+}
+
+/// How u moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CommandRates {
     /// u', m/s^3.
     pub jerk_command: Vector3<f32>,
     /// u'', m/s^4.
@@ -140,42 +147,44 @@ impl PositionLaw {
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;
         let [p, v, f, s, m] = [gains.k_p, gains.k_v, k_f, k_s, m_p].map(f64::from);
-        let weights = [p, p * (1.0 / f + 1.0 / s) + v, (p / s + v) / f, v / s].map(|weight| (weight / m) as f32);
-        Self { k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, weights, gravity }
+        let half_weights =
+            [p, p * (1.0 / f + 1.0 / s) + v, (p / s + v) / f, v / s].map(|weight| (0.5 * weight / m) as f32);
+        Self { k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, half_weights, gravity }
     }
 
     /// Evaluates the law at one instant; the filters are read, not advanced.
     #[inline(always)]
     #[must_use]
     pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
-        let Self {
-            k_f,
-            k_s,
-            m_p,
-            second_lag,
-            first_lag,
-            weights: [of_position, of_velocity, of_filtered, of_intermediate],
-            ..
-        } = *self;
+        let Self { second_lag, first_lag, .. } = *self;
+        let [of_position, of_velocity, of_filtered, of_intermediate] = self.half_weights;
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
+        let a = &reference.acceleration;
 
         let position_error = state.position - reference.position;
         let velocity_error = state.velocity - reference.velocity;
-        let argument =
+        let half =
             position_error * of_position + velocity_error * of_velocity + u_f * of_filtered + u_s * of_intermediate;
-        let feedback = argument.map(|s| -m_p * math::tanh(s));
-
-        let filtered_rate = (u_s - u_f) * k_f;
-        let intermediate_rate = (feedback - u_s) * k_s;
         PositionCommand {
             position_error,
             velocity_error,
             z_1: position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag),
             z_2: velocity_error + u_f * second_lag + u_s * first_lag,
-            feedback,
-            acceleration_command: u_f + reference.acceleration + Vector3::new(0.0, 0.0, self.gravity),
+            feedback: math::tanh_of_doubles(&half) * -self.m_p,
+            acceleration_command: Vector3::new(u_f.x + a.x, u_f.y + a.y, u_f.z + (a.z + self.gravity)),
+        }
+    }
+
+    /// u' and u'' while the filters take up `feedback`.
+    #[inline(always)]
+    #[must_use]
+    pub fn rates(&self, reference: &Reference, filter: &FilterState, feedback: &Vector3<f32>) -> CommandRates {
+        let FilterState { filtered: u_f, intermediate: u_s } = filter;
+        let filtered_rate = (u_s - u_f) * self.k_f;
+        let intermediate_rate = (feedback - u_s) * self.k_s;
+        CommandRates {
             jerk_command: filtered_rate + reference.jerk,
-            snap_command: (intermediate_rate - filtered_rate) * k_f + reference.snap,
+            snap_command: (intermediate_rate - filtered_rate) * self.k_f + reference.snap,
         }
     }
 }

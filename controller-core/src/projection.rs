@@ -13,6 +13,7 @@
 //! So |d| <= |d_0| at every attitude, and T is Lipschitz in the state: the perturbation stays square-integrable with the
 //! paper's constants. T <= m |u| as well, so the thrust interval becomes [floor, T_max].
 
+use crate::state::length_squared;
 use nalgebra::{Quaternion, Vector3};
 
 /// T in N for u (world, m/s^2), the vehicle's attitude q (body to world, of any length), its mass in kg and the floor in N.
@@ -24,7 +25,7 @@ pub fn projected_thrust(mass: f32, command: &Vector3<f32>, attitude: &Quaternion
     let Quaternion { coords } = attitude;
     let (x, y, z, w) = (coords.x, coords.y, coords.z, coords.w);
     let lean = command.x * (x * z + w * y) + command.y * (y * z - w * x) - command.z * (x * x + y * y);
-    let thrust = mass * (command.z + 2.0 / attitude.norm_squared() * lean);
+    let thrust = mass * (command.z + 2.0 / length_squared(attitude) * lean);
     if thrust < floor { floor } else { thrust }
 }
 

@@ -19,7 +19,7 @@ pub mod waypoints;
 
 use crate::error::{InputError, ParameterError, Reason, require, require_finite};
 use crate::heading::Heading;
-use crate::state::{STATE_RANGE, check_vector};
+use crate::state::{STATE_RANGE, check_vector, sum_of_squares};
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a reference derivative's component, in its SI unit.
@@ -43,6 +43,13 @@ pub struct Reference {
 }
 
 impl Reference {
+    /// The sum of the squares of everything but the heading's direction, which is of unit length.
+    #[inline(always)]
+    pub(crate) fn squares(&self) -> f32 {
+        let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
+        sum_of_squares(&[&self.position, &self.velocity, &self.acceleration, &self.jerk, &self.snap, &turning])
+    }
+
     /// Checks that every field is finite and in range.
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vector(&self.position, STATE_RANGE, "reference.position")?;

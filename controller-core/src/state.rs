@@ -41,12 +41,24 @@ pub(crate) fn sum_of_squares(vectors: &[&Vector3<f32>]) -> f32 {
     vectors.iter().fold(0.0, |sum, v| sum + v.x * v.x + v.y * v.y + v.z * v.z)
 }
 
+/// |q|^2, summed in one order everywhere.
+#[inline(always)]
+pub(crate) fn length_squared(q: &Quaternion<f32>) -> f32 {
+    q.w * q.w + q.i * q.i + q.j * q.j + q.k * q.k
+}
+
 impl State {
+    /// The sum of the squares of everything but the attitude.
+    #[inline(always)]
+    pub(crate) fn squares(&self) -> f32 {
+        sum_of_squares(&[&self.position, &self.velocity, &self.angular_velocity])
+    }
+
     /// Whether the attitude is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
     #[inline(always)]
     pub(crate) fn has_unit_attitude(&self) -> bool {
         const SQUARE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
-        (self.attitude.norm_squared() - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
+        (length_squared(&self.attitude) - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
     }
 
     /// Checks every field, one by one.
@@ -72,4 +84,12 @@ pub struct Wrench {
     pub thrust: f32,
     /// Torque tau, N m, body frame.
     pub torque: Vector3<f32>,
+}
+
+impl Wrench {
+    /// The sum of all squares.
+    #[inline(always)]
+    pub(crate) fn squares(&self) -> f32 {
+        self.thrust * self.thrust + self.torque.norm_squared()
+    }
 }

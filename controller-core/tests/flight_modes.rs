@@ -118,6 +118,7 @@ fn without_a_ground_station_it_stops_and_holds_as_long_as_the_pose_lasts() {
     assert_eq!(later.mode, Mode::Holding);
     assert_eq!(later.flown.unwrap().unwrap().reference, still);
     assert!((flight.body.position - still.position.cast()).norm() < 0.02);
+    assert!(still.position.x < 25.0, "it went on to the setpoint: {}", still.position);
 
     flight.present.ground_station = true;
     let back = flight.tick();

@@ -54,6 +54,22 @@ fn no_number_in_any_field_reaches_the_motors_in_any_mode() {
     }
 }
 
+#[test]
+fn the_ends_of_the_clock_are_times_like_any_other() {
+    for start in [0, u64::MAX - 100 * PERIOD] {
+        let mut pilot = pilot();
+        pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(start) });
+        for tick in 1..=100 {
+            let outcome = pilot.tick(&at_rest(start + tick * PERIOD));
+            assert!(matches!(outcome.output, Output::Thrusts(_)) && outcome.mode == Mode::Flying);
+        }
+        let end = pilot.tick(&at_rest(u64::MAX));
+        assert!(matches!(end.output, Output::Thrusts(_)));
+        // A clock that runs back leaves measurements of a time to come, which nothing is flown by.
+        assert_eq!(pilot.tick(&at_rest(0)).output, Output::Stop);
+    }
+}
+
 /// Puts `number` into one of all the fields that hold numbers.
 fn spoil(inputs: &mut Inputs, field: usize, number: f32) {
     let (imu, pose) = (&mut inputs.imu.as_mut().unwrap().value, &mut inputs.pose.as_mut().unwrap().value);

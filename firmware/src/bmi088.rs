@@ -14,10 +14,10 @@
 //! read as a vehicle that does not turn. Every wait is bounded; what does not come in time is a [`Fault`]. After
 //! [`RESTART_AFTER`] faults in a row the next call powers the sensor up anew, which takes a tenth of a second.
 
+use crate::deadline;
 use crate::hardware::{Clock, Fault, Imu};
 use controller_core::flight::ImuSample;
 use core::future::Future;
-use embassy_futures::select::{Either, select};
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiDevice;
 use nalgebra::Vector3;
@@ -58,6 +58,9 @@ const GYROSCOPE_DATA: u8 = 0x02;
 const SOFT_RESET: u8 = 0xB6;
 const ACCELEROMETER_RESET: u8 = 0x7E;
 const GYROSCOPE_RESET: u8 = 0x14;
+
+/// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
+const POWER_TAKES: u64 = 1_000;
 
 /// After a reset: 1 ms for the accelerometer, 30 ms for the gyroscope, and a little more, us.
 const ACCELEROMETER_RESET_TAKES: u64 = 2_000;
@@ -126,6 +129,7 @@ impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Bmi088<A, G, P, C> {
     }
 
     async fn power_up(&mut self) -> Result<(), Fault> {
+        self.wait(POWER_TAKES).await;
         // The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns
         // it to SPI. What that access reads means nothing.
         self.accelerometer_register(CHIP_ID).await?;
@@ -207,12 +211,9 @@ impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Imu for Bmi088<A, G, P, C> {
     }
 }
 
-/// What `future` gives, if it gives it within `limit` us and without an error.
-async fn within<T, E>(clock: &impl Clock, limit: u64, future: impl Future<Output = Result<T, E>>) -> Result<T, Fault> {
-    match select(future, clock.until(clock.now() + limit)).await {
-        Either::First(result) => result.map_err(|_| Fault),
-        Either::Second(()) => Err(Fault),
-    }
+/// What an access comes to within `limit` us, all errors being alike.
+async fn within<T, E>(clock: &impl Clock, limit: u64, access: impl Future<Output = Result<T, E>>) -> Result<T, Fault> {
+    deadline::within(clock, limit, access).await?.map_err(|_| Fault)
 }
 
 fn expect(found: u8, wanted: u8) -> Result<(), Fault> {

@@ -91,9 +91,6 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn tell(&mut self, outcome: &Outcome, asked: Option<Asked>) {
         if let (Some(Asked { origin, .. }), Some(result)) = (asked, outcome.answer) {
             self.shared.answer(Answer { origin, result });
-            if let Err(refusal) = result {
-                self.shared.announce(Severity::Warning, refusal);
-            }
         }
         if let Some(transition) = outcome.transition {
             self.shared.announce(severity(transition.reason), transition.reason);

@@ -1,7 +1,8 @@
 //! The IMU task: each sample as it comes, at 1 kHz, stamped with the time it was read.
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! The first fault after good samples, and the first good sample after faults, are events.
+//! While a simulator stands in for the sensors, what this one says counts for nothing. The first fault after good samples,
+//! and the first good sample after faults, are events.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu};
@@ -9,8 +10,9 @@ use crate::shared::{Severity, Shared};
 use controller_core::flight::ImuSample;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// How long a sample may keep us waiting, us: five periods.
-const PATIENCE: u64 = 5_000;
+/// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it, and is
+/// dropped half-way by less. How old a sample may be is none of this task's business.
+pub const PATIENCE: u64 = 200_000;
 
 /// How long to leave a faulty sensor alone, us.
 const RETRY: u64 = 1_000;
@@ -21,6 +23,7 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
     loop {
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         match sample {
+            Ok(_) if shared.hil.is_raised() => {}
             Ok(sample) => shared.imu.put(sample, clock.now()),
             Err(Fault) => clock.until(clock.now() + RETRY).await,
         }

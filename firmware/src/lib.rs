@@ -15,6 +15,7 @@
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
 //! | [`outputs`] | thrusts to motor commands |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
+//! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
 //!
@@ -38,5 +39,6 @@ pub mod imu;
 pub mod link;
 pub mod outputs;
 pub mod parameters;
+pub mod replay;
 pub mod shared;
 pub mod status;

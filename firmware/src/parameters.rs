@@ -8,6 +8,7 @@
 pub mod storage;
 pub mod table;
 
+use crate::shared::Decimal;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -45,7 +46,8 @@ pub struct OutOfRange(
 impl core::fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let row = self.0.row();
-        write!(f, "{}: allowed are {} to {} {}", row.name, row.least, row.most, row.unit)
+        let (least, most) = (Decimal(row.least), Decimal(row.most));
+        write!(f, "{}: allowed are {least} to {most} {}", row.name, row.unit)
     }
 }
 

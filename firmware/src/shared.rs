@@ -24,7 +24,7 @@ mod flag;
 mod latest;
 mod report;
 
-pub use event::{Event, Severity, Text};
+pub use event::{Decimal, Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use report::{Report, Timing, Traffic};

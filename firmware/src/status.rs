@@ -14,7 +14,7 @@ mod log;
 
 use crate::hardware::{Battery, Clock, Light};
 use crate::parameters::table::Name;
-use crate::shared::{Severity, Shared};
+use crate::shared::{Decimal, Severity, Shared};
 use controller_core::flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -50,7 +50,7 @@ pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
         Some(Mode::Flying) => true,
         Some(Mode::Holding) => step < 10,
         Some(Mode::Levelling) => step % 4 < 2,
-        None => step % 2 == 0,
+        None => step.is_multiple_of(2),
     }
 }
 
@@ -61,7 +61,7 @@ pub async fn run<M: RawMutex>(
     clock: &impl Clock,
     shared: &Shared<M>,
 ) -> ! {
-    let (mut step, mut reading, mut summary, mut warning) = (clock.now(), 0, 0, 0);
+    let (mut reading, mut summary, mut warning) = (0, 0, 0);
     loop {
         let now = clock.now();
         let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
@@ -78,8 +78,7 @@ pub async fn run<M: RawMutex>(
             log::summary(report.as_ref(), shared);
         }
         // By whole steps, so that the pattern does not drift through the second.
-        step = (step + STEP).max(clock.now());
-        clock.until(step).await;
+        clock.until((clock.now() / STEP + 1) * STEP).await;
     }
 }
 
@@ -94,6 +93,6 @@ async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, sh
     shared.voltage.put(voltage, now);
     if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
         *warning = now.saturating_add(WARNING_INTERVAL);
-        shared.announce(Severity::Warning, format_args!("Battery low: {voltage:.1} V"));
+        shared.announce(Severity::Warning, format_args!("Battery low: {} V", Decimal(voltage)));
     }
 }

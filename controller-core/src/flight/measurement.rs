@@ -16,6 +16,11 @@ pub const STAMP_LEAD_MAX: u64 = 1_000;
 /// The greatest body rate about an axis, rad/s: no gyro that flies measures more.
 pub const BODY_RATE_MAX: f32 = 100.0;
 
+/// Whether a time stamp can be of something that has happened.
+pub(super) fn is_in_time(time: u64, now: u64) -> bool {
+    time <= now.saturating_add(STAMP_LEAD_MAX)
+}
+
 /// Something measured that can be told to be usable.
 pub(super) trait Measurement: Copy {
     /// The name of its time stamp.
@@ -73,8 +78,7 @@ impl<T: Measurement> Newest<T> {
     pub fn offer(&mut self, offered: Option<Stamped<T>>, now: u64) -> Option<Stamped<T>> {
         let Stamped { value, time } =
             offered.filter(|offered| self.usable.as_ref().is_none_or(|kept| offered.time > kept.time))?;
-        let in_time = time <= now.saturating_add(STAMP_LEAD_MAX);
-        match if in_time { value.checked() } else { Err(T::TIME) } {
+        match if is_in_time(time, now) { value.checked() } else { Err(T::TIME) } {
             Ok(value) => *self = Self { usable: Some(Stamped { value, time }), unusable: None },
             Err(field) => {
                 self.unusable = Some(field);
@@ -84,9 +88,9 @@ impl<T: Measurement> Newest<T> {
         self.usable
     }
 
-    /// The newest usable one, if it is not older than `age_max`, us.
+    /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
     pub fn within(&self, age_max: u64, now: u64) -> Option<Stamped<T>> {
-        self.usable.filter(|kept| kept.age(now) <= age_max)
+        self.usable.filter(|kept| kept.age(now) <= age_max && is_in_time(kept.time, now))
     }
 
     /// The field for which the newest one offered cannot be used, if so.

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_rotation_is_followed_exactly_at_any_step() {
+    fn a_steady_rotation_is_followed_to_rounding_at_any_step() {
         for step in [500_u64, 10_000, 100_000, 500_000] {
             let omega = Vector3::new(3.0_f32, -2.0, 6.0);
             let mut propagated = PropagatedAttitude::new(LEVEL, omega, 0);
@@ -86,7 +86,7 @@ mod tests {
             let half = omega.cast::<f64>() * 0.5;
             let exact = Quaternion::from_parts(half.norm().cos(), half * (half.norm().sin() / half.norm()));
             let error = angle(&propagated.attitude(), &exact);
-            assert!(error < 2e-6, "{error} rad in steps of {step} us");
+            assert!(error < 1e-5, "{error} rad in steps of {step} us");
         }
     }
 
@@ -99,7 +99,7 @@ mod tests {
         // 5 rad/s^2 for 1 s.
         let exact = Quaternion::new(1.25_f64.cos(), 1.25_f64.sin(), 0.0, 0.0);
         let error = angle(&propagated.attitude(), &exact);
-        assert!(error < 2e-6, "{error} rad");
+        assert!(error < 1e-5, "{error} rad");
     }
 
     #[test]

@@ -6,16 +6,26 @@
 mod target {
     use defmt_rtt as _;
     use embassy_executor::{Executor, InterruptExecutor};
+    use embassy_futures::block_on;
     use embassy_stm32::interrupt;
     use embassy_stm32::interrupt::{InterruptExt, Priority};
+    use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use firmware::boards::crazyflie_bolt::{Board, BoardMotors, BoardWatchdog, NoBattery};
-    use firmware::boards::stm32::bring_up;
     use firmware::boards::stm32::clock::SystemClock;
     use firmware::boards::stm32::imu::BoardImu;
     use firmware::boards::stm32::light::Lamp;
-    use firmware::boards::stm32::link::Receiver;
+    use firmware::boards::stm32::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+    use firmware::boards::stm32::storage::{self, ParameterFlash};
+    use firmware::boot::Boot;
+    use firmware::control::Control;
+    use firmware::hil::{self, SelectedMotors};
+    use firmware::parameters::storage::Storage;
+    use firmware::{imu, link, status};
     use panic_probe as _;
     use static_cell::StaticCell;
+
+    type Shared = firmware::shared::Shared<CriticalSectionRawMutex>;
+    type Hil = hil::Hil<CriticalSectionRawMutex>;
 
     /// Control interrupts everything but the drivers' own interrupts.
     static CONTROL: InterruptExecutor = InterruptExecutor::new();
@@ -26,44 +36,84 @@ mod target {
     #[cortex_m_rt::entry]
     fn main() -> ! {
         let board = Board::take();
-        defmt::info!("{} on Crazyflie Bolt 1.1, started by {}", firmware::configuration::NAME, board.restart);
-
-        interrupt::UART4.set_priority(Priority::P6);
-        let spawner = CONTROL.start(interrupt::UART4);
-        spawner.spawn(defmt::unwrap!(control(board.motors, board.watchdog)));
-
-        interrupt::UART5.set_priority(Priority::P7);
-        let spawner = SENSOR.start(interrupt::UART5);
-        spawner.spawn(defmt::unwrap!(imu(board.imu)));
+        defmt::info!("started by {} on Crazyflie Bolt 1.1", board.restart);
+        static SHARED: StaticCell<Shared> = StaticCell::new();
+        let shared = SHARED.init_with(Shared::new);
+        static HIL: StaticCell<Hil> = StaticCell::new();
+        let hil = HIL.init_with(Hil::new);
+        let parameters = Storage::new(board.storage, 0..storage::SIZE);
+        let mut parameters = defmt::unwrap!(parameters.map_err(|_| "the parameters' sectors are no storage"));
+        block_on(parameters.load(&SystemClock, shared));
+        static BOOT: StaticCell<Boot> = StaticCell::new();
+        let boot = BOOT.init_with(|| defmt::unwrap!(Boot::new(&shared.parameters)));
 
         // The controllers have power for as long as these are held: for ever.
         let _power = board.power;
 
+        interrupt::UART4.set_priority(Priority::P6);
+        let spawner = CONTROL.start(interrupt::UART4);
+        spawner.spawn(defmt::unwrap!(control(shared, hil, boot, board.motors, board.watchdog)));
+
+        interrupt::UART5.set_priority(Priority::P7);
+        let spawner = SENSOR.start(interrupt::UART5);
+        spawner.spawn(defmt::unwrap!(sample(shared, board.imu)));
+
         static THREAD: StaticCell<Executor> = StaticCell::new();
         THREAD.init(Executor::new()).run(|spawner| {
-            spawner.spawn(defmt::unwrap!(link(board.receiver)));
-            spawner.spawn(defmt::unwrap!(status(board.light, board.battery)));
+            spawner.spawn(defmt::unwrap!(receive(shared, board.receiver)));
+            spawner.spawn(defmt::unwrap!(transmit(shared, board.transmitter)));
+            spawner.spawn(defmt::unwrap!(simulated_sensors(shared, hil, board.simulator_receiver)));
+            spawner.spawn(defmt::unwrap!(simulated_motors(shared, hil, board.simulator_transmitter)));
+            spawner.spawn(defmt::unwrap!(show(shared, board.light, board.battery)));
+            spawner.spawn(defmt::unwrap!(keep(shared, parameters)));
         })
     }
 
     #[embassy_executor::task]
-    async fn control(motors: BoardMotors, watchdog: BoardWatchdog) {
-        bring_up::hold_stop(SystemClock, motors, watchdog).await;
+    async fn control(
+        shared: &'static Shared,
+        hil: &'static Hil,
+        boot: &'static mut Boot,
+        pins: BoardMotors,
+        mut watchdog: BoardWatchdog,
+    ) {
+        let mut motors = SelectedMotors { pins, hil, wanted: &shared.hil, clock: SystemClock };
+        Control::new(shared, &mut boot.pilot, &boot.outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]
-    async fn imu(imu: BoardImu) {
-        bring_up::watch_imu(SystemClock, imu).await;
+    async fn sample(shared: &'static Shared, mut sensor: BoardImu) {
+        imu::run(shared, &SystemClock, &mut sensor).await;
     }
 
     #[embassy_executor::task]
-    async fn link(receiver: Receiver) {
-        bring_up::count_bytes(SystemClock, receiver).await;
+    async fn receive(shared: &'static Shared, line: Receiver) {
+        link::receive::receive(line, &SystemClock, shared).await;
     }
 
     #[embassy_executor::task]
-    async fn status(light: Lamp, battery: NoBattery) {
-        bring_up::blink(SystemClock, light, battery).await;
+    async fn transmit(shared: &'static Shared, line: Transmitter) {
+        link::transmit::transmit(line, &SystemClock, shared).await;
+    }
+
+    #[embassy_executor::task]
+    async fn simulated_sensors(shared: &'static Shared, hil: &'static Hil, line: SimulatorReceiver) {
+        hil::receive(hil, line, &SystemClock, shared).await;
+    }
+
+    #[embassy_executor::task]
+    async fn simulated_motors(shared: &'static Shared, hil: &'static Hil, line: SimulatorTransmitter) {
+        hil::transmit(hil, line, &SystemClock, shared).await;
+    }
+
+    #[embassy_executor::task]
+    async fn show(shared: &'static Shared, light: Lamp, battery: NoBattery) {
+        status::run(light, battery, &SystemClock, shared).await;
+    }
+
+    #[embassy_executor::task]
+    async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
+        storage.keep(&SystemClock, shared).await;
     }
 
     #[interrupt]

@@ -5,7 +5,7 @@ use core::cell::{Cell, RefCell};
 use core::convert::Infallible;
 use core::future::{pending, ready};
 use embassy_futures::block_on;
-use embedded_hal_async::spi::{ErrorType, Operation};
+use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation};
 use std::rc::Rc;
 
 /// A clock on which waiting costs nothing and moves time.
@@ -22,7 +22,7 @@ impl Clock for Jumping {
     }
 }
 
-/// One write, as the bus saw it.
+/// One write that a device heard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Written {
     time: u64,
@@ -45,6 +45,7 @@ struct Registers {
     asleep: bool,
     stuck: Option<u8>,
     hangs: bool,
+    fails: bool,
 }
 
 impl Device {
@@ -53,8 +54,17 @@ impl Device {
         values[usize::from(CHIP_ID)] = id;
         let clock = clock.clone();
         let asleep = dummy > 0;
-        let registers =
-            Registers { values, clock, written: Vec::new(), dummy, reset, asleep, stuck: None, hangs: false };
+        let registers = Registers {
+            values,
+            clock,
+            written: Vec::new(),
+            dummy,
+            reset,
+            asleep,
+            stuck: None,
+            hangs: false,
+            fails: false,
+        };
         Self(Rc::new(RefCell::new(registers)))
     }
 
@@ -70,11 +80,14 @@ impl Registers {
         let [address, data @ ..] = bytes else { return };
         let register = *address & !READ;
         if *address & READ == 0 {
+            if asleep {
+                return;
+            }
             let value = data[0];
             self.written.push(Written { time: self.clock.now(), register, value });
             if register == self.reset && value == SOFT_RESET {
                 self.asleep = self.dummy > 0;
-            } else if !asleep {
+            } else {
                 self.values[usize::from(register)] = value;
             }
             return;
@@ -87,11 +100,14 @@ impl Registers {
 }
 
 impl ErrorType for Device {
-    type Error = Infallible;
+    type Error = ErrorKind;
 }
 
 impl SpiDevice for Device {
-    async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+    async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        if self.0.borrow().fails {
+            return Err(ErrorKind::Other);
+        }
         if self.0.borrow().hangs {
             pending::<()>().await;
         }
@@ -184,10 +200,18 @@ fn power_up_writes_the_data_sheets_registers_in_order() {
 fn power_up_waits_as_long_as_the_devices_need() {
     let mut bench = bench(Mounting::Aligned);
     bench.sample().unwrap();
+    assert!(bench.accelerometer.0.borrow().written[0].time >= 1_000);
     assert!(pause_after(&bench.accelerometer, ACCELEROMETER_RESET) >= 1_000);
     assert!(pause_after(&bench.accelerometer, 0x7C) >= 5_000);
     assert!(pause_after(&bench.accelerometer, 0x7D) >= 50_000);
     assert!(pause_after(&bench.gyroscope, GYROSCOPE_RESET) >= 30_000);
+}
+
+#[test]
+fn power_up_ends_before_the_task_loses_patience() {
+    let mut bench = bench(Mounting::Aligned);
+    bench.sample().unwrap();
+    assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
 }
 
 #[test]
@@ -239,6 +263,17 @@ fn another_chips_identity_is_a_fault() {
     let mut other = bench(Mounting::Aligned);
     other.gyroscope.load(CHIP_ID, &[0x0E]);
     assert_eq!(other.sample(), Err(Fault));
+}
+
+#[test]
+fn a_bus_that_fails_at_once_leaves_time_for_other_tasks() {
+    let mut other = bench(Mounting::Aligned);
+    other.accelerometer.0.borrow_mut().fails = true;
+    for _ in 0..100 {
+        let before = other.clock.now();
+        assert_eq!(other.sample(), Err(Fault));
+        assert!(other.clock.now() - before >= 1_000);
+    }
 }
 
 #[test]

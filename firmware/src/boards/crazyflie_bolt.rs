@@ -1,6 +1,7 @@
 //! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
 //!
 //! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice that.
+//! Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no RAM).
 //! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
 //! restarts.
 
@@ -8,7 +9,7 @@ use super::stm32::clock::SystemClock;
 use super::stm32::fault;
 use super::stm32::imu::{self, BoardImu};
 use super::stm32::light::Lamp;
-use super::stm32::link::{self, Receiver, Transmitter};
+use super::stm32::link::{self, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart::{self, Cause};
 use super::stm32::storage::ParameterFlash;
@@ -19,12 +20,12 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3};
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
-use embassy_stm32::usart::Uart;
+use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
 
 bind_interrupts!(
@@ -38,6 +39,7 @@ bind_interrupts!(
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         USART2 => usart::InterruptHandler<USART2>;
+        USART3 => usart::BufferedInterruptHandler<USART3>;
     }
 );
 
@@ -71,6 +73,10 @@ pub struct Board {
     pub receiver: Receiver,
     /// What USART2 sends.
     pub transmitter: Transmitter,
+    /// What USART3 receives from a simulator.
+    pub simulator_receiver: SimulatorReceiver,
+    /// What USART3 sends to a simulator.
+    pub simulator_transmitter: SimulatorTransmitter,
     /// Where parameters live.
     pub storage: ParameterFlash,
     /// Why the chip started.
@@ -88,6 +94,11 @@ impl Board {
     pub fn take() -> Self {
         let restart = restart::cause();
         let p = embassy_stm32::init(clocks());
+        pac::FLASH.acr().modify(|w| {
+            w.set_prften(true);
+            w.set_icen(true);
+            w.set_dcen(true);
+        });
 
         // The motors first: PA15 is pulled up until here, and the controllers must not see that.
         let pins = Pins(
@@ -113,6 +124,10 @@ impl Board {
         let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
         let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
         let (receiver, transmitter) = link::halves(uart);
+        let (to, from) = link::simulator_rings();
+        let uart = BufferedUart::new(p.USART3, p.PC11, p.PC10, to, from, Interrupts, link::config());
+        let uart = defmt::unwrap!(uart.map_err(|_| "USART3's clock makes no 921,600 baud"));
+        let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
         Self {
             clock: SystemClock,
@@ -123,6 +138,8 @@ impl Board {
             light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
             receiver,
             transmitter,
+            simulator_receiver,
+            simulator_transmitter,
             storage: ParameterFlash::new(p.FLASH, pac::IWDG),
             restart,
             power,

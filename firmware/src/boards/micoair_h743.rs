@@ -9,7 +9,7 @@ use super::stm32::clock::SystemClock;
 use super::stm32::fault;
 use super::stm32::imu::{self, BoardImu};
 use super::stm32::light::Lamp;
-use super::stm32::link::{self, Receiver, Transmitter};
+use super::stm32::link::{self, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart::{self, Cause};
 use super::stm32::storage::ParameterFlash;
@@ -21,12 +21,14 @@ use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, IWDG1, PC0, TIM1, USART1};
+use embassy_stm32::peripherals::{
+    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, IWDG1, PC0, TIM1, USART1, USART2,
+};
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
-use embassy_stm32::usart::Uart;
+use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
 
 bind_interrupts!(
@@ -40,6 +42,7 @@ bind_interrupts!(
         DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         USART1 => usart::InterruptHandler<USART1>;
+        USART2 => usart::BufferedInterruptHandler<USART2>;
     }
 );
 
@@ -73,6 +76,10 @@ pub struct Board {
     pub receiver: Receiver,
     /// What USART1 sends.
     pub transmitter: Transmitter,
+    /// What USART2 receives from a simulator.
+    pub simulator_receiver: SimulatorReceiver,
+    /// What USART2 sends to a simulator.
+    pub simulator_transmitter: SimulatorTransmitter,
     /// Where parameters live.
     pub storage: ParameterFlash,
     /// Why the chip started.
@@ -110,6 +117,10 @@ impl Board {
         let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
         let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));
         let (receiver, transmitter) = link::halves(uart);
+        let (to, from) = link::simulator_rings();
+        let uart = BufferedUart::new(p.USART2, p.PA3, p.PA2, to, from, Interrupts, link::config());
+        let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+        let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
         Self {
             clock: SystemClock,
@@ -120,6 +131,8 @@ impl Board {
             light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
             receiver,
             transmitter,
+            simulator_receiver,
+            simulator_transmitter,
             storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
             restart,
         }

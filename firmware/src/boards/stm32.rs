@@ -1,6 +1,5 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers.
 
-pub mod bring_up;
 pub mod clock;
 pub mod fault;
 pub mod imu;

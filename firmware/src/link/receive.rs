@@ -108,7 +108,8 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
         match frame.message {
             HEARTBEAT_DATA::ID => self.heartbeat(frame),
-            ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID => self.pose(frame),
+            // In a simulation the simulator says where the vehicle is.
+            ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.setpoint(frame),
             COMMAND_LONG_DATA::ID => self.command(frame),
             ping::ID => self.ping(frame),

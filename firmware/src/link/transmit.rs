@@ -7,8 +7,9 @@ use super::reply::{CommandResult, Reply};
 use super::{COMPONENT, ping, telemetry};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Answer, Event, Origin, Severity, Shared, Text};
-use embassy_futures::select::{Either4, select, select4};
+use crate::shared::{Answer, Event, Origin, Report, Severity, Shared, Text};
+use controller_core::flight::Stamped;
+use embassy_futures::select::{select, select4};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
@@ -25,161 +26,181 @@ const LIST_INTERVAL: u64 = 20_000;
 /// The greatest age of a report that is still sent, and of a voltage, us.
 const REPORT_AGE_MAX: u64 = 1_000_000;
 
-/// Transmits for ever.
-pub async fn transmit<W: Write, M: RawMutex>(line: W, clock: &impl Clock, shared: &Shared<M>) -> ! {
-    let mut transmitter = Transmitter { line, clock, shared, sequence: 0, told: 0 };
-    let mut schedule = Schedule::new(clock.now());
+/// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other from
+/// being sent, however slow the line.
+pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    let mut speaker = Speaker::new(shared, clock.now());
     loop {
-        let (replies, answers, events) = (&shared.replies, &shared.answers, &shared.events);
-        match select4(clock.until(schedule.next()), replies.receive(), answers.receive(), events.receive()).await {
-            Either4::First(()) => transmitter.scheduled(&mut schedule).await,
-            Either4::Second(Reply::AllParameters) => schedule.list = Some((0, clock.now())),
-            Either4::Second(reply) => transmitter.reply(reply).await,
-            Either4::Third(answer) => transmitter.answer(answer).await,
-            Either4::Fourth(event) => transmitter.send(&telemetry::text(&event)).await,
+        let mut silent = true;
+        for turn in [Speaker::scheduled, Speaker::queued] {
+            if turn(&mut speaker, clock.now()) {
+                silent = false;
+                write(&mut line, clock, speaker.frame()).await;
+            }
+        }
+        if silent {
+            let due = clock.until(speaker.schedule.next());
+            let (answers, events, replies) = (&shared.answers, &shared.events, &shared.replies);
+            select4(due, answers.ready_to_receive(), events.ready_to_receive(), replies.ready_to_receive()).await;
         }
     }
 }
 
+/// Writes a frame in its time or gives it up: what is out of it by then, its receiver takes for noise.
+async fn write<W: Write>(line: &mut W, clock: &impl Clock, frame: &[u8]) {
+    let end = clock.now().saturating_add(WRITE_TIME_MAX);
+    let all = async {
+        let mut rest = frame;
+        while let Ok(count @ 1..) = line.write(rest).await {
+            rest = rest.get(count..).unwrap_or(&[]);
+            if rest.is_empty() {
+                break;
+            }
+        }
+    };
+    select(all, clock.until(end)).await;
+}
+
 /// When what is due, us.
 struct Schedule {
+    attitude: u64,
+    position: u64,
     heartbeat: u64,
-    state: u64,
+    status: u64,
     /// The next of a list of parameters.
     list: Option<(usize, u64)>,
 }
 
 impl Schedule {
-    fn new(now: u64) -> Self {
-        Self { heartbeat: now, state: now, list: None }
-    }
-
     fn next(&self) -> u64 {
-        self.list.map_or(u64::MAX, |(_, time)| time).min(self.heartbeat).min(self.state)
+        let list = self.list.map_or(u64::MAX, |(_, time)| time);
+        list.min(self.attitude).min(self.position).min(self.heartbeat).min(self.status)
     }
 }
 
-/// The time after `due` by whole intervals that lies after `now`: a late transmission does not bring a burst of others.
-fn following(due: u64, interval: u64, now: u64) -> u64 {
-    let next = due.saturating_add(interval);
-    if next > now { next } else { now.saturating_add(interval) }
+/// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
+fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
+    let has_come = now >= *due;
+    if has_come {
+        let next = due.saturating_add(interval);
+        *due = if next > now { next } else { now.saturating_add(interval) };
+    }
+    has_come
 }
 
-/// Writes messages.
-struct Transmitter<'a, W: Write, C: Clock, M: RawMutex> {
-    line: W,
-    clock: &'a C,
+/// Finds what to say next and puts it into a frame. Nothing here waits, so there is one future for all messages.
+struct Speaker<'a, M: RawMutex> {
     shared: &'a Shared<M>,
+    schedule: Schedule,
+    /// The frame to write.
+    buffer: [u8; FRAME_MAX],
+    length: usize,
     sequence: u8,
     /// Lost events that were told of.
     told: u32,
 }
 
-impl<W: Write, C: Clock, M: RawMutex> Transmitter<'_, W, C, M> {
-    /// Sends what is due by now.
-    async fn scheduled(&mut self, schedule: &mut Schedule) {
-        let now = self.clock.now();
-        if now >= schedule.state {
-            // Within 10 and 50 Hz, as the table has it.
-            let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
-            schedule.state = following(schedule.state, interval, now);
-            self.state(now).await;
-        }
-        if now >= schedule.heartbeat {
-            schedule.heartbeat = following(schedule.heartbeat, HEARTBEAT_INTERVAL, now);
-            self.heartbeat(now).await;
-        }
-        if let Some((index, time)) = schedule.list.filter(|&(_, time)| now >= time) {
+impl<'a, M: RawMutex> Speaker<'a, M> {
+    fn new(shared: &'a Shared<M>, now: u64) -> Self {
+        let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, list: None };
+        Self { shared, schedule, buffer: [0; FRAME_MAX], length: 0, sequence: 0, told: 0 }
+    }
+
+    fn frame(&self) -> &[u8] {
+        self.buffer.get(..self.length).unwrap_or(&[])
+    }
+
+    /// Puts the first message that is due into the frame; whether there is one.
+    fn scheduled(&mut self, now: u64) -> bool {
+        // Within 10 and 50 Hz, as the table has it.
+        let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
+        let report = self.shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
+        if comes(&mut self.schedule.attitude, interval, now)
+            && let Some(attitude) = report.as_ref().and_then(telemetry::attitude)
+        {
+            self.put(&attitude);
+        } else if comes(&mut self.schedule.position, interval, now)
+            && let Some(position) = report.as_ref().and_then(telemetry::position)
+        {
+            self.put(&position);
+        } else if comes(&mut self.schedule.heartbeat, HEARTBEAT_INTERVAL, now) {
+            let mode = report.map(|report| report.value.mode);
+            self.put(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
+        } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
+            self.status(report.as_ref(), now);
+        } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
+            comes(&mut time, LIST_INTERVAL, now);
             let name = Name::from_index(index);
-            schedule.list = name.map(|_| (index + 1, following(time, LIST_INTERVAL, now)));
-            if let Some(name) = name {
-                self.parameter(name).await;
-            }
+            self.schedule.list = name.map(|_| (index + 1, time));
+            let Some(name) = name else { return false };
+            self.parameter(name);
+        } else {
+            return false;
         }
+        true
     }
 
-    async fn state(&mut self, now: u64) {
-        let Some(report) = self.shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX) else { return };
-        if let Some(attitude) = telemetry::attitude(&report) {
-            self.send(&attitude).await;
-        }
-        if let Some(position) = telemetry::position(&report) {
-            self.send(&position).await;
-        }
-    }
-
-    async fn heartbeat(&mut self, now: u64) {
+    /// Puts the next thing that was asked for into the frame, what the vehicle decided first; whether there is one.
+    fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
-        let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX).map(|report| report.value);
-        let mode = report.map(|report| report.mode);
-        self.send(&telemetry::heartbeat(mode, shared.hil.is_raised())).await;
-        let voltage = shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
-        let traffic = shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
-        self.send(&telemetry::status(voltage.map(|voltage| voltage.value), report.as_ref(), traffic)).await;
-        let lost = shared.lost_events();
-        if lost != self.told {
-            let text = Text::new(format_args!("{} events lost", lost.wrapping_sub(self.told)));
-            self.told = lost;
-            self.send(&telemetry::text(&Event { severity: Severity::Warning, text })).await;
-        }
-    }
-
-    async fn reply(&mut self, reply: Reply) {
-        match reply {
-            Reply::Command { origin, result } => self.acknowledge(&origin, result).await,
-            Reply::Ping { time, sequence, system, component } => {
-                self.send(&ping::answer(time, sequence, system, component)).await;
+        if let Ok(Answer { origin, result }) = shared.answers.try_receive() {
+            let result = if result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
+            self.acknowledge(&origin, result);
+        } else if let Ok(event) = shared.events.try_receive() {
+            self.put(&telemetry::text(&event));
+        } else if shared.lost_events() != self.told {
+            self.lost(shared.lost_events());
+        } else if let Ok(reply) = shared.replies.try_receive() {
+            match reply {
+                Reply::Command { origin, result } => self.acknowledge(&origin, result),
+                Reply::Ping { time, sequence, system, component } => {
+                    self.put(&ping::answer(time, sequence, system, component));
+                }
+                Reply::Parameter(name) => self.parameter(name),
+                Reply::AllParameters => {
+                    self.schedule.list = Some((0, now));
+                    return false;
+                }
             }
-            Reply::Parameter(name) => self.parameter(name).await,
-            // Sent by the schedule.
-            Reply::AllParameters => {}
+        } else {
+            return false;
         }
+        true
     }
 
-    async fn answer(&mut self, answer: Answer) {
-        let result = if answer.result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
-        self.acknowledge(&answer.origin, result).await;
+    fn status(&mut self, report: Option<&Stamped<Report>>, now: u64) {
+        let voltage = self.shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
+        let traffic = self.shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
+        let report = report.map(|report| &report.value);
+        self.put(&telemetry::status(voltage.map(|voltage| voltage.value), report, traffic));
     }
 
-    async fn parameter(&mut self, name: Name) {
+    fn lost(&mut self, lost: u32) {
+        let text = Text::new(format_args!("{} events lost", lost.wrapping_sub(self.told)));
+        self.told = lost;
+        self.put(&telemetry::text(&Event { severity: Severity::Warning, text }));
+    }
+
+    fn parameter(&mut self, name: Name) {
         let value = self.shared.parameters.get(name);
-        self.send(&telemetry::parameter(name, value)).await;
+        self.put(&telemetry::parameter(name, value));
     }
 
-    async fn acknowledge(&mut self, origin: &Origin, result: CommandResult) {
-        let payload = telemetry::acknowledgement(origin, result);
+    fn acknowledge(&mut self, origin: &Origin, result: CommandResult) {
         let (message, extra_crc) = telemetry::ACKNOWLEDGEMENT;
-        let mut buffer = [0; FRAME_MAX];
+        let payload = telemetry::acknowledgement(origin, result);
         let header = self.header();
-        let frame = encode_payload(header, message, extra_crc, &payload, &mut buffer);
-        self.write(frame).await;
+        self.length = encode_payload(header, message, extra_crc, &payload, &mut self.buffer).len();
     }
 
-    async fn send<D: MessageData>(&mut self, message: &D) {
-        let mut buffer = [0; FRAME_MAX];
+    fn put<D: MessageData>(&mut self, message: &D) {
         let header = self.header();
-        self.write(encode(header, message, &mut buffer)).await;
+        self.length = encode(header, message, &mut self.buffer).len();
     }
 
     fn header(&mut self) -> Header {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
         Header { system: self.shared.parameters.get(Name::SystemId) as u8, component: COMPONENT, sequence }
-    }
-
-    /// Writes one frame in its time or gives it up: what is out of it by then, its receiver takes for noise.
-    async fn write(&mut self, frame: &[u8]) {
-        let end = self.clock.now().saturating_add(WRITE_TIME_MAX);
-        let line = &mut self.line;
-        let all = async {
-            let mut rest = frame;
-            while let Ok(count @ 1..) = line.write(rest).await {
-                rest = rest.get(count..).unwrap_or(&[]);
-                if rest.is_empty() {
-                    break;
-                }
-            }
-        };
-        let _ = select(all, self.clock.until(end)).await;
     }
 }

@@ -32,6 +32,22 @@ impl fmt::Write for Text {
     }
 }
 
+/// A number as people write it, with one decimal; at most 2e8 in size. (The formatting of floats in `core` takes 11 KB of
+/// flash.)
+#[derive(Debug, Clone, Copy)]
+pub struct Decimal(
+    /// The number.
+    pub f32,
+);
+
+impl fmt::Display for Decimal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let tenths = (self.0.abs() * 10.0 + 0.5) as u32;
+        let sign = if self.0 < 0.0 { "-" } else { "" };
+        write!(f, "{sign}{}.{}", tenths / 10, tenths % 10)
+    }
+}
+
 /// How much it matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]

@@ -1,4 +1,4 @@
-//! The log: one line a second and one for each event. On boards only; a desktop has the events themselves.
+//! The log: a few lines a second and one for each event. On boards only; a desktop has the events themselves.
 
 use crate::shared::{Event, Report, Shared};
 use controller_core::flight::Stamped;
@@ -36,6 +36,19 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
         let p = state.position;
         let angles = super::euler(&state.attitude);
         defmt::info!("at {=f32} {=f32} {=f32} m, {} degrees", p.x, p.y, p.z, angles);
+    }
+    if let Some(sample) = shared.imu.get() {
+        let (rate, force) = (sample.value.angular_velocity, sample.value.specific_force);
+        defmt::info!(
+            "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u64} ms old",
+            rate.x,
+            rate.y,
+            rate.z,
+            force.x,
+            force.y,
+            force.z,
+            time.saturating_sub(sample.time) / 1000
+        );
     }
     if let Some(voltage) = shared.voltage.get() {
         defmt::info!("battery {=f32} V", voltage.value);

@@ -73,23 +73,6 @@ fn a_delay_holds_rotors_back_as_well() {
     assert!(!still(9) && still(10));
 }
 
-#[test]
-fn rotor_speeds_follow_the_closed_form_exactly() {
-    let setup = setup(LAG);
-    let mut rotors = SpinningRotors::hovering(&setup, HOVER, STEP);
-    let start: Vec<f64> = rotors.speeds().map(|(speed, _)| *speed).collect();
-    rotors.command(&[1.0, 2.0, 3.0, 2.0]);
-    for step in 1..=200_u32 {
-        rotors.advance();
-        let left = (-f64::from(step) * STEP / LAG).exp();
-        for ((speed, command), start) in rotors.speeds().zip(&start) {
-            let exact = command + (start - command) * left;
-            // Two hundred products, each rounded.
-            assert!((speed - exact).abs() < 1e-13 * 200.0 * exact, "step {step}: {speed} {exact}");
-        }
-    }
-}
-
 /// Velocity gained in 50 ms of a thrust step, less the closed form's, relative to the latter.
 fn thrust_error(step: f64) -> f64 {
     let mut plant = plant(step);

@@ -61,7 +61,7 @@ fn a_place_where_the_governor_cannot_start_is_blamed_by_name() {
     let mut pilot = Pilot::new(Ok(&example::certified()), GovernorLimits::default());
     let chain = pilot.chain.as_mut().unwrap();
     let far = chain.start(Vector3::repeat(1e8), &crate::heading::Heading::FORWARD).unwrap_err();
-    assert_eq!(super::super::reason::blamed(far), "initial.position");
+    assert_eq!(blamed(far), "initial.position");
 }
 
 #[test]

@@ -4,30 +4,45 @@
 //! instruction is 1.6 ticks. The counter finds that out by itself, on a loop whose instructions are known, and so serves
 //! any shift. A difference of two readings is off by less than a tick, 0.6 instructions.
 //!
-//! The register holds 24 bits, 10 million instructions. [`Counter::long`] counts its wraps in an exception, whose handler
-//! is counted too: about ten instructions in ten million.
+//! The register holds 24 bits, 10 million instructions. [`Counter::long`] reads the board's timer 1 instead, which counts at
+//! the same rate and holds 32 bits, 2.7 thousand million.
 
 use core::arch::asm;
-use core::sync::atomic::{AtomicU32, Ordering, compiler_fence};
+use core::sync::atomic::{Ordering, compiler_fence};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m_rt::exception;
 
 const RELOAD: u32 = 0x00FF_FFFF;
-const PERIOD: u64 = RELOAD as u64 + 1;
 /// Iterations of the calibration loop, of two instructions each.
 const CALIBRATION: u32 = 100_000;
 
-static WRAPS: AtomicU32 = AtomicU32::new(0);
+/// Timer 1 (CMSDK APB timer), counting down from the top of its range.
+mod timer {
+    const CONTROL: *mut u32 = 0x4000_1000 as *mut u32;
+    const VALUE: *mut u32 = 0x4000_1004 as *mut u32;
+    const RELOAD: *mut u32 = 0x4000_1008 as *mut u32;
+    const ENABLE: u32 = 1 << 0;
 
-#[exception]
-fn SysTick() {
-    WRAPS.fetch_add(1, Ordering::Relaxed);
+    /// Starts it from the top.
+    pub fn start() {
+        // SAFETY: these are the timer's registers, and only this module touches them.
+        unsafe {
+            CONTROL.write_volatile(0);
+            RELOAD.write_volatile(u32::MAX);
+            VALUE.write_volatile(u32::MAX);
+            CONTROL.write_volatile(ENABLE);
+        }
+    }
+
+    /// Ticks since it was started.
+    pub fn elapsed() -> u32 {
+        // SAFETY: as above; reading changes nothing.
+        u32::MAX - unsafe { VALUE.read_volatile() }
+    }
 }
 
 /// SysTick, free-running, and what it needs to be read as instructions.
 pub struct Counter {
-    syst: SYST,
     /// Ticks that an empty window takes.
     overhead: u32,
     ticks_per_instruction: f64,
@@ -40,7 +55,7 @@ impl Counter {
         syst.set_reload(RELOAD);
         syst.clear_current();
         syst.enable_counter();
-        let mut counter = Self { syst, overhead: 0, ticks_per_instruction: 0.0 };
+        let mut counter = Self { overhead: 0, ticks_per_instruction: 0.0 };
         counter.overhead = counter.window(|| ()).0;
         let (first, second) = (counter.window(known_loop).0, counter.window(known_loop).0);
         counter.ticks_per_instruction = f64::from(first - counter.overhead) / f64::from(2 * CALIBRATION);
@@ -59,16 +74,11 @@ impl Counter {
         (f64::from(ticks.saturating_sub(self.overhead)) / self.ticks_per_instruction, result)
     }
 
-    /// Instructions of `work`, however many, and what it returned.
-    pub fn long<R>(&mut self, work: impl FnOnce() -> R) -> (f64, R) {
-        self.syst.clear_current();
-        WRAPS.store(0, Ordering::Relaxed);
-        self.syst.enable_interrupt();
-        let (ticks, result) = self.window(work);
-        self.syst.disable_interrupt();
-        // The window's difference is that of the remainders: a wrap more than the readings show is in `WRAPS`.
-        let ticks = u64::from(WRAPS.load(Ordering::Relaxed)) * PERIOD + u64::from(ticks);
-        (ticks as f64 / self.ticks_per_instruction, result)
+    /// Instructions of `work`, up to 2.7 thousand million, and what it returned.
+    pub fn long<R>(&self, work: impl FnOnce() -> R) -> (f64, R) {
+        timer::start();
+        let result = work();
+        (f64::from(timer::elapsed()) / self.ticks_per_instruction, result)
     }
 
     #[inline(always)]

@@ -3,9 +3,9 @@
 use crate::body;
 use crate::counter::Counter;
 use crate::stack;
-use controller_core::allocation::Mixer;
+use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
-use controller_core::controller::Controller;
+use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
@@ -49,31 +49,33 @@ impl Cost {
     }
 }
 
-/// The measured call: state and reference in, wrench out.
-type Step = fn(&mut Controller, &State, &Reference) -> Result<Wrench, InputError>;
+/// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
+type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
-fn wrench_only(controller: &mut Controller, state: &State, reference: &Reference) -> Result<Wrench, InputError> {
-    controller.step(state, reference).map(|(wrench, _)| wrench)
-}
+type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let code = if measure() { EXIT_SUCCESS } else { EXIT_FAILURE };
     debug::exit(code);
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
     hprintln!("{}", info);
     debug::exit(EXIT_FAILURE);
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 /// Everything, as a table; whether it could be measured at all.
 fn measure() -> bool {
     let counter = cortex_m::Peripherals::take().and_then(|peripherals| Counter::start(peripherals.SYST));
-    let Some(mut counter) = counter else {
+    let Some(counter) = counter else {
         hprintln!("time does not follow instructions here: run QEMU with -icount shift=6");
         return false;
     };
@@ -81,7 +83,7 @@ fn measure() -> bool {
         hprintln!("{}: the embedded configuration is refused", configuration::NAME);
         return false;
     };
-    let Ok(certified) = certified(&mut counter, &embedded) else {
+    let Ok(certified) = certified(&counter, &embedded) else {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return false;
     };
@@ -93,11 +95,12 @@ fn measure() -> bool {
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@480MHz");
     let mut flight = Flight { controller: &mut controller, mixer: &mixer, certified: &certified, counter: &counter };
-    let Some(cost) = flight.fly(on(&circle), &circle, &mut allocation) else { return false };
+    let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
+    let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
     allocation.print("allocation, circle");
     let mut recovering = Cost::default();
-    let Some(cost) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
+    let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
     if !govern(&counter, &embedded, &mut governing) {
@@ -110,7 +113,7 @@ fn measure() -> bool {
 
 /// Certifies `configuration`, measured.
 #[allow(clippy::result_large_err)] // the core's own error
-fn certified(counter: &mut Counter, configuration: &Configuration) -> Result<Certified, Refused> {
+fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certified, Refused> {
     type Certify = fn(Configuration) -> Result<Certified, Refused>;
     let certify: Certify = black_box(Certified::new);
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
@@ -135,22 +138,23 @@ struct Flight<'a> {
 
 impl Flight<'_> {
     /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
-    fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<Cost> {
-        let step: Step = black_box(wrench_only);
-        let allocate = black_box(Mixer::allocate);
+    fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
+        let step: Step = black_box(Controller::command);
+        let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, wrench) = self.counter.short(|| step(self.controller, &state, &reference));
+            let (instructions, command) = self.counter.short(|| step(self.controller, &state, &reference));
             cost.add(instructions);
-            let wrench = wrench.ok()?;
+            let wrench = command.ok()?.wrench;
             let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
             allocation.add(instructions);
             let achieved = allocated.ok()?.achieved;
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
         }
-        Some(cost)
+
+        Some((state, cost))
     }
 }
 
@@ -194,7 +198,7 @@ fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
     let Ok(mut governor) = Governor::new(*configuration.bounds(), GovernorLimits::default(), PERIOD, &start) else {
         return false;
     };
-    let tick = black_box(Governor::tick);
+    let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
     for number in 0..6000_u32 {
         if number % 1000 == 0 {
             let away = if number % 2000 == 0 { 3.0 } else { 0.0 };

@@ -5,9 +5,9 @@
 //! broken is used: no heap, no executor, no DMA, no interrupt, only the motors' timer, whose registers say themselves
 //! whether they were ever set up.
 //!
-//! What the controllers see: the frame that was going out is cut and discarded by its checksum; ten stop frames follow, a
-//! quarter of a millisecond apart (three milliseconds in all), and then silence until the firmware runs again and sends stop
-//! frames. The stop frame is 16 zero bits, checksum included, so it needs no waveform: sixteen periods at the width of a zero.
+//! What the controllers see: the frame that was going out is cut and discarded by its checksum; ten stop frames follow
+//! within ten milliseconds, and then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero
+//! bits, checksum included, so it needs no waveform: sixteen periods at the width of a zero.
 //!
 //! What this does not reach: a core that cannot run any code (a stack that overflowed into the fault handler, a clock that
 //! failed). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first time, and the
@@ -25,8 +25,9 @@ const FRAMES: usize = 10;
 /// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the peripheral bus.
 const POLLS: usize = 10_000;
 
-/// Silence before each frame, cycles of a core at 400 MHz (0.25 ms; a slower core waits longer, up to 0.6 ms at 168 MHz).
-const SILENCE: u32 = 100_000;
+/// Silence before each frame, turns of an empty loop: at least 0.1 ms at one cycle a turn and 400 MHz, at most 0.8 ms at
+/// three cycles and 168 MHz.
+const SILENCE: u32 = 40_000;
 
 /// Sends stop frames on all four channels of `timer`, with interrupts off, and restarts the chip.
 pub fn stop_and_restart(timer: TimGp16) -> ! {
@@ -46,7 +47,8 @@ pub fn stop_and_restart(timer: TimGp16) -> ! {
 fn stop_frame(timer: TimGp16) -> Option<()> {
     let width = zero_width(timer.arr().read().arr() + 1);
     widths(timer, width);
-    // The widths take effect at an update: the first begins bit one, the last ends bit sixteen.
+    // Widths take effect at an update: the first update begins bit one, the seventeenth ends bit sixteen.
+    timer.sr().write(|w| w.0 = 0);
     timer.cr1().modify(|w| w.set_cen(true));
     for _ in 0..BITS {
         period_ends(timer)?;

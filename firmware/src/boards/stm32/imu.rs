@@ -19,8 +19,9 @@ type Device = SpiDevice<'static, CriticalSectionRawMutex, Bus, Output<'static>>;
 /// The sensor as the boards wire it.
 pub type BoardImu = Bmi088<Device, Device, ExtiInput<'static, Async>, SystemClock>;
 
-/// The sensor takes up to 10 MHz. The dividers make 6.25 MHz of this on the H743 and 5.25 MHz on the F405.
-const FREQUENCY: Hertz = Hertz(8_000_000);
+/// The sensor takes up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
+/// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
+const FREQUENCY: Hertz = Hertz(6_000_000);
 
 /// SPI mode 0, as the bus driver has it by default.
 #[must_use]

@@ -1,11 +1,13 @@
-//! The serial link to the ground station and the pose source: 921,600 baud, 8N1, DMA both ways.
+//! The serial lines, 921,600 baud, 8N1: the link to the ground station and the pose source, by DMA both ways, and the line
+//! to a simulator, by an interrupt for each byte, for want of free DMA channels; it is not used in flight.
 //!
 //! Reception runs on by itself into a ring that holds 22 ms of a full line; a line that falls idle wakes the reader at once,
 //! a busy one every half ring. A read that fails (noise, a ring overrun) loses what the ring held, and the next one starts
 //! reception again.
 
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::mode::Async;
-use embassy_stm32::usart::{Config, RingBufferedUartRx, Uart, UartTx};
+use embassy_stm32::usart::{BufferedUart, BufferedUartRx, BufferedUartTx, Config, RingBufferedUartRx, Uart, UartTx};
 use static_cell::StaticCell;
 
 /// Bytes that arrive, `embedded-io-async`'s `Read`.
@@ -14,14 +16,37 @@ pub type Receiver = RingBufferedUartRx<'static>;
 /// Bytes that leave, `embedded-io-async`'s `Write`.
 pub type Transmitter = UartTx<'static, Async>;
 
+/// Bytes that arrive from a simulator.
+pub type SimulatorReceiver = BufferedUartRx<'static>;
+
+/// Bytes that leave for a simulator.
+pub type SimulatorTransmitter = BufferedUartTx<'static>;
+
 /// Bytes of the ring.
 const RING: usize = 2048;
 
-/// 921,600 baud, eight bits, no parity, one stop bit.
+/// Bytes on their way to a simulator and from it: more than a tick's messages.
+const SIMULATOR_RING: usize = 512;
+
+/// Room for those bytes, in the order (to, from). Once.
+pub fn simulator_rings() -> (&'static mut [u8], &'static mut [u8]) {
+    static TO: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
+    static FROM: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
+    (TO.init([0; SIMULATOR_RING]), FROM.init([0; SIMULATOR_RING]))
+}
+
+/// The simulator's two halves, for two tasks.
+pub fn simulator_halves(uart: BufferedUart<'static>) -> (SimulatorReceiver, SimulatorTransmitter) {
+    let (transmitter, receiver) = uart.split();
+    (receiver, transmitter)
+}
+
+/// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: a line that nobody drives must not look like bytes.
 #[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.baudrate = 921_600;
+    config.rx_pull = Pull::Up;
     config
 }
 

@@ -124,5 +124,4 @@ pub fn rest(timer: TimGp16) {
         timer.ccr(channel).write(|w| w.set_ccr(0));
     }
     timer.egr().write(|w| w.set_ug(true));
-    timer.sr().write(|w| w.0 = 0);
 }

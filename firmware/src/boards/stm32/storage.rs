@@ -13,7 +13,7 @@ use embassy_stm32::peripherals::FLASH;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 
 /// Bytes of the two sectors.
-const SIZE: u32 = 2 * MAX_ERASE_SIZE as u32;
+pub const SIZE: u32 = 2 * MAX_ERASE_SIZE as u32;
 
 /// Where they start, from the start of the flash.
 const START: u32 = FLASH_SIZE as u32 - SIZE;
@@ -36,6 +36,20 @@ fn place(offset: u32, length: usize) -> Result<u32, Error> {
     let inside = usize::try_from(SIZE.saturating_sub(offset)).is_ok_and(|left| length <= left);
     if inside { Ok(START + offset) } else { Err(Error::Size) }
 }
+
+/// Empties the flash's data cache, which an erase leaves as it was. It may only be emptied while it is off.
+#[cfg(feature = "crazyflie-bolt")]
+fn forget_cached() {
+    let control = embassy_stm32::pac::FLASH.acr();
+    control.modify(|w| w.set_dcen(false));
+    control.modify(|w| w.set_dcrst(true));
+    control.modify(|w| w.set_dcrst(false));
+    control.modify(|w| w.set_dcen(true));
+}
+
+/// The core's data cache is off: nothing is held.
+#[cfg(feature = "micoair-h743")]
+fn forget_cached() {}
 
 impl ErrorType for ParameterFlash {
     type Error = Error;
@@ -61,7 +75,9 @@ impl NorFlash for ParameterFlash {
         let length = to.checked_sub(from).ok_or(Error::Size)?;
         let start = place(from, length as usize)?;
         let _patience = Patience::new(self.watchdog);
-        self.flash.blocking_erase(start, start + length)
+        let erased = self.flash.blocking_erase(start, start + length);
+        forget_cached();
+        erased
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {

@@ -1,0 +1,134 @@
+//! The paper's 40 s flight as one number: the same on every machine that computes the law to the same bits.
+//!
+//! The vehicle's states are given, recorded from host-sim's plant as single-precision bits. That is as good as flying the
+//! plant live, by induction: the first state is the same for all machines; as long as a machine's wrenches have had the same
+//! bits as those the plant was flown with, its next state would have had the same bits as the recorded one; and the first
+//! wrench that differs changes the number. The reference is not given: it is computed here, from integer time.
+//!
+//! What goes into the number, per tick, as little-endian single precision: thrust, torque, u_f, u_s, q_hat (scalar first)
+//! and m* as the controller keeps them after the tick, theta~, omega_d, omega_d'. The number is their SHA-256.
+//!
+//! Table I flies here and nowhere else in this crate: it does not survive a late sample.
+
+use controller_core::certificate::configuration::{Certified, Configuration};
+use controller_core::controller::Controller;
+use controller_core::error::InputError;
+use controller_core::gains::{GainParameters, Gains};
+use controller_core::reference::Trajectory;
+use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
+use controller_core::state::{State, Wrench};
+use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+use nalgebra::{Quaternion, Vector3};
+use sha2::{Digest, Sha256};
+
+/// Control ticks of the flight.
+pub const TICKS: u64 = 4000;
+
+/// Time between two of them, us.
+pub const PERIOD_US: u64 = 10_000;
+
+/// Single-precision numbers of one recorded state: p, v (world), q (scalar first), omega (body).
+pub const NUMBERS: usize = 13;
+
+/// Bytes of one recorded state.
+pub const RECORD: usize = 4 * NUMBERS;
+
+/// What the paper's Table I and Section VI say; `scenarios/paper.toml` has the same numbers.
+const VEHICLE: VehicleParameters =
+    VehicleParameters { mass: 0.46, inertia: Vector3::new(2.24e-3, 2.9e-3, 5.3e-3), gravity: 9.81 };
+const LIMITS: LimitParameters = LimitParameters { thrust_max: 7.0, torque_max: Vector3::new(0.5, 0.5, 0.5) };
+const TURN: f64 = 0.418_879_02;
+#[expect(clippy::approx_constant, reason = "the digits of scenarios/paper.toml")]
+const REFERENCE: HarmonicParameters = HarmonicParameters {
+    center: [-3.0, 1.0, 4.5],
+    amplitude: [1.0; 3],
+    frequency: [TURN; 3],
+    phase: [0.0, -1.570_796_33, 0.0],
+    heading: HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 3.141_592_65, frequency: TURN },
+};
+
+/// The flight, as far as it has been replayed.
+pub struct Replay {
+    controller: Controller,
+    reference: Harmonic,
+    hash: Sha256,
+    tick: u64,
+}
+
+impl Replay {
+    /// At the start; certifies Table I. None if that fails, which no machine that computes right sees.
+    #[must_use]
+    pub fn new() -> Option<Self> {
+        let vehicle = Vehicle::new(VEHICLE).ok()?;
+        let limits = Limits::new(LIMITS, &vehicle).ok()?;
+        let gains = Gains::new(GainParameters::TABLE_1, &vehicle).ok()?;
+        let reference = Harmonic::new(REFERENCE).ok()?;
+        let configuration = Configuration::new(vehicle, limits, gains, reference.bounds()).ok()?;
+        let certified = Certified::new(configuration).ok()?;
+        let controller = Controller::new(&certified, PERIOD_US as f32 * 1e-6).ok()?;
+        Some(Self { controller, reference, hash: Sha256::new(), tick: 0 })
+    }
+
+    /// One tick at a recorded state. Returns the wrench.
+    ///
+    /// # Errors
+    /// The law's own, for a state that it cannot use.
+    pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<Wrench, InputError> {
+        let (wrench, diagnostics) = self.controller.step(&state(record), &self.reference.at(self.tick * PERIOD_US))?;
+        self.tick += 1;
+        let memory = self.controller.memory();
+        self.add(&[wrench.thrust]);
+        self.add(wrench.torque.as_slice());
+        self.add(memory.filter.filtered.as_slice());
+        self.add(memory.filter.intermediate.as_slice());
+        if let Some(lift) = memory.lift {
+            let Quaternion { coords } = lift.memory;
+            self.add(&[coords.w, coords.x, coords.y, coords.z, lift.sign]);
+        }
+        self.add(diagnostics.mrp.as_slice());
+        self.add(diagnostics.desired_angular_velocity.as_slice());
+        self.add(diagnostics.desired_angular_acceleration.as_slice());
+        Ok(wrench)
+    }
+
+    fn add(&mut self, numbers: &[f32]) {
+        for number in numbers {
+            self.hash.update(number.to_le_bytes());
+        }
+    }
+
+    /// The number, as 64 hexadecimal digits.
+    #[must_use]
+    pub fn digest(self) -> heapless::String<64> {
+        const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
+        let nibbles = self.hash.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        nibbles.map(|nibble| DIGITS[usize::from(nibble)]).collect()
+    }
+}
+
+/// A state as it is recorded.
+#[must_use]
+pub fn record(state: &State) -> [u8; RECORD] {
+    let State { position: p, velocity: v, attitude: q, angular_velocity: w } = state;
+    let numbers: [f32; NUMBERS] = [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z];
+    let mut bytes = [0; RECORD];
+    for (place, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+        place.copy_from_slice(&number.to_le_bytes());
+    }
+    bytes
+}
+
+/// The state that `record` holds.
+fn state(record: &[u8; RECORD]) -> State {
+    let mut numbers = [0.0; NUMBERS];
+    for (number, bytes) in numbers.iter_mut().zip(record.chunks_exact(4)) {
+        *number = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    }
+    let [px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz] = numbers;
+    State {
+        position: Vector3::new(px, py, pz),
+        velocity: Vector3::new(vx, vy, vz),
+        attitude: Quaternion::new(qw, qx, qy, qz),
+        angular_velocity: Vector3::new(wx, wy, wz),
+    }
+}

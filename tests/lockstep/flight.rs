@@ -1,0 +1,110 @@
+//! One flight: the firmware's tasks, the vehicle and the people, all on one simulated clock.
+
+use crate::clock::SimClock;
+use crate::line::Line;
+use crate::station::Station;
+use crate::world::{SimImu, SimMotors, SimWatchdog, World};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use firmware::boot::Boot;
+use firmware::control::Control;
+use firmware::hardware::Clock;
+use firmware::shared::{Report, Shared};
+use firmware::{configuration, imu, link};
+use futures::executor::LocalPool;
+use futures::task::LocalSpawnExt;
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// Time between poses, us.
+const POSE_PERIOD: u64 = 10_000;
+
+/// A flight under way.
+pub struct Flight {
+    pool: LocalPool,
+    clock: SimClock,
+    pub world: World,
+    pub station: Station,
+    pub shared: &'static Shared<CriticalSectionRawMutex>,
+    poses: Rc<Cell<bool>>,
+}
+
+impl Flight {
+    /// Boots the firmware on a vehicle that stands on the ground, with poses and heartbeats coming in.
+    pub fn boot() -> Self {
+        let pool = LocalPool::new();
+        let spawner = pool.spawner();
+        let clock = SimClock::default();
+        // As long as the program: what tasks share is static on a board as well.
+        let shared: &'static Shared<CriticalSectionRawMutex> = Box::leak(Box::new(Shared::new()));
+        let world = World::new(&clock, &configuration::embedded().unwrap());
+        let (up, down) = (Line::default(), Line::default());
+        let station = Station::new(&clock, up.clone(), down.clone());
+
+        let boot = Box::leak(Box::new(Boot::new(&shared.parameters).unwrap()));
+        let (vehicle, time) = (world.clone(), clock.clone());
+        let control = async move {
+            let mut control = Control::new(shared, &mut boot.pilot, &boot.outputs);
+            control.run(&time, &mut SimMotors(vehicle.clone()), &mut SimWatchdog(vehicle)).await;
+        };
+        spawner.spawn_local(control).unwrap();
+        let (vehicle, time) = (world.clone(), clock.clone());
+        spawner.spawn_local(async move { imu::run(shared, &time, &mut SimImu(vehicle)).await }).unwrap();
+        let time = clock.clone();
+        spawner.spawn_local(async move { link::receive::receive(up, &time, shared).await }).unwrap();
+        let time = clock.clone();
+        spawner.spawn_local(async move { link::transmit::transmit(down, &time, shared).await }).unwrap();
+
+        let poses = Rc::new(Cell::new(true));
+        spawner.spawn_local(world.clone().run()).unwrap();
+        spawner.spawn_local(station.clone().run()).unwrap();
+        spawner.spawn_local(send_poses(clock.clone(), world.clone(), station.clone(), Rc::clone(&poses))).unwrap();
+        Self { pool, clock, world, station, shared, poses }
+    }
+
+    /// Lets time pass, s.
+    pub fn pass(&mut self, seconds: f64) {
+        let end = self.clock.now() + (seconds * 1e6).round() as u64;
+        self.clock.run(&mut self.pool, end);
+    }
+
+    /// The time, us.
+    pub fn now(&self) -> u64 {
+        self.clock.now()
+    }
+
+    /// Lets poses come in, or not.
+    pub fn poses(&self, on: bool) {
+        self.poses.set(on);
+    }
+
+    /// The last tick's report.
+    pub fn report(&self) -> Report {
+        self.shared.report.get().unwrap().value
+    }
+
+    /// Boots, arms and goes up to 1 m.
+    pub fn in_the_air() -> Self {
+        let mut flight = Self::boot();
+        flight.pass(1.5);
+        flight.station.arm(true);
+        flight.pass(0.1);
+        assert!(flight.report().mode.is_armed(), "{:?}", flight.station.texts());
+        flight.station.go_to([0.0, 0.0, 1.0]);
+        flight.pass(12.0);
+        flight
+    }
+
+    /// How far the vehicle is from a point, m.
+    pub fn distance(&self, point: [f32; 3]) -> f32 {
+        (self.world.pose().position - nalgebra::Vector3::from(point)).norm()
+    }
+}
+
+async fn send_poses(clock: SimClock, world: World, station: Station, on: Rc<Cell<bool>>) {
+    loop {
+        if on.get() {
+            station.send(&Station::odometry(&world.pose()));
+        }
+        clock.until(clock.now() + POSE_PERIOD).await;
+    }
+}

@@ -1,0 +1,147 @@
+//! The vehicle as the firmware's peripherals meet it: rotors that lag, a body that falls, sensors and motors.
+
+use crate::clock::SimClock;
+use controller_core::allocation::Rotors;
+use controller_core::certificate::configuration::Configuration;
+use controller_core::flight::{ImuSample, Pose};
+use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, Watchdog};
+use host_sim::plant::{BodyState, Plant, attitude_from_euler};
+use nalgebra::Vector3;
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+/// Integration step, us; also the IMU's period.
+pub const STEP: u64 = 1_000;
+
+/// First-order lag of the rotors' speeds, s: that of vehicles/study.toml, which is what the firmware embeds.
+const LAG: f64 = 0.030;
+
+/// Everything outside the processor; clones are the same world.
+#[derive(Clone)]
+pub struct World(Rc<Inner>);
+
+struct Inner {
+    clock: SimClock,
+    body: RefCell<Body>,
+    /// The last command, and when it was written.
+    command: Cell<(MotorCommand, u64)>,
+    /// When the watchdog was last fed.
+    fed: Cell<u64>,
+}
+
+struct Body {
+    configuration: Configuration,
+    plant: Plant,
+    rotors: Rotors,
+    /// Speed of a full command, rad/s.
+    greatest: f64,
+    speeds: [f64; MOTORS],
+}
+
+/// The rigid body at `state`.
+fn body(configuration: &Configuration, state: BodyState) -> Plant {
+    Plant::new(configuration.vehicle(), configuration.limits(), STEP as f64 * 1e-6, state)
+}
+
+impl World {
+    /// A vehicle standing on level ground at the origin, heading along world x.
+    pub fn new(clock: &SimClock, configuration: &Configuration) -> Self {
+        let rotors = configuration.rotors().unwrap().clone();
+        let still = Vector3::zeros();
+        let attitude = attitude_from_euler(0.0, 0.0, 0.0);
+        let state = BodyState { position: still, velocity: still, attitude, angular_velocity: still };
+        let plant = body(configuration, state);
+        let greatest = f64::from(rotors[0].speed_at(rotors[0].thrust_max));
+        let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS] };
+        let command = Cell::new((MotorCommand::Stop, 0));
+        Self(Rc::new(Inner { clock: clock.clone(), body: RefCell::new(body), command, fed: Cell::new(0) }))
+    }
+
+    /// Moves for ever, a step at a time.
+    pub async fn run(self) {
+        loop {
+            let clock = &self.0.clock;
+            clock.until(clock.now() + STEP).await;
+            let command = self.command();
+            self.0.body.borrow_mut().step(command);
+        }
+    }
+
+    /// Position, velocity and attitude as a motion capture system would give them.
+    pub fn pose(&self) -> Pose {
+        let state = self.0.body.borrow().plant.state().measured();
+        Pose { position: state.position, velocity: state.velocity, attitude: state.attitude }
+    }
+
+    /// What the motors were last told.
+    pub fn command(&self) -> MotorCommand {
+        self.0.command.get().0
+    }
+
+    /// When the watchdog was last fed, us.
+    pub fn fed(&self) -> u64 {
+        self.0.fed.get()
+    }
+}
+
+impl Body {
+    fn step(&mut self, command: MotorCommand) {
+        let wanted = match command {
+            MotorCommand::Stop => [0.0; MOTORS],
+            MotorCommand::Run(commands) => commands.map(|command| f64::from(command) * self.greatest),
+            MotorCommand::One { motor, level } => {
+                std::array::from_fn(|index| if index == motor { f64::from(level) * self.greatest } else { 0.0 })
+            }
+        };
+        let (mut thrust, mut torque) = (0.0, Vector3::zeros());
+        for (((speed, wanted), rotor), column) in
+            self.speeds.iter_mut().zip(wanted).zip(self.rotors.iter()).zip(self.rotors.effectiveness())
+        {
+            *speed += (wanted - *speed) * (1.0 - (-1e-6 * STEP as f64 / LAG).exp());
+            let force = f64::from(rotor.thrust_coefficient) * *speed * *speed;
+            thrust += force;
+            torque += Vector3::new(column.y, column.z, column.w) * force;
+        }
+        // The ground holds what does not pull upwards, and stops what comes down: enough for a take-off and a fall.
+        let before = *self.plant.state();
+        self.plant.act(thrust, &torque);
+        let after = self.plant.state();
+        if after.position.z <= 0.0 && after.velocity.z <= 0.0 {
+            let position = Vector3::new(before.position.x, before.position.y, 0.0);
+            let still = Vector3::zeros();
+            let state = BodyState { position, velocity: still, attitude: before.attitude, angular_velocity: still };
+            self.plant = body(&self.configuration, state);
+        }
+    }
+}
+
+/// The board's IMU: a sample at each step.
+pub struct SimImu(pub World);
+
+impl Imu for SimImu {
+    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+        let clock = &self.0.0.clock;
+        clock.until((clock.now() / STEP + 1) * STEP).await;
+        let angular_velocity = self.0.0.body.borrow().plant.state().measured().angular_velocity;
+        Ok(ImuSample { angular_velocity, specific_force: Vector3::new(0.0, 0.0, 9.81) })
+    }
+}
+
+/// The board's motor outputs.
+pub struct SimMotors(pub World);
+
+impl Motors for SimMotors {
+    async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
+        self.0.0.command.set((command, self.0.0.clock.now()));
+        Ok(())
+    }
+}
+
+/// The board's watchdog.
+pub struct SimWatchdog(pub World);
+
+impl Watchdog for SimWatchdog {
+    fn feed(&mut self) {
+        self.0.0.fed.set(self.0.0.clock.now());
+    }
+}
