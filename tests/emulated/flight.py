@@ -98,7 +98,7 @@ def failing_pose(machine):
         station.until("disarmed", lambda: not station.armed, 2.0)
         lost, stopped = station.heard("Pose lost"), station.heard("Stopped: no pose")
         print(f"    stopped {stopped - lost:.2f} s after the pose was given up, by telemetry")
-        station.wait(1.0)
+        station.wait_for_heartbeats(2)
         rig.land()
         rig.check_pace()
     # By the simulator's record. The last pose answers the last command before `stops` and is true a tick later.

@@ -67,3 +67,35 @@ impl SpinningRotors {
         (thrust, torque)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::allocation::QuadX;
+
+    const STEP: f64 = 1e-3;
+    const HOVER: f32 = 0.5 * 9.81;
+    const LAG: f64 = 0.03;
+
+    fn setup() -> RotorSetup {
+        let (thrust_coefficient, drag_coefficient) = (5.57e-6, 1.36e-7);
+        let quad = QuadX { arm: 0.17, thrust_coefficient, drag_coefficient, speed_min: 0.0, speed_max: 1500.0 };
+        RotorSetup { rotors: Rotors::quad_x(quad).unwrap(), lag: LAG }
+    }
+
+    #[test]
+    fn rotor_speeds_follow_the_closed_form_exactly() {
+        let mut rotors = SpinningRotors::hovering(&setup(), HOVER, STEP);
+        let start: Vec<f64> = rotors.speeds.iter().map(|(speed, _)| *speed).collect();
+        rotors.command(&[2.2, 1.9, 2.0, 1.8]);
+        for step in 1..=200_u32 {
+            rotors.advance();
+            let left = (-f64::from(step) * STEP / LAG).exp();
+            for ((speed, command), start) in rotors.speeds.iter().zip(&start) {
+                let exact = command + (start - command) * left;
+                // Two hundred products, each rounded.
+                assert!((speed - exact).abs() < 1e-13 * 200.0 * exact, "step {step}: {speed} {exact}");
+            }
+        }
+    }
+}

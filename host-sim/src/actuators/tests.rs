@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::plant::BodyState;
-use controller_core::allocation::geometry::QuadX;
+use controller_core::allocation::{QuadX, Rotors};
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Quaternion;
 
@@ -71,23 +71,6 @@ fn a_delay_holds_rotors_back_as_well() {
         plant.state().velocity.z.abs() < 1e-5
     };
     assert!(!still(9) && still(10));
-}
-
-#[test]
-fn rotor_speeds_follow_the_closed_form_exactly() {
-    let setup = setup(LAG);
-    let mut rotors = RotorDynamics::new(&setup, HOVER, STEP);
-    let start: Vec<f64> = rotors.speeds.iter().map(|(speed, _)| *speed).collect();
-    rotors.command(&wrench(8.0, 0.05, -0.03, 0.01)).unwrap();
-    for step in 1..=200_u32 {
-        rotors.advance();
-        let left = (-f64::from(step) * STEP / LAG).exp();
-        for ((speed, command), start) in rotors.speeds.iter().zip(&start) {
-            let exact = command + (start - command) * left;
-            // Two hundred products, each rounded.
-            assert!((speed - exact).abs() < 1e-13 * 200.0 * exact, "step {step}: {speed} {exact}");
-        }
-    }
 }
 
 /// Velocity gained in 50 ms of a thrust step, less the closed form's, relative to the latter.

@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn a_command_left_out_is_missed_and_a_late_one_is_not() {
         let mut pace = Pace::new(10_000);
-        [0, 10_400, 20_000, 40_000].map(|time| pace.take(time));
+        [0, 10_400, 20_000, 40_000].into_iter().for_each(|time| pace.take(time));
         assert_eq!((pace.ticks(), pace.missed(), pace.jitter()), (4, 1, 10_000));
     }
 }

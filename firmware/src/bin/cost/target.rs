@@ -87,14 +87,16 @@ fn measure() -> bool {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return false;
     };
-    let Ok(mut controller) = Controller::new(&certified, PERIOD) else { return false };
+    let Ok(controller) = Controller::new(&certified, PERIOD) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
+    let plain = embedded.with_gains(*embedded.gains()).ok().and_then(|plain| Certified::new(plain).ok());
+    let Some(plain) = plain.and_then(|plain| Controller::new(&plain, PERIOD).ok()) else { return false };
     let mixer = Mixer::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@480MHz");
-    let mut flight = Flight { controller: &mut controller, mixer: &mixer, certified: &certified, counter: &counter };
+    let mut flight = Flight { controller, mixer: &mixer, certified: &certified, counter: &counter };
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
@@ -103,10 +105,14 @@ fn measure() -> bool {
     let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
+    let mut flight = Flight { controller: plain, ..flight };
+    let Some((_, cost)) = flight.fly(settled, &circle, &mut Cost::default()) else { return false };
+    cost.print("step, circle, the paper's T = m |u|");
     if !govern(&counter, &embedded, &mut governing) {
         return false;
     }
     governing.print("governor tick");
+    hprintln!("times: at one instruction a cycle, which no processor promises");
     hprintln!("one instruction is {} ticks of SysTick", counter.ticks_per_instruction());
     true
 }
@@ -119,18 +125,15 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certifi
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
     let copy = configuration.clone();
     let (instructions, certified) = counter.long(|| certify(copy));
-    hprintln!(
-        "certificate: {:.0} instructions, {} B of stack, result {} B",
-        instructions,
-        bytes,
-        size_of::<Certified>()
-    );
+    let [bolt, h743] = CLOCKS.map(|clock| instructions / clock * 1e-6);
+    hprintln!("certificate: {:.0} instructions, {:.2} s at 168 MHz, {:.2} s at 480 MHz", instructions, bolt, h743);
+    hprintln!("             {} B of stack beside the result's {} B", bytes, size_of::<Certified>());
     certified
 }
 
 /// A flight under the law, with what it needs.
 struct Flight<'a> {
-    controller: &'a mut Controller,
+    controller: Controller,
     mixer: &'a Mixer,
     certified: &'a Certified,
     counter: &'a Counter,
@@ -145,7 +148,7 @@ impl Flight<'_> {
         self.controller.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, command) = self.counter.short(|| step(self.controller, &state, &reference));
+            let (instructions, command) = self.counter.short(|| step(&mut self.controller, &state, &reference));
             cost.add(instructions);
             let wrench = command.ok()?.wrench;
             let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
