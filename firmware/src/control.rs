@@ -27,7 +27,7 @@ const WRITING_MAX: u64 = 2_000;
 pub struct Control<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     pilot: &'a mut Pilot,
-    outputs: &'a Outputs,
+    outputs: Outputs,
     timing: Timing,
     /// What the last tick had to complain about: said when it changes, not a hundred times a second.
     complaint: Complaint,
@@ -43,7 +43,7 @@ struct Complaint {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
-    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: &'a Outputs) -> Self {
+    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
         Self { shared, pilot, outputs, timing: Timing::default(), complaint: Complaint::default() }
     }
 

@@ -5,13 +5,13 @@ use crate::line::Line;
 use crate::station::Station;
 use crate::world::{SimImu, SimMotors, SimWatchdog, World};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use firmware::boot::Boot;
 use firmware::control::Control;
 use firmware::hardware::Clock;
 use firmware::shared::{Report, Shared};
-use firmware::{configuration, imu, link};
+use firmware::{boot, configuration, imu, link};
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
+use static_cell::StaticCell;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -40,10 +40,10 @@ impl Flight {
         let (up, down) = (Line::default(), Line::default());
         let station = Station::new(&clock, up.clone(), down.clone());
 
-        let boot = Box::leak(Box::new(Boot::new(&shared.parameters).unwrap()));
+        let (pilot, outputs) = boot::start(Box::leak(Box::new(StaticCell::new())), &shared.parameters).unwrap();
         let (vehicle, time) = (world.clone(), clock.clone());
         let control = async move {
-            let mut control = Control::new(shared, &mut boot.pilot, &boot.outputs);
+            let mut control = Control::new(shared, pilot, outputs);
             control.run(&time, &mut SimMotors(vehicle.clone()), &mut SimWatchdog(vehicle)).await;
         };
         spawner.spawn_local(control).unwrap();
