@@ -35,18 +35,18 @@ fn worst_tilt(flight: &mut Flight, seconds: f64) -> f32 {
 fn a_pose_lost_at_speed_is_levelled_and_then_stopped() {
     let mut flight = lost_on_the_way();
     let (last, leaning) = (flight.now(), flight.world.tilt());
-    assert!(leaning > 0.02, "{leaning}: nothing to level");
-    worst_tilt(&mut flight, 0.13);
+    assert!(leaning > 0.2, "{leaning}: nothing to level");
+    let early = worst_tilt(&mut flight, 0.5);
     assert_eq!(flight.report().mode, Mode::Levelling);
-    // Level by gyro alone, whatever it was leaning for.
-    flight.pass(0.6);
-    let worst = worst_tilt(&mut flight, 1.0);
-    assert!(worst < 0.01, "{worst} rad");
+    // These gains take 0.5 s to bring it upright, and then overshoot by a third.
+    let late = worst_tilt(&mut flight, 1.0);
+    assert!(early < leaning + 0.02, "{leaning} {early} rad");
+    assert!(late < 0.5 * leaning, "{leaning} {late} rad");
     let stopped = flight.now() - last;
     assert!(stopped.abs_diff(POSE_AGE_MAX + LEVELLING_MAX) <= 2 * TICK, "{stopped} us");
-    // It has kept its speed and its height until then: level, at hover thrust.
+    // Hover thrust has kept its height, and nothing has braked it.
     let pose = flight.world.pose();
-    assert!(pose.velocity.x > 1.5, "{}", pose.velocity);
+    assert!((2.0..3.5).contains(&pose.velocity.x), "{}", pose.velocity);
     assert!((pose.position.z - 1.0).abs() < 0.2, "{}", pose.position);
     flight.pass(0.5);
     assert!(flight.station.heard("Stopped: no pose").is_some());
@@ -64,12 +64,11 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         let after = worst_tilt(&mut flight, 10.0);
         assert_eq!(flight.report().mode, Mode::Flying);
         assert!(flight.station.heard("Pose regained").is_some());
-        println!("{seconds} s: {before} {after} rad");
-        assert!(before.max(after) < 0.5, "{before} {after} rad");
+        assert!(before.max(after) < 0.26, "{before} {after} rad");
         // The old way is forgotten: it stands where braking took it.
         let pose = flight.world.pose();
-        assert!(pose.velocity.norm() < 0.02, "{}", pose.velocity);
+        assert!(pose.velocity.norm() < 0.05, "{}", pose.velocity);
         assert!((0.0..8.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
-        assert!((pose.position.z - 1.0).abs() < 0.3, "{}", pose.position);
+        assert!((pose.position.z - 1.0).abs() < 0.5, "{}", pose.position);
     }
 }
