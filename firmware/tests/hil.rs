@@ -2,12 +2,12 @@
 
 mod support;
 
-use controller_core::flight::{ImuSample, Mode, PERIOD, Request};
+use controller_core::flight::{ImuSample, Mode, PERIOD, Pilot, Request};
 use core::cell::{Cell, RefCell};
 use core::future::pending;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
-use firmware::boot::Boot;
+use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, Watchdog};
 use firmware::hil::{self, SelectedMotors};
@@ -19,6 +19,7 @@ use mavlink::dialects::common::{
     ODOMETRY_DATA,
 };
 use nalgebra::Vector3;
+use static_cell::StaticCell;
 use support::line::{Delivery, Incoming, Line, Outgoing};
 use support::receiver::{Fed, Local};
 use support::{Simulated, patched, v2};
@@ -258,11 +259,12 @@ impl Watchdog for Bench {
 #[test]
 fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
-    let mut boot = Boot::new(&shared.parameters).unwrap();
+    static PILOT: StaticCell<Pilot> = StaticCell::new();
+    let (pilot, outputs) = boot::start(&PILOT, &shared.parameters).unwrap();
     let mut pins = Pins::default();
     let mut motors = SelectedMotors { pins: &mut pins, hil: &hil, wanted: &shared.hil, clock: Simulated::default() };
     let still = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() * 9.81 };
-    let mut control = Control::new(&shared, &mut boot.pilot, &boot.outputs);
+    let mut control = Control::new(&shared, pilot, outputs);
     clock.run(100_000, control.run(&clock, &mut motors, &mut Bench), |now| {
         if shared.hil.is_raised() {
             return;
