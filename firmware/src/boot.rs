@@ -12,33 +12,44 @@ use controller_core::error::ParameterError;
 use controller_core::flight::Pilot;
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use static_cell::StaticCell;
 
-/// What control flies with.
-pub struct Boot {
-    /// Decides.
-    pub pilot: Pilot,
-    /// Turns its thrusts into motor commands.
-    pub outputs: Outputs,
+/// Certifies the embedded configuration, logs every margin, and makes a pilot of it, certified or grounded, in the place
+/// that is meant for it; with it comes what turns its thrusts into motor commands.
+///
+/// # Errors
+/// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
+pub fn start<M: RawMutex>(
+    place: &'static StaticCell<Pilot>,
+    parameters: &Parameters<M>,
+) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
+    let outputs = Outputs::new(configuration::embedded()?.rotors().ok_or(configuration::NO_ROTORS)?)?;
+    let certification = certify();
+    let limits = GovernorLimits {
+        horizontal_speed: parameters.get(Name::HorizontalSpeed),
+        vertical_speed: parameters.get(Name::VerticalSpeed),
+        ..GovernorLimits::default()
+    };
+    Ok((pilot(place, certification.as_ref(), limits), outputs))
 }
 
-impl Boot {
-    /// Certifies the embedded configuration, logs every margin, and makes a pilot of it, certified or grounded.
-    ///
-    /// # Errors
-    /// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
-    #[inline(never)]
-    pub fn new<M: RawMutex>(parameters: &Parameters<M>) -> Result<Self, ParameterError> {
-        let configuration = configuration::embedded()?;
-        let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?)?;
-        let certification = Certified::new(configuration);
-        log(&certification);
-        let limits = GovernorLimits {
-            horizontal_speed: parameters.get(Name::HorizontalSpeed),
-            vertical_speed: parameters.get(Name::VerticalSpeed),
-            ..GovernorLimits::default()
-        };
-        Ok(Self { pilot: Pilot::new(certification.as_ref(), limits), outputs })
-    }
+// The two that follow need most of the stack, one after the other: neither may become part of the other's frame.
+
+#[allow(clippy::result_large_err)] // the core's own error, once, on the ground
+#[inline(never)]
+fn certify() -> Result<Certified, Refused> {
+    let certification = configuration::embedded().map_err(Refused::Undefined).and_then(Certified::new);
+    log(&certification);
+    certification
+}
+
+#[inline(never)]
+fn pilot(
+    place: &'static StaticCell<Pilot>,
+    certification: Result<&Certified, &Refused>,
+    limits: GovernorLimits,
+) -> &'static mut Pilot {
+    place.init_with(|| Pilot::new(certification, limits))
 }
 
 /// Every inequality that decides, with its margin, and the verdict.

@@ -18,6 +18,7 @@ use controller_core::error::InputError;
 use controller_core::flight::rules::{IMU_AGE_MAX, POSE_AGE_MAX};
 use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Reason, Refusal};
 use controller_core::state::State;
+use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// How long the motors' frame may take to write, us.
@@ -27,8 +28,10 @@ const WRITING_MAX: u64 = 2_000;
 pub struct Control<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     pilot: &'a mut Pilot,
-    outputs: &'a Outputs,
+    outputs: Outputs,
     timing: Timing,
+    /// Whether sensors and motors are a simulator's, as the last tick found it.
+    simulated: bool,
     /// What the last tick had to complain about: said when it changes, not a hundred times a second.
     complaint: Complaint,
 }
@@ -43,8 +46,8 @@ struct Complaint {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
-    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: &'a Outputs) -> Self {
-        Self { shared, pilot, outputs, timing: Timing::default(), complaint: Complaint::default() }
+    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
+        Self { shared, pilot, outputs, timing: Timing::default(), simulated: false, complaint: Complaint::default() }
     }
 
     /// Runs for ever.
@@ -75,14 +78,16 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.outputs.command(&outcome.output)
     }
 
-    fn inputs(&self, now: u64, asked: Option<Asked>) -> Inputs {
+    fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs {
+        // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once more.
+        let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
             imu: self.shared.imu.get(),
             pose: self.shared.pose.get(),
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
-            disarm: self.shared.disarm.take(),
+            disarm: self.shared.disarm.take() || handed_over,
             setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),
         }
     }

@@ -13,10 +13,10 @@
 //! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in between: an
 //! emulated processor stays awake for it, a real one need not ask.
 //!
-//! What an answer says is true one tick after the command whose time it carries, and that is its time stamp. It carries a
-//! time that the vehicle itself has sent, so no clock but the vehicle's makes anything fresh; times to come are refused.
+//! What an answer says is true one tick after the command whose time it carries, and that is its time stamp. Times after
+//! that of the last command are refused, so no clock but the vehicle's makes anything fresh.
 
-use crate::deadline::within;
+use crate::deadline::{send, within};
 use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors};
 use crate::link::COMPONENT;
@@ -57,15 +57,18 @@ pub struct Hil<M: RawMutex> {
 #[derive(Clone, Copy)]
 struct State {
     active: bool,
-    /// When the command was given that has no answer yet, us.
-    unanswered: Option<u64>,
+    /// When the last command was given, us.
+    commanded: u64,
+    /// Whether it has no answer yet.
+    awaiting: bool,
 }
 
 impl<M: RawMutex> Hil<M> {
     /// No simulator yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { state: Mutex::new(Cell::new(State { active: false, unanswered: None })), outgoing: Signal::new() }
+        let state = State { active: false, commanded: 0, awaiting: false };
+        Self { state: Mutex::new(Cell::new(state)), outgoing: Signal::new() }
     }
 
     /// Whether the simulator has sensors and motors.
@@ -77,20 +80,25 @@ impl<M: RawMutex> Hil<M> {
     /// Whether a command is on its way that the simulator has not answered.
     #[must_use]
     pub fn awaiting(&self) -> bool {
-        self.state.lock(Cell::get).unanswered.is_some()
-    }
-
-    fn update(&self, change: impl FnOnce(State) -> State) {
-        self.state.lock(|cell| cell.set(change(cell.get())));
+        self.state.lock(Cell::get).awaiting
     }
 
     fn command(&self, command: MotorCommand, now: u64) {
-        self.update(|_| State { active: true, unanswered: Some(now) });
+        self.state.lock(|state| state.set(State { active: true, commanded: now, awaiting: true }));
         self.outgoing.signal(Stamped { value: command, time: now });
     }
 
+    /// When what an answer with this time says is true, us; none for one that nothing was asked for.
+    fn stamp(&self, time: u64) -> Option<u64> {
+        let State { active, commanded, .. } = self.state.lock(Cell::get);
+        (active && time <= commanded).then(|| time + PERIOD)
+    }
+
     fn answered(&self, time: u64) {
-        self.update(|state| State { unanswered: state.unanswered.filter(|command| *command != time), ..state });
+        self.state.lock(|cell| {
+            let state = cell.get();
+            cell.set(State { awaiting: state.awaiting && state.commanded != time, ..state });
+        });
     }
 }
 
@@ -132,7 +140,7 @@ pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &i
         let header = Header { system, component: COMPONENT, sequence };
         sequence = sequence.wrapping_add(1);
         // What does not go out is not answered, and shows as sensors that grow old.
-        let _ = within(clock, SENDING_MAX, line.write_all(encode(header, &controls(&command), &mut buffer))).await;
+        send(&mut line, clock, SENDING_MAX, encode(header, &controls(&command), &mut buffer)).await;
     }
 }
 
@@ -149,28 +157,24 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
         for byte in chunk.iter().take(count) {
             let mut next = parser.push(*byte, now);
             while let Some(frame) = next {
-                take(hil, &frame, now, shared);
+                take(hil, &frame, shared);
                 next = parser.next_frame();
             }
         }
     }
 }
 
-/// Acts on one frame, if it is one of the two and the simulator is wanted.
-fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, now: u64, shared: &Shared<M>) {
-    if !hil.active() {
-        return;
-    }
+/// Acts on one frame, if it is one of the two and answers a command.
+fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, shared: &Shared<M>) {
     if let Some(message) = frame.decode::<HIL_SENSOR_DATA>() {
-        if let Some(sample) = sample(&message).filter(|_| message.time_usec <= now) {
-            shared.imu.put(sample, message.time_usec + PERIOD);
+        if let (Some(sample), Some(time)) = (sample(&message), hil.stamp(message.time_usec)) {
+            shared.imu.put(sample, time);
             hil.answered(message.time_usec);
         }
     } else if let Some(message) = frame.decode::<ODOMETRY_DATA>()
-        && let Ok(pose) = odometry(&message)
-        && message.time_usec <= now
+        && let (Ok(pose), Some(time)) = (odometry(&message), hil.stamp(message.time_usec))
     {
-        shared.pose.put(pose, message.time_usec + PERIOD);
+        shared.pose.put(pose, time);
     }
 }
 

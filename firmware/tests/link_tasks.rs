@@ -5,8 +5,7 @@ mod support;
 use controller_core::flight::{Mode, Refusal};
 use controller_core::state::State;
 use core::cell::RefCell;
-use core::future::pending;
-use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
+use embedded_io_async::{ErrorKind, ErrorType, Read};
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
@@ -20,44 +19,9 @@ use mavlink::dialects::common::{
 };
 use mavlink::{MavlinkVersion, MessageData};
 use nalgebra::{Quaternion, Vector3};
-use std::collections::VecDeque;
+use support::line::{Delivery, Incoming, Line, Outgoing};
 use support::receiver::{Local, report};
 use support::{Simulated, v2};
-
-/// What a line does next when it is read.
-enum Delivery {
-    Bytes(Vec<u8>),
-    Fault,
-    End,
-}
-
-/// A line that delivers piece by piece, then is silent.
-struct Incoming<'a>(&'a Line);
-
-type Line = RefCell<VecDeque<Delivery>>;
-
-impl ErrorType for Incoming<'_> {
-    type Error = ErrorKind;
-}
-
-impl Read for Incoming<'_> {
-    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, ErrorKind> {
-        let delivery = self.0.borrow_mut().pop_front();
-        match delivery {
-            Some(Delivery::Bytes(bytes)) => {
-                let count = bytes.len().min(buffer.len());
-                buffer[..count].copy_from_slice(&bytes[..count]);
-                if count < bytes.len() {
-                    self.0.borrow_mut().push_front(Delivery::Bytes(bytes[count..].to_vec()));
-                }
-                Ok(count)
-            }
-            Some(Delivery::Fault) => Err(ErrorKind::Other),
-            Some(Delivery::End) => Ok(0),
-            None => pending().await,
-        }
-    }
-}
 
 fn disarm(sequence: u8) -> Vec<u8> {
     v2(sequence, &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..Default::default() })
@@ -100,31 +64,6 @@ fn a_long_burst_is_received_whole() {
     line.borrow_mut().push_back(Delivery::Bytes(burst));
     clock.run(10_000, receive(Incoming(&line), &clock, &shared), |_| ());
     assert_eq!(shared.traffic.get().unwrap().value.frames, 256);
-}
-
-/// A line that keeps what is written, at most so many bytes at a time; without any, it never takes a byte.
-struct Outgoing<'a> {
-    written: &'a RefCell<Vec<u8>>,
-    at_once: usize,
-}
-
-impl ErrorType for Outgoing<'_> {
-    type Error = ErrorKind;
-}
-
-impl Write for Outgoing<'_> {
-    async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        if self.at_once == 0 {
-            pending::<()>().await;
-        }
-        let count = bytes.len().min(self.at_once);
-        self.written.borrow_mut().extend(&bytes[..count]);
-        Ok(count)
-    }
-
-    async fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
 }
 
 /// Everything of one type in what was written.

@@ -4,14 +4,17 @@ use crate::clock::SimClock;
 use crate::line::Line;
 use crate::station::Station;
 use crate::world::{SimImu, SimMotors, SimWatchdog, World};
+use controller_core::flight::Pilot;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use firmware::boot::Boot;
 use firmware::control::Control;
 use firmware::hardware::Clock;
+use firmware::outputs::Outputs;
 use firmware::shared::{Report, Shared};
-use firmware::{configuration, imu, link};
+use firmware::{boot, configuration, imu, link};
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
+use mavlink::dialects::common::MavResult;
+use static_cell::StaticCell;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -31,6 +34,11 @@ pub struct Flight {
 impl Flight {
     /// Boots the firmware on a vehicle that stands on the ground, with poses and heartbeats coming in.
     pub fn boot() -> Self {
+        Self::with(|shared| boot::start(Box::leak(Box::new(StaticCell::new())), &shared.parameters).unwrap())
+    }
+
+    /// The same with what the firmware boots with.
+    pub fn with(boot: impl FnOnce(&Shared<CriticalSectionRawMutex>) -> (&'static mut Pilot, Outputs)) -> Self {
         let pool = LocalPool::new();
         let spawner = pool.spawner();
         let clock = SimClock::default();
@@ -40,10 +48,10 @@ impl Flight {
         let (up, down) = (Line::default(), Line::default());
         let station = Station::new(&clock, up.clone(), down.clone());
 
-        let boot = Box::leak(Box::new(Boot::new(&shared.parameters).unwrap()));
+        let (pilot, outputs) = boot(shared);
         let (vehicle, time) = (world.clone(), clock.clone());
         let control = async move {
-            let mut control = Control::new(shared, &mut boot.pilot, &boot.outputs);
+            let mut control = Control::new(shared, pilot, outputs);
             control.run(&time, &mut SimMotors(vehicle.clone()), &mut SimWatchdog(vehicle)).await;
         };
         spawner.spawn_local(control).unwrap();
@@ -92,6 +100,16 @@ impl Flight {
         flight.station.go_to([0.0, 0.0, 1.0]);
         flight.pass(12.0);
         flight
+    }
+
+    /// Asks to arm and says what was answered: the acknowledgement, and what was said besides.
+    pub fn ask_to_arm(&mut self) -> (Option<MavResult>, Vec<String>) {
+        let before = self.station.texts().len();
+        self.station.forget_acknowledgements();
+        self.station.arm(true);
+        self.pass(0.1);
+        let texts = self.station.texts().split_off(before).into_iter().map(|(_, text)| text);
+        (self.station.acknowledged(), texts.collect())
     }
 
     /// How far the vehicle is from a point, m.

@@ -4,8 +4,13 @@
 
 mod clock;
 mod flight;
+mod grounded;
 mod hostile;
 mod line;
+mod losses;
+mod motor_test;
+mod peripherals;
+mod refusals;
 mod station;
 mod world;
 

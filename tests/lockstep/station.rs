@@ -92,13 +92,25 @@ impl Station {
 
     /// Asks to arm or disarm.
     pub fn arm(&self, arm: bool) {
-        self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, f32::from(u8::from(arm)));
+        self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(arm)), 0.0, 0.0, 0.0]);
     }
 
-    fn command(&self, command: MavCmd, param1: f32) {
-        let data =
-            COMMAND_LONG_DATA { command, param1, target_system: 1, target_component: 1, ..COMMAND_LONG_DATA::DEFAULT };
-        self.send(&MavMessage::COMMAND_LONG(data));
+    /// Asks for a motor, from 1, to turn at so many percent for so many seconds.
+    pub fn test_motor(&self, number: u8, percent: f32, seconds: f32) {
+        self.command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [f32::from(number), 0.0, percent, seconds]);
+    }
+
+    fn command(&self, command: MavCmd, [param1, param2, param3, param4]: [f32; 4]) {
+        self.send(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            command,
+            param1,
+            param2,
+            param3,
+            param4,
+            target_system: 1,
+            target_component: 1,
+            ..COMMAND_LONG_DATA::DEFAULT
+        }));
     }
 
     /// Asks to go to a point, m, world (x, y, z up), heading along world x.
@@ -152,6 +164,11 @@ impl Station {
     /// When a text that begins so was first heard, us.
     pub fn heard(&self, beginning: &str) -> Option<u64> {
         self.texts().into_iter().find(|(_, text)| text.starts_with(beginning)).map(|(time, _)| time)
+    }
+
+    /// Whatever is acknowledged after this is about what is asked after this.
+    pub fn forget_acknowledgements(&self) {
+        self.0.heard.borrow_mut().retain(|(_, message)| !matches!(message, MavMessage::COMMAND_ACK(_)));
     }
 
     /// The result of the newest acknowledgement.

@@ -27,6 +27,16 @@ struct Inner {
     command: Cell<(MotorCommand, u64)>,
     /// When the watchdog was last fed.
     fed: Cell<u64>,
+    outputs: Cell<Health>,
+    sensor: Cell<Health>,
+}
+
+/// How a peripheral does.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Health {
+    Works,
+    Faults,
+    Hangs,
 }
 
 struct Body {
@@ -43,6 +53,16 @@ fn body(configuration: &Configuration, state: BodyState) -> Plant {
     Plant::new(configuration.vehicle(), configuration.limits(), STEP as f64 * 1e-6, state)
 }
 
+impl Health {
+    async fn answer(self) -> Result<(), Fault> {
+        match self {
+            Self::Works => Ok(()),
+            Self::Faults => Err(Fault),
+            Self::Hangs => std::future::pending().await,
+        }
+    }
+}
+
 impl World {
     /// A vehicle standing on level ground at the origin, heading along world x.
     pub fn new(clock: &SimClock, configuration: &Configuration) -> Self {
@@ -54,7 +74,14 @@ impl World {
         let greatest = f64::from(rotors[0].speed_at(rotors[0].thrust_max));
         let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS] };
         let command = Cell::new((MotorCommand::Stop, 0));
-        Self(Rc::new(Inner { clock: clock.clone(), body: RefCell::new(body), command, fed: Cell::new(0) }))
+        Self(Rc::new(Inner {
+            clock: clock.clone(),
+            body: RefCell::new(body),
+            command,
+            fed: Cell::new(0),
+            outputs: Cell::new(Health::Works),
+            sensor: Cell::new(Health::Works),
+        }))
     }
 
     /// Moves for ever, a step at a time.
@@ -81,6 +108,32 @@ impl World {
     /// When the watchdog was last fed, us.
     pub fn fed(&self) -> u64 {
         self.0.fed.get()
+    }
+
+    /// How the motor outputs do from now on.
+    pub fn outputs(&self, health: Health) {
+        self.0.outputs.set(health);
+    }
+
+    /// How the IMU does from now on.
+    pub fn sensor(&self, health: Health) {
+        self.0.sensor.set(health);
+    }
+
+    /// Puts the vehicle down where it is, turned as the angles say, rad.
+    pub fn set_down(&self, roll: f64, pitch: f64, yaw: f64) {
+        let mut body = self.0.body.borrow_mut();
+        let Body { configuration, plant, .. } = &mut *body;
+        let still = Vector3::zeros();
+        let attitude = attitude_from_euler(roll, pitch, yaw);
+        let position = plant.state().position;
+        *plant = self::body(configuration, BodyState { position, velocity: still, attitude, angular_velocity: still });
+    }
+
+    /// The angle between body z and up, rad.
+    pub fn tilt(&self) -> f32 {
+        let up = nalgebra::UnitQuaternion::new_unchecked(self.pose().attitude) * Vector3::z();
+        up.z.clamp(-1.0, 1.0).acos()
     }
 }
 
@@ -122,6 +175,7 @@ impl Imu for SimImu {
     async fn sample(&mut self) -> Result<ImuSample, Fault> {
         let clock = &self.0.0.clock;
         clock.until((clock.now() / STEP + 1) * STEP).await;
+        self.0.0.sensor.get().answer().await?;
         let angular_velocity = self.0.0.body.borrow().plant.state().measured().angular_velocity;
         Ok(ImuSample { angular_velocity, specific_force: Vector3::new(0.0, 0.0, 9.81) })
     }
@@ -132,6 +186,7 @@ pub struct SimMotors(pub World);
 
 impl Motors for SimMotors {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
+        self.0.0.outputs.get().answer().await?;
         self.0.0.command.set((command, self.0.0.clock.now()));
         Ok(())
     }

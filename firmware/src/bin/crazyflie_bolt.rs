@@ -4,6 +4,7 @@
 
 #[cfg(target_os = "none")]
 mod target {
+    use controller_core::flight::Pilot;
     use defmt_rtt as _;
     use embassy_executor::{Executor, InterruptExecutor};
     use embassy_futures::block_on;
@@ -16,11 +17,11 @@ mod target {
     use firmware::boards::stm32::light::Lamp;
     use firmware::boards::stm32::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
     use firmware::boards::stm32::storage::{self, ParameterFlash};
-    use firmware::boot::Boot;
     use firmware::control::Control;
     use firmware::hil::{self, SelectedMotors};
+    use firmware::outputs::Outputs;
     use firmware::parameters::storage::Storage;
-    use firmware::{imu, link, status};
+    use firmware::{boot, imu, link, status};
     use panic_probe as _;
     use static_cell::StaticCell;
 
@@ -44,15 +45,15 @@ mod target {
         let parameters = Storage::new(board.storage, 0..storage::SIZE);
         let mut parameters = defmt::unwrap!(parameters.map_err(|_| "the parameters' sectors are no storage"));
         block_on(parameters.load(&SystemClock, shared));
-        static BOOT: StaticCell<Boot> = StaticCell::new();
-        let boot = BOOT.init_with(|| defmt::unwrap!(Boot::new(&shared.parameters)));
+        static PILOT: StaticCell<Pilot> = StaticCell::new();
+        let (pilot, outputs) = defmt::unwrap!(boot::start(&PILOT, &shared.parameters));
 
         // The controllers have power for as long as these are held: for ever.
         let _power = board.power;
 
         interrupt::UART4.set_priority(Priority::P6);
         let spawner = CONTROL.start(interrupt::UART4);
-        spawner.spawn(defmt::unwrap!(control(shared, hil, boot, board.motors, board.watchdog)));
+        spawner.spawn(defmt::unwrap!(control(shared, hil, pilot, outputs, board.motors, board.watchdog)));
 
         interrupt::UART5.set_priority(Priority::P7);
         let spawner = SENSOR.start(interrupt::UART5);
@@ -73,12 +74,13 @@ mod target {
     async fn control(
         shared: &'static Shared,
         hil: &'static Hil,
-        boot: &'static mut Boot,
+        pilot: &'static mut Pilot,
+        outputs: Outputs,
         pins: BoardMotors,
         mut watchdog: BoardWatchdog,
     ) {
         let mut motors = SelectedMotors { pins, hil, wanted: &shared.hil, clock: SystemClock };
-        Control::new(shared, &mut boot.pilot, &boot.outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
+        Control::new(shared, pilot, outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]

@@ -4,16 +4,18 @@
 
 #[cfg(target_os = "none")]
 mod target {
+    use controller_core::flight::Pilot;
     use defmt_semihosting as _;
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use firmware::boards::mps2::bench::{Lamp, NoBattery, NoMotors};
     use firmware::boards::mps2::time::BoardClock;
     use firmware::boards::mps2::watchdog::BoardWatchdog;
     use firmware::boards::mps2::{self, executors, exit, idle, uart};
-    use firmware::boot::Boot;
+    use firmware::boot;
     use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
     use firmware::link::{receive, transmit};
+    use firmware::outputs::Outputs;
     use firmware::shared::Shared;
     use firmware::status;
     use panic_probe as _;
@@ -30,13 +32,14 @@ mod target {
         let Some(core) = cortex_m::Peripherals::take() else { exit::fail("started twice") };
         mps2::init(core);
         defmt::info!("{} emulated", firmware::configuration::NAME);
-        static BOOT: StaticCell<Boot> = StaticCell::new();
-        let Ok(boot) = Boot::new(&SHARED.parameters) else { exit::fail("the embedded scenario has not four rotors") };
-        let boot = BOOT.init(boot);
+        static PILOT: StaticCell<Pilot> = StaticCell::new();
+        let Ok((pilot, outputs)) = boot::start(&PILOT, &SHARED.parameters) else {
+            exit::fail("the embedded scenario has not four rotors")
+        };
         SHARED.hil.raise();
 
         let spawner = executors::start_flight();
-        spawner.spawn(defmt::unwrap!(control(boot)));
+        spawner.spawn(defmt::unwrap!(control(pilot, outputs)));
         spawner.spawn(defmt::unwrap!(to_simulator()));
         spawner.spawn(defmt::unwrap!(from_simulator()));
         let spawner = executors::start_background();
@@ -47,10 +50,10 @@ mod target {
     }
 
     #[embassy_executor::task]
-    async fn control(boot: &'static mut Boot) {
+    async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
         let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: &SHARED.hil, clock: BoardClock };
         let mut watchdog = BoardWatchdog::start(WATCHDOG);
-        Control::new(&SHARED, &mut boot.pilot, &boot.outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
+        Control::new(&SHARED, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]

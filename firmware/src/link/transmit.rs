@@ -5,11 +5,12 @@
 use super::frame::{FRAME_MAX, Header, encode, encode_payload};
 use super::reply::{CommandResult, Reply};
 use super::{COMPONENT, ping, telemetry};
+use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::shared::{Answer, Event, Origin, Report, Severity, Shared, Text};
 use controller_core::flight::Stamped;
-use embassy_futures::select::{select, select4};
+use embassy_futures::select::select4;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
@@ -35,7 +36,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
         for turn in [Speaker::scheduled, Speaker::queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
-                write(&mut line, clock, speaker.frame()).await;
+                send(&mut line, clock, WRITE_TIME_MAX, speaker.frame()).await;
             }
         }
         if silent {
@@ -44,21 +45,6 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
             select4(due, answers.ready_to_receive(), events.ready_to_receive(), replies.ready_to_receive()).await;
         }
     }
-}
-
-/// Writes a frame in its time or gives it up: what is out of it by then, its receiver takes for noise.
-async fn write<W: Write>(line: &mut W, clock: &impl Clock, frame: &[u8]) {
-    let end = clock.now().saturating_add(WRITE_TIME_MAX);
-    let all = async {
-        let mut rest = frame;
-        while let Ok(count @ 1..) = line.write(rest).await {
-            rest = rest.get(count..).unwrap_or(&[]);
-            if rest.is_empty() {
-                break;
-            }
-        }
-    };
-    select(all, clock.until(end)).await;
 }
 
 /// When what is due, us.

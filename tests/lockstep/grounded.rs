@@ -1,0 +1,58 @@
+//! A configuration whose certificate fails: it boots and answers, and never arms.
+
+use crate::flight::Flight;
+use controller_core::certificate::configuration::{Certified, Configuration, Refused};
+use controller_core::flight::{Mode, Pilot};
+use controller_core::governor::GovernorLimits;
+use controller_core::reference::ReferenceBounds;
+use firmware::configuration;
+use firmware::hardware::MotorCommand;
+use firmware::outputs::Outputs;
+use mavlink::dialects::common::MavResult;
+
+/// The embedded vehicle, asked to follow references that its torques are not enough for.
+fn too_agile() -> Configuration {
+    let configuration = configuration::embedded().unwrap();
+    let bounds = *configuration.bounds();
+    configuration.with_bounds(ReferenceBounds { snap: 50.0 * bounds.snap, ..bounds }).unwrap()
+}
+
+/// A flight under a refusal, and the inequality that failed first.
+fn refused() -> (Flight, &'static str) {
+    let refused = Certified::new(too_agile()).unwrap_err();
+    let Refused::Fails(certificate) = &refused else { panic!("{refused:?}") };
+    let failed = certificate.inequalities().find(|inequality| !inequality.holds()).unwrap().name;
+    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), GovernorLimits::default())));
+    let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap()).unwrap()));
+    (flight, failed)
+}
+
+#[test]
+fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
+    let (mut flight, failed) = refused();
+    flight.pass(1.5);
+    assert_eq!((flight.report().mode, flight.station.texts().len()), (Mode::Disarmed, 0));
+    // Telemetry, watchdog, timing: all as ever.
+    assert!(flight.report().state.is_some());
+    assert!(flight.now() - flight.world.fed() <= 10_000);
+    for _ in 0..3 {
+        let (result, texts) = flight.ask_to_arm();
+        assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));
+        assert_eq!(texts, [format!("Not certified: {failed:.35}")]);
+        flight.station.go_to([0.0, 0.0, 1.0]);
+        flight.pass(0.5);
+        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Disarmed, MotorCommand::Stop));
+    }
+    assert_eq!(flight.report().timing.missed, 0);
+}
+
+#[test]
+fn its_motors_can_be_tested_all_the_same() {
+    let (mut flight, _) = refused();
+    flight.pass(1.5);
+    flight.station.test_motor(4, 10.0, 0.5);
+    flight.pass(0.1);
+    assert_eq!(flight.world.command(), MotorCommand::One { motor: 3, level: 0.1 });
+    flight.pass(0.5);
+    assert_eq!(flight.world.command(), MotorCommand::Stop);
+}

@@ -1,0 +1,74 @@
+//! The pose is lost in the middle of a fast way, not at a hover.
+
+use crate::flight::Flight;
+use controller_core::flight::Mode;
+use controller_core::flight::rules::{LEVELLING_MAX, POSE_AGE_MAX};
+use firmware::hardware::MotorCommand;
+
+/// A tick, us.
+const TICK: u64 = 10_000;
+
+/// A flight on its way to a point 20 m off, with its poses just gone.
+fn lost_on_the_way() -> Flight {
+    let mut flight = Flight::in_the_air();
+    flight.station.go_to([20.0, 0.0, 1.0]);
+    while flight.world.pose().velocity.x < 2.0 {
+        flight.pass(0.01);
+        assert!(flight.now() < 30_000_000, "it does not get fast");
+    }
+    flight.poses(false);
+    flight
+}
+
+/// The greatest tilt from now on, rad, for so many seconds or until the motors stop.
+fn worst_tilt(flight: &mut Flight, seconds: f64) -> f32 {
+    let mut worst = 0.0_f32;
+    let end = flight.now() + (seconds * 1e6) as u64;
+    while flight.now() < end && flight.world.command() != MotorCommand::Stop {
+        flight.pass(0.01);
+        worst = worst.max(flight.world.tilt());
+    }
+    worst
+}
+
+#[test]
+fn a_pose_lost_at_speed_is_levelled_and_then_stopped() {
+    let mut flight = lost_on_the_way();
+    let (last, leaning) = (flight.now(), flight.world.tilt());
+    assert!(leaning > 0.2, "{leaning}: nothing to level");
+    let early = worst_tilt(&mut flight, 0.5);
+    assert_eq!(flight.report().mode, Mode::Levelling);
+    // These gains take 0.5 s to bring it upright, and then overshoot by a third.
+    let late = worst_tilt(&mut flight, 1.0);
+    assert!(early < leaning + 0.02, "{leaning} {early} rad");
+    assert!(late < 0.5 * leaning, "{leaning} {late} rad");
+    let stopped = flight.now() - last;
+    assert!(stopped.abs_diff(POSE_AGE_MAX + LEVELLING_MAX) <= 2 * TICK, "{stopped} us");
+    // Hover thrust has kept its height, and nothing has braked it.
+    let pose = flight.world.pose();
+    assert!((2.0..3.5).contains(&pose.velocity.x), "{}", pose.velocity);
+    assert!((pose.position.z - 1.0).abs() < 0.2, "{}", pose.position);
+    flight.pass(0.5);
+    assert!(flight.station.heard("Stopped: no pose").is_some());
+    assert_eq!(flight.report().mode, Mode::Disarmed);
+}
+
+#[test]
+fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
+    for seconds in [0.15, 0.5, 1.0] {
+        let mut flight = lost_on_the_way();
+        let before = worst_tilt(&mut flight, seconds);
+        assert_eq!(flight.report().mode, Mode::Levelling);
+        flight.poses(true);
+        let regained = flight.world.pose().position;
+        let after = worst_tilt(&mut flight, 10.0);
+        assert_eq!(flight.report().mode, Mode::Flying);
+        assert!(flight.station.heard("Pose regained").is_some());
+        assert!(before.max(after) < 0.26, "{before} {after} rad");
+        // The old way is forgotten: it stands where braking took it.
+        let pose = flight.world.pose();
+        assert!(pose.velocity.norm() < 0.05, "{}", pose.velocity);
+        assert!((0.0..8.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
+        assert!((pose.position.z - 1.0).abs() < 0.5, "{}", pose.position);
+    }
+}

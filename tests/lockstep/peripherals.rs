@@ -1,0 +1,83 @@
+//! Peripherals that fail: motor outputs that fault or hang, an IMU that falls silent.
+
+use crate::flight::Flight;
+use crate::world::Health;
+use controller_core::flight::Mode;
+use controller_core::flight::rules::IMU_AGE_MAX;
+use firmware::hardware::MotorCommand;
+use mavlink::dialects::common::MavResult;
+
+/// A tick, us.
+const TICK: u64 = 10_000;
+
+#[test]
+fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_told_of_once() {
+    for health in [Health::Faults, Health::Hangs] {
+        for mut flight in [grounded_flight(), Flight::in_the_air()] {
+            let fed = flight.world.fed();
+            assert!(flight.now() - fed < TICK);
+            flight.world.outputs(health);
+            let since = flight.now();
+            flight.pass(0.3);
+            assert_eq!(flight.world.fed(), fed, "fed by ticks that wrote nothing");
+            assert_eq!(count(&flight, "motors: a frame did not go out"), 1);
+            assert!(flight.station.heard("motors: a frame").unwrap() - since < 3 * TICK);
+            // Ticks go on meanwhile: whoever comes back is told what holds then.
+            assert_eq!(flight.report().timing.missed, 0);
+            flight.world.outputs(Health::Works);
+            flight.pass(0.1);
+            assert!(flight.now() - flight.world.fed() <= TICK);
+            assert_eq!(count(&flight, "motors: frames go out again"), 1);
+        }
+    }
+}
+
+fn grounded_flight() -> Flight {
+    let mut flight = Flight::boot();
+    flight.pass(1.5);
+    flight
+}
+
+fn count(flight: &Flight, text: &str) -> usize {
+    flight.station.texts().iter().filter(|(_, heard)| heard == text).count()
+}
+
+#[test]
+fn a_disarm_command_reaches_motors_that_come_back() {
+    let mut flight = Flight::in_the_air();
+    flight.world.outputs(Health::Hangs);
+    flight.pass(0.05);
+    flight.station.arm(false);
+    flight.pass(0.05);
+    assert!(matches!(flight.world.command(), MotorCommand::Run(_)), "they cannot have heard");
+    flight.world.outputs(Health::Works);
+    flight.pass(0.011);
+    assert_eq!(flight.world.command(), MotorCommand::Stop);
+}
+
+#[test]
+fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
+    for health in [Health::Faults, Health::Hangs] {
+        let mut flight = Flight::in_the_air();
+        flight.pass(0.0053);
+        flight.world.sensor(health);
+        let last = flight.now();
+        while flight.world.command() != MotorCommand::Stop {
+            assert!(flight.now() - last <= IMU_AGE_MAX + TICK, "still turning after {} us", flight.now() - last);
+            flight.pass(0.001);
+        }
+        assert!(flight.now() - last > IMU_AGE_MAX - 1_000, "stopped by a sample {} us old", flight.now() - last);
+        flight.pass(0.5);
+        assert!(flight.station.heard("Stopped: no IMU sample for 20 ms").is_some());
+        assert_eq!(count(&flight, "IMU does not answer"), 1);
+        let (result, texts) = flight.ask_to_arm();
+        assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));
+        assert_eq!(texts, ["Refused: no IMU sample for 20 ms"]);
+        // Back again, it stays stopped until it is armed.
+        flight.world.sensor(Health::Works);
+        flight.pass(0.5);
+        assert_eq!(count(&flight, "IMU answers again"), 1);
+        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Disarmed, MotorCommand::Stop));
+        assert_eq!(flight.ask_to_arm().0, Some(MavResult::MAV_RESULT_ACCEPTED));
+    }
+}
