@@ -1,8 +1,10 @@
 """Reads an ELF image for a Cortex-M: its sections, its symbols, and how deep its calls go.
 
 The stack is read off the machine code: what a function pushes and subtracts from the stack pointer anywhere, and whom it
-calls. Mapping symbols ($t, $d) tell code from constants. What has no static bound is a problem to be reported: calls
-through registers, stack pointers moved by a register, and recursion.
+calls. Mapping symbols ($t, $d) tell code from constants. A call through a register is one of the functions whose address
+the caller builds itself (compilers keep an address that is called often in a register) or that the budget says it can
+reach. What has no static bound is a problem to be reported: other calls through registers, stack pointers moved by a
+register, and recursion. Functions may be given a size by assumption, for what lies behind them.
 """
 
 import bisect
@@ -91,6 +93,11 @@ class Image:
             return None
         return self.starts[place]
 
+    def word(self, address):
+        """The word at an address."""
+        section = next(s for s in self._allocated() if s[3] <= address < s[3] + s[5])
+        return struct.unpack_from("<I", self.data, section[4] + address - section[3])[0]
+
     def halfwords(self, start, length):
         """(address, first halfword, second halfword or none) of each instruction."""
         section = next(s for s in self._allocated() if s[3] <= start < s[3] + s[5])
@@ -165,6 +172,24 @@ def target(address, first, second):
     return None
 
 
+def literal(address, first, second):
+    """Where an instruction that loads a constant beside the code finds it; none for other instructions."""
+    pc = (address + 4) & ~3
+    if second is None:
+        return pc + 4 * (first & 255) if first & 0xF800 == 0x4800 else None
+    if first & 0xFF7F != 0xF85F:
+        return None
+    return pc + (second & 0xFFF) * (1 if first & 0x80 else -1)
+
+
+def moved(first, second):
+    """(register, value, whether it is the upper half) of a movw or movt."""
+    if second is None or first & 0xFB70 != 0xF240 or second & 0x8000:
+        return None
+    value = (first & 15) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 255
+    return second >> 8 & 15, value, bool(first & 0x80)
+
+
 def is_indirect(first, second):
     """Calls and jumps through a register or memory, returns and jump tables aside."""
     if second is None:
@@ -178,8 +203,9 @@ def is_indirect(first, second):
 class StackBound:
     """The deepest way through an image's calls."""
 
-    def __init__(self, image, indirect):
+    def __init__(self, image, indirect, assumed):
         self.image, self.indirect = image, {re.compile(caller): re.compile(reach) for caller, reach in indirect.items()}
+        self.assumed = {re.compile(name): size for name, size in assumed.items()}
         self.problems, self.known = [], {}
 
     def name(self, start):
@@ -196,6 +222,9 @@ class StackBound:
         return max((self._bound(start, ()) for start in roots), default=(0, []), key=lambda bound: bound[0])
 
     def _bound(self, start, callers):
+        for name, size in self.assumed.items():
+            if name.search(self.name(start)):
+                return size, [(f"{self.name(start)} (assumed)", size)]
         if start in callers:
             self.problems.append(f"{self.name(start)} calls itself: no static bound")
             return 0, []
@@ -209,6 +238,7 @@ class StackBound:
     def _read(self, start):
         """What one function takes for itself, and whom it calls or jumps to."""
         own, callees, name = 0, set(), self.name(start)
+        lower, built, unknown = {}, set(), []
         for address, first, second in self.image.halfwords(start, self.image.functions[start][1]):
             taken = pushed(first, second)
             if taken is None:
@@ -220,9 +250,22 @@ class StackBound:
                     self.problems.append(f"{name}: calls {where:#x}, where no function is known")
                 else:
                     callees.add(callee)
+            if (place := literal(address, first, second)) is not None:
+                built.add(self.image.word(place) & ~1)
+            if half := moved(first, second):
+                register, value, upper = half
+                if upper:
+                    built.add((lower.get(register, 0) | value << 16) & ~1)
+                else:
+                    lower[register] = value
             if is_indirect(first, second):
                 reached = [r for caller, reach in self.indirect.items() if caller.search(name) for r in self.matching(reach)]
                 callees.update(reached)
                 if not reached:
-                    self.problems.append(f"{name}: calls through a register at {address:#x}")
+                    unknown.append(address)
+        named = built & self.image.functions.keys()
+        if unknown and named:
+            callees.update(named)
+        else:
+            self.problems += [f"{name}: calls through a register at {address:#x}" for address in unknown]
         return own, callees

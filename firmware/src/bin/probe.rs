@@ -11,7 +11,6 @@ mod target {
     use controller_core::state::State;
     use core::hint::black_box;
     use core::panic::PanicInfo;
-    use firmware as _; // the vectors
 
     type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
