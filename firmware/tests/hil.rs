@@ -2,7 +2,7 @@
 
 mod support;
 
-use controller_core::flight::{ImuSample, Mode, PERIOD, Request};
+use controller_core::flight::{ImuSample, Mode, MotorTest, PERIOD, Refusal, Request};
 use core::cell::{Cell, RefCell};
 use core::future::pending;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
@@ -255,8 +255,9 @@ impl Watchdog for Bench {
     fn feed(&mut self) {}
 }
 
-#[test]
-fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
+/// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being wanted
+/// from 45 ms on; and the answer.
+fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, Result<(), Refusal>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
     let mut boot = Boot::new(&shared.parameters).unwrap();
     let mut pins = Pins::default();
@@ -269,20 +270,35 @@ fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
         }
         shared.imu.put(still, now);
         shared.ground_station.put((), now);
-        let mut fed = Fed::new(&shared);
-        fed.message(&odometry(0), now);
-        // Both between the same two ticks: neither finds the other done.
-        if now == 45_000 {
+        Fed::new(&shared).message(&odometry(0), now);
+        if now == asked {
             let origin = Origin { system: 255, component: 190, command: 400 };
-            shared.request(Asked { request: Request::Arm, origin }).unwrap();
+            shared.request(Asked { request, origin }).unwrap();
+        }
+        if now == 45_000 {
             shared.hil.raise();
         }
     });
-    assert_eq!(pins.0.len(), 9);
-    assert!(pins.0.iter().all(|command| *command == MotorCommand::Stop), "{:?}", pins.0);
     assert!(hil.active());
     assert_eq!(shared.report.get().unwrap().value.mode, Mode::Disarmed);
-    assert!(shared.answers.try_receive().unwrap().result.is_err());
+    (pins.0, shared.answers.try_receive().unwrap().result)
+}
+
+#[test]
+fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
+    // Both between the same two ticks: neither finds the other done.
+    let (pins, answer) = handed_over(Request::Arm, 45_000);
+    assert_eq!(pins, [MotorCommand::Stop; 9]);
+    assert_eq!(answer, Err(Refusal::DisarmCommanded));
+}
+
+#[test]
+fn a_motor_test_ends_where_the_simulator_is_asked_for() {
+    let test = MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 };
+    let (pins, answer) = handed_over(Request::MotorTest(test), 15_000);
+    assert_eq!(pins[1..4], [MotorCommand::One { motor: 1, level: 0.1 }; 3]);
+    assert_eq!(pins[4..], [MotorCommand::Stop; 5]);
+    assert_eq!(answer, Ok(()));
 }
 
 /// Every command in what was written.
