@@ -61,6 +61,22 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
 }
 
 #[test]
+fn a_command_whose_end_comes_a_tenth_of_a_second_late_does_nothing() {
+    for (late, taken) in [(100_000, true), (100_001, false)] {
+        let shared = Local::new();
+        let mut fed = Fed::new(&shared);
+        let bytes = v2(1, &arm());
+        let (begin, end) = bytes.split_at(bytes.len() - 1);
+        fed.bytes(begin, 0);
+        fed.bytes(end, late);
+        assert_eq!(shared.requests.try_receive().is_ok(), taken, "{late}");
+        // What follows is understood.
+        fed.bytes(&v2(2, &disarm()), late);
+        assert!(shared.disarm.take());
+    }
+}
+
+#[test]
 fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);

@@ -1,12 +1,16 @@
 //! The pose is lost in the middle of a fast way, not at a hover.
 
 use crate::flight::Flight;
+use crate::station::Station;
 use controller_core::flight::Mode;
-use controller_core::flight::rules::{LEVELLING_MAX, POSE_AGE_MAX};
 use firmware::hardware::MotorCommand;
 
 /// A tick, us.
 const TICK: u64 = 10_000;
+
+/// How old a pose may be, and how long levelling lasts, us.
+const POSE_AGE_MAX: u64 = 100_000;
+const LEVELLING_MAX: u64 = 1_000_000;
 
 /// A flight on its way to a point 20 m off, with its poses just gone.
 fn lost_on_the_way() -> Flight {
@@ -71,4 +75,36 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         assert!((0.0..8.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
         assert!((pose.position.z - 1.0).abs() < 0.5, "{}", pose.position);
     }
+}
+
+#[test]
+fn what_the_law_was_correcting_when_the_pose_was_lost_is_forgotten() {
+    // A source that jumps to five metres below, then falls silent when the law is busy correcting that.
+    let mut flight = Flight::in_the_air();
+    flight.poses(false);
+    let (begin, weight) = (flight.now(), hover_thrust());
+    while flight.report().wrench.unwrap().thrust < 1.03 * weight {
+        assert!(flight.now() - begin < 3_000_000, "nothing to forget");
+        let mut pose = flight.world.pose();
+        pose.position.z -= 5.0;
+        flight.station.send(&Station::odometry(&pose));
+        flight.pass(0.01);
+    }
+    while flight.report().mode == Mode::Flying {
+        flight.pass(0.01);
+    }
+    // Levelling sets in at hover thrust, lessened by no more than the lean.
+    while flight.report().mode == Mode::Levelling {
+        let thrust = flight.report().wrench.unwrap().thrust;
+        let level = weight * flight.world.tilt().cos();
+        assert!((thrust - level).abs() < 0.003 * weight, "{thrust} N, hover is {level} N");
+        flight.pass(0.01);
+    }
+    assert_eq!(flight.report().mode, Mode::Disarmed);
+}
+
+/// The vehicle's weight, N.
+fn hover_thrust() -> f32 {
+    let configuration = firmware::configuration::embedded().unwrap();
+    configuration.vehicle().mass * configuration.vehicle().gravity
 }

@@ -3,12 +3,14 @@
 use crate::flight::Flight;
 use crate::world::Health;
 use controller_core::flight::Mode;
-use controller_core::flight::rules::IMU_AGE_MAX;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::MavResult;
 
 /// A tick, us.
 const TICK: u64 = 10_000;
+
+/// How old a sample may be, us.
+const IMU_AGE_MAX: u64 = 20_000;
 
 #[test]
 fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_told_of_once() {

@@ -4,6 +4,7 @@
 
 pub mod line;
 pub mod receiver;
+pub mod simulator;
 
 use core::cell::Cell;
 use core::future::Future;

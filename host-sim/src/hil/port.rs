@@ -168,3 +168,6 @@ fn listen(on: &str, address: &Address, patience: Duration) -> Result<TcpStream, 
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+use super::*;
+use crate::hil::{HilError, Session, serve};
+use firmware::frames;
+use firmware::link::frame::{FRAME_MAX, Header, encode};
+use mavlink::MessageData;
+use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
+use scenario::Scenario;
+use std::io::Read;
+use std::path::Path;
+
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// A port and the flight controller's end of its connection.
+fn connected() -> (Port, TcpStream) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = Address::Connect(listener.local_addr().unwrap().to_string());
+    let port = Port::open(&address, PATIENCE).unwrap();
+    let board = listener.accept().unwrap().0;
+    board.set_read_timeout(Some(PATIENCE)).unwrap();
+    (port, board)
+}
+
+fn bytes(message: &impl MessageData) -> Vec<u8> {
+    encode(Header { system: 1, component: 1, sequence: 0 }, message, &mut [0; FRAME_MAX]).to_vec()
+}
+
+fn command(time_usec: u64, level: f32) -> Vec<u8> {
+    let mut controls = [0.0; 16];
+    controls[..4].fill(level);
+    bytes(&HIL_ACTUATOR_CONTROLS_DATA { time_usec, controls, ..Default::default() })
+}
+
+/// The next message of a kind that the board hears; none if it is another.
+fn heard<D: MessageData>(board: &mut TcpStream) -> Option<D> {
+    let (mut parser, mut byte) = (Parser::new(), [0]);
+    loop {
+        board.read_exact(&mut byte).unwrap();
+        if let Some(frame) = parser.push(byte[0], 0) {
+            return frame.decode();
+        }
+    }
+}
+
+#[test]
+fn a_command_is_found_behind_noise_other_messages_and_in_pieces() {
+    let (mut port, mut board) = connected();
+    board.write_all(&[0, 1, 2, 0x55]).unwrap();
+    board.write_all(&bytes(&HEARTBEAT_DATA::default())).unwrap();
+    let frame = command(7_000, 0.5);
+    let (begin, end) = frame.split_at(11);
+    board.write_all(begin).unwrap();
+    std::thread::sleep(PAUSE);
+    board.write_all(end).unwrap();
+    board.write_all(&command(17_000, 0.25)).unwrap();
+    let first = port.receive().unwrap().unwrap();
+    assert_eq!((first.time, first.commands), (7_000, [0.5; 4]));
+    assert_eq!(port.receive().unwrap().unwrap().time, 17_000);
+}
+
+#[test]
+fn a_silent_side_is_given_up_and_one_that_goes_is_no_error() {
+    let (mut port, board) = connected();
+    let started = Instant::now();
+    assert!(matches!(port.receive(), Err(PortError::Silent(PATIENCE))));
+    assert!((PATIENCE..10 * PATIENCE).contains(&started.elapsed()), "{:?}", started.elapsed());
+    drop(board);
+    assert!(port.receive().unwrap().is_none());
+}
+
+#[test]
+fn nobody_is_waited_for_without_end() {
+    let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+    for address in [Address::Connect(free.clone()), Address::Listen(free)] {
+        let started = Instant::now();
+        let Err(PortError::Nobody(who, waited, _)) = Port::open(&address, PATIENCE) else {
+            panic!("somebody is there")
+        };
+        assert_eq!((who, waited), (address, PATIENCE));
+        assert!(started.elapsed() < 10 * PATIENCE);
+    }
+}
+
+#[test]
+fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_are_withheld() {
+    let (mut port, mut board) = connected();
+    let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
+    let session = Session { duration: Some(0.03), pose_until: Some(0.02) };
+    let board = std::thread::spawn(move || {
+        for tick in 0..3 {
+            let time = 5_000 + 10_000 * tick;
+            board.write_all(&command(time, 0.0)).unwrap();
+            if tick < 2 {
+                let pose: ODOMETRY_DATA = heard(&mut board).expect("a pose first");
+                assert_eq!((pose.time_usec, pose.z), (time, 0.0));
+            }
+            let sensor: HIL_SENSOR_DATA = heard(&mut board).expect("sensors last");
+            assert_eq!(sensor.time_usec, time);
+            // At rest it feels the ground push: up, which is against FRD's z.
+            let force = frames::body(&Vector3::new(sensor.xacc, sensor.yacc, sensor.zacc));
+            assert!((force - Vector3::z() * 9.81).norm() < 1e-4, "{force}");
+        }
+    });
+    let summary = serve(&scenario, &mut port, &session, None).unwrap();
+    board.join().unwrap();
+    assert_eq!((summary.pace.ticks(), summary.pace.missed(), summary.left), (3, 0, false));
+}
+
+#[test]
+fn a_command_that_is_no_number_ends_the_session_in_words() {
+    let (mut port, mut board) = connected();
+    board.write_all(&command(5_000, f32::NAN)).unwrap();
+    let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
+    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None) else { panic!("flown") };
+    assert!(what.contains("0 to 1"), "{what}");
+}
