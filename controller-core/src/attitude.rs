@@ -11,15 +11,16 @@
 //!
 //! The paper writes the gain inside the saturations *and* in their argument; it acts once. Body frame, N m.
 //!
-//! The tick takes its terms from the lifted quaternion (q_0, q_v) itself. With D = 1 + q_0, theta~ = q_v / D and
-//! (1 + |theta~|^2) / 4 = 1 / (2 D), so
+//! The tick takes its terms from the error's quaternion (Q_0, Q_v) itself, of length N and s = ±1 times along the lift. With
+//! D = N + s Q_0, theta~ = s Q_v / D and (1 + |theta~|^2) / 4 = N / (2 D), so
 //!
-//! (1 + |theta~|^2)/4 s_theta = (k_theta / 2) / (D sqrt(D^2 + (k_theta / M_theta)^2 |q_v|^2)) q_v:
+//! (1 + |theta~|^2)/4 s_theta = s (k_theta / 2) N / (D sqrt(D^2 + (k_theta / M_theta)^2 |Q_v|^2)) Q_v:
 //!
 //! one root and one division. J is diagonal, so (J w) x w has the components (J_y - J_z) w_y w_z and so on around.
 
 use crate::gains::Gains;
 use crate::math;
+use crate::state::length_squared;
 use nalgebra::{Quaternion, Vector3};
 
 /// The torque and the terms it is made of.
@@ -35,12 +36,12 @@ pub struct TorqueCommand {
     pub torque: Vector3<f32>,
 }
 
-/// R(q)^T v for a unit quaternion: v - 2 q_0 q_v x v + 2 q_v x (q_v x v).
+/// R(q)^T v for a quaternion q = (w, a) of any length: v - w t + a x t with t = 2 a x v / |q|^2.
 #[inline(always)]
 #[must_use]
 pub fn rotate_back(q: &Quaternion<f32>, v: &Vector3<f32>) -> Vector3<f32> {
     let (axis, w) = (q.imag(), q.w);
-    let t = (axis + axis).cross(v);
+    let t = (axis * (2.0 / length_squared(q))).cross(v);
     Vector3::new(
         v.x - w * t.x + axis.y * t.z - axis.z * t.y,
         v.y - w * t.y + axis.z * t.x - axis.x * t.z,
@@ -84,13 +85,14 @@ impl AttitudeLaw {
         }
     }
 
-    /// Evaluates the law. `error` is the lifted unit quaternion of R~; `angular_velocity` is omega in the body frame;
+    /// Evaluates the law. `error` is a quaternion of any length along R~, `sign` times along the lift; `angular_velocity` is omega in the body frame;
     /// omega_d and omega_d' are in the axes of the desired body frame.
     #[inline(always)]
     #[must_use]
     pub fn command(
         &self,
         error: &Quaternion<f32>,
+        sign: f32,
         angular_velocity: &Vector3<f32>,
         desired_angular_velocity: &Vector3<f32>,
         desired_angular_acceleration: &Vector3<f32>,
@@ -99,15 +101,17 @@ impl AttitudeLaw {
         let acceleration = rotate_back(error, desired_angular_acceleration);
         let angular_velocity_error = angular_velocity - rate;
 
-        let (axis, d) = (error.imag(), 1.0 + error.w);
-        let attitude_gain = self.half_gain / (d * math::sqrt(d * d + self.steepness * axis.norm_squared()));
+        let (axis, length) = (error.imag(), math::sqrt(length_squared(error)));
+        let d = length + sign * error.w;
+        let root = math::sqrt(d * d + self.steepness * axis.norm_squared());
+        let attitude_gain = self.half_gain * length * sign / (d * root);
         let squared = self.rate_level + self.rate_gain * angular_velocity_error.norm_squared();
         let rate_feedback = angular_velocity_error * (self.rate_product / math::sqrt(squared));
         let feedforward = self.inertia.component_mul(&acceleration)
             + self.differences.component_mul(&rate.yzx()).component_mul(&rate.zxy());
         TorqueCommand {
             angular_velocity_error,
-            attitude_feedback: axis * (2.0 * d * attitude_gain),
+            attitude_feedback: axis * (2.0 * self.half_gain * sign / root),
             rate_feedback,
             torque: feedforward - axis * attitude_gain - rate_feedback,
         }

@@ -12,20 +12,31 @@
 //!
 //! R_d = R_z(psi) R_y(theta) R_x(phi),
 //!
-//! and its derivatives need no projector: turn u into the heading frame, h = R_z(psi)^T u, and read theta and phi as polar
-//! angles, theta of (h_z, h_x) with radius r, phi of (r, -h_y) with radius n = |u|. With h', h'' the derivatives of those
-//! components, for each polar pair (x, y) of radius r and angle a
+//! and needs no projector: turn u into the heading frame, h = R_z(psi)^T u, and read theta and phi as polar angles, theta of
+//! (h_z, h_x) with radius r, phi of (r, -h_y) with radius n = |u|. Everything is defined while u_z > 0, which
+//! M_p < g - K_a3 guarantees. The sine and cosine of theta and phi are ratios of h's components: no trigonometric function is
+//! called.
 //!
-//! r' = cos a x' + sin a y',  r a' = cos a y' - sin a x',
-//! r'' = cos a x'' + sin a y'' + r a'^2,  r a'' = cos a y'' - sin a x'' - 2 r' a'.
+//! The motion follows from u = n R_d e3. Its derivatives, in the axes of the desired body frame, are
 //!
-//! Then omega_d = (phi' - psi' sin theta, A cos phi + B sin phi, B cos phi - A sin phi) with A = theta', B = psi' cos theta.
-//! Everything is defined while u_z > 0, which M_p < g - K_a3 guarantees. The sine and cosine of theta and phi are ratios of
-//! h's components: no trigonometric function is called. omega_d is in the axes of the desired body frame.
+//! R_d^T u'  = n' e3 + n omega_d x e3,
+//! R_d^T u'' = n'' e3 + 2 n' omega_d x e3 + n (omega_d' x e3 + omega_d x (omega_d x e3)),
+//!
+//! which give the first two components: with (a, b, n') = R_d^T u' and (c, d, .) = R_d^T u''
+//!
+//! omega_x = -b / n,  omega_x' = -(d + 2 n' omega_x) / n + omega_y omega_z,
+//! omega_y = a / n,   omega_y' = (c - 2 n' omega_y) / n - omega_x omega_z.
+//!
+//! The third is the heading's. The three plane rotations turn by omega_d = (phi' - psi' sin theta, theta' cos phi +
+//! psi' cos theta sin phi, psi' cos theta cos phi - theta' sin phi), so omega_y sin phi + omega_z cos phi = psi' cos theta and
+//! its derivative say, with theta' = omega_y cos phi - omega_z sin phi and phi' = omega_x + psi' sin theta,
+//!
+//! omega_z  = (psi' cos theta - omega_y sin phi) / cos phi,
+//! omega_z' = (psi'' cos theta - omega_y' sin phi - theta' (omega_x + 2 psi' sin theta)) / cos phi.
 //!
 //! The law needs R_d for R~ = R_d^T R only. That is three plane rotations of the vehicle's quaternion, each by half an angle
-//! a: along (1 + cos a, sin a) or (sin a, 1 - cos a), whichever does not cancel. Lengths are left to the path lifting, which
-//! divides by all of them at once. R_d comes first and its motion last: fewer numbers wait for each other.
+//! a: along (1 + cos a, sin a) or (sin a, 1 - cos a), whichever does not cancel. The quaternion's length is left as it comes
+//! out: what follows divides by it once.
 
 use crate::heading::Heading;
 use crate::math;
@@ -77,11 +88,17 @@ pub struct AngularMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesiredAttitude {
     /// Cosine and sine of psi.
-    nu: Vector2<f32>,
-    /// u in the heading frame, m/s^2.
-    h: Vector3<f32>,
-    pitch: Polar,
-    roll: Polar,
+    yaw: Vector2<f32>,
+    /// Cosine and sine of theta.
+    pitch: Vector2<f32>,
+    /// Cosine and sine of phi.
+    roll: Vector2<f32>,
+    /// 1 / cos phi.
+    roll_secant: f32,
+    /// n, m/s^2.
+    magnitude: f32,
+    /// 1 / n, s^2/m.
+    inverse_magnitude: f32,
 }
 
 impl DesiredAttitude {
@@ -89,17 +106,27 @@ impl DesiredAttitude {
     #[inline(always)]
     #[must_use]
     pub fn new(command: &Vector3<f32>, heading: &Heading) -> Self {
-        let nu = heading.direction();
-        let h = turn(&nu, command);
-        let pitch = Polar::new(h.z, h.x);
-        Self { nu, h, pitch, roll: Polar::new(pitch.radius, -h.y) }
+        let yaw = heading.direction();
+        let h = turned_back_by_yaw(&yaw, command);
+        let square = h.z * h.z + h.x * h.x;
+        let radius = math::sqrt(square);
+        let magnitude = math::sqrt(square + h.y * h.y);
+        let (inverse_radius, inverse_magnitude) = (1.0 / radius, 1.0 / magnitude);
+        Self {
+            yaw,
+            pitch: Vector2::new(h.z * inverse_radius, h.x * inverse_radius),
+            roll: Vector2::new(radius * inverse_magnitude, -h.y * inverse_magnitude),
+            roll_secant: magnitude * inverse_radius,
+            magnitude,
+            inverse_magnitude,
+        }
     }
 
     /// |u|, m/s^2.
     #[inline(always)]
     #[must_use]
     pub fn magnitude(&self) -> f32 {
-        self.roll.radius
+        self.magnitude
     }
 
     /// R_d as a unit quaternion, body to world.
@@ -118,13 +145,13 @@ impl DesiredAttitude {
     #[must_use]
     pub fn error(&self, attitude: &Quaternion<f32>) -> Quaternion<f32> {
         let (w, x, y, z) = (attitude.w, attitude.i, attitude.j, attitude.k);
-        let (cos, sin) = (self.nu.x, self.nu.y);
+        let (cos, sin) = (self.yaw.x, self.yaw.y);
         let (c, s) = if cos >= 0.0 { (1.0 + cos, sin) } else { (sin, 1.0 - cos) };
         let (w, x, y, z) = (c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w);
         // The cosines of pitch and roll are positive.
-        let (c, s) = (1.0 + self.pitch.cos, self.pitch.sin);
+        let (c, s) = (1.0 + self.pitch.x, self.pitch.y);
         let (w, x, y, z) = (c * w + s * y, c * x - s * z, c * y - s * w, c * z + s * x);
-        let (c, s) = (1.0 + self.roll.cos, self.roll.sin);
+        let (c, s) = (1.0 + self.roll.x, self.roll.y);
         Quaternion::new(c * w + s * x, c * x - s * w, c * y + s * z, c * z - s * y)
     }
 
@@ -137,77 +164,41 @@ impl DesiredAttitude {
         command_acceleration: &Vector3<f32>,
         heading: &Heading,
     ) -> AngularMotion {
-        let Self { nu, h, pitch, roll } = self;
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
         let (yaw_rate, yaw_acceleration) = (heading.rate(), heading.acceleration());
-        // h', h'': derivatives of the components in the heading frame.
-        let turned = turn(nu, command_rate);
-        let h_rate = Vector3::new(turned.x + yaw_rate * h.y, turned.y - yaw_rate * h.x, turned.z);
-        let turned_again = turn(nu, command_acceleration);
-        let h_acceleration = Vector3::new(
-            turned_again.x + yaw_rate * (turned.y + h_rate.y) + yaw_acceleration * h.y,
-            turned_again.y - yaw_rate * (turned.x + h_rate.x) - yaw_acceleration * h.x,
-            turned_again.z,
-        );
-        let pitching = pitch.rates([h_rate.z, h_acceleration.z], [h_rate.x, h_acceleration.x]);
-        let rolling = roll.rates([pitching.radius[0], pitching.radius[1]], [-h_rate.y, -h_acceleration.y]);
+        let rate = self.turned_back(command_rate);
+        let acceleration = self.turned_back(command_acceleration);
+        let double_magnitude_rate = rate.z + rate.z;
 
-        let ([a, a_rate], [phi_rate, phi_acceleration]) = (pitching.angle, rolling.angle);
-        let b = yaw_rate * pitch.cos;
-        let b_rate = yaw_acceleration * pitch.cos - yaw_rate * pitch.sin * a;
-        let velocity =
-            Vector3::new(phi_rate - yaw_rate * pitch.sin, a * roll.cos + b * roll.sin, b * roll.cos - a * roll.sin);
-        let acceleration = Vector3::new(
-            phi_acceleration - yaw_acceleration * pitch.sin - b * a,
-            a_rate * roll.cos + b_rate * roll.sin + phi_rate * velocity.z,
-            b_rate * roll.cos - a_rate * roll.sin - phi_rate * velocity.y,
-        );
-        AngularMotion { velocity, acceleration }
+        let x = -rate.y * self.inverse_magnitude;
+        let y = rate.x * self.inverse_magnitude;
+        let z = (yaw_rate * cos_theta - y * sin_phi) * self.roll_secant;
+        let x_rate = y * z - (acceleration.y + double_magnitude_rate * x) * self.inverse_magnitude;
+        let y_rate = (acceleration.x - double_magnitude_rate * y) * self.inverse_magnitude - x * z;
+        let theta_rate = y * cos_phi - z * sin_phi;
+        let turning = x + (yaw_rate + yaw_rate) * sin_theta;
+        let z_rate = (yaw_acceleration * cos_theta - y_rate * sin_phi - theta_rate * turning) * self.roll_secant;
+        AngularMotion { velocity: Vector3::new(x, y, z), acceleration: Vector3::new(x_rate, y_rate, z_rate) }
+    }
+
+    /// R_d^T v.
+    #[inline(always)]
+    fn turned_back(&self, v: &Vector3<f32>) -> Vector3<f32> {
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
+        let h = turned_back_by_yaw(&self.yaw, v);
+        let along = cos_theta * h.z + sin_theta * h.x;
+        Vector3::new(
+            cos_theta * h.x - sin_theta * h.z,
+            cos_phi * h.y + sin_phi * along,
+            cos_phi * along - sin_phi * h.y,
+        )
     }
 }
 
-/// Components in the heading frame, R_z(psi)^T v.
+/// Components in the heading frame, R_z(psi)^T v, for the cosine and sine of psi.
 #[inline(always)]
-fn turn(nu: &Vector2<f32>, v: &Vector3<f32>) -> Vector3<f32> {
-    Vector3::new(nu.x * v.x + nu.y * v.y, nu.x * v.y - nu.y * v.x, v.z)
-}
-
-/// A pair of components (x, y) read as polar coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Polar {
-    cos: f32,
-    sin: f32,
-    radius: f32,
-    /// 1 / radius.
-    inverse: f32,
-}
-
-/// First and second derivatives of polar coordinates.
-#[derive(Clone, Copy)]
-struct PolarRates {
-    radius: [f32; 2],
-    angle: [f32; 2],
-}
-
-impl Polar {
-    /// The radius must not be zero.
-    #[inline(always)]
-    fn new(x: f32, y: f32) -> Self {
-        let radius = math::sqrt(x * x + y * y);
-        let inverse = 1.0 / radius;
-        Self { cos: x * inverse, sin: y * inverse, radius, inverse }
-    }
-
-    /// From the first and second derivatives of x and y.
-    #[inline(always)]
-    fn rates(&self, [dx, ddx]: [f32; 2], [dy, ddy]: [f32; 2]) -> PolarRates {
-        let Self { cos, sin, inverse, .. } = self;
-        let radius_rate = cos * dx + sin * dy;
-        let tangential = cos * dy - sin * dx;
-        let angle_rate = tangential * inverse;
-        let radius_acceleration = cos * ddx + sin * ddy + tangential * angle_rate;
-        let angle_acceleration = (cos * ddy - sin * ddx - (radius_rate + radius_rate) * angle_rate) * inverse;
-        PolarRates { radius: [radius_rate, radius_acceleration], angle: [angle_rate, angle_acceleration] }
-    }
+fn turned_back_by_yaw(yaw: &Vector2<f32>, v: &Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(yaw.x * v.x + yaw.y * v.y, yaw.x * v.y - yaw.y * v.x, v.z)
 }
 
 #[cfg(test)]

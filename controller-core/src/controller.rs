@@ -50,9 +50,16 @@ use crate::state::{State, Wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
 
-/// Inputs and outputs whose squares add up to less are finite and within their ranges, the narrowest of which is
-/// [`DERIVATIVE_RANGE`]; a tenth of its square leaves the sum's rounding room.
-const USUAL_SQUARES: f32 = 0.1 * DERIVATIVE_RANGE * DERIVATIVE_RANGE;
+/// Inputs whose squares add up to less are finite and within their ranges, and no number on the way to the wrench overflows
+/// while the command is steeper than [`USUAL_CLIMB`] and the vehicle lighter than [`USUAL_VEHICLE`]: omega_d' then stays
+/// below 1e28.
+const USUAL_SQUARES: f32 = 0.01 * DERIVATIVE_RANGE * DERIVATIVE_RANGE;
+
+/// How far p_d'' + g is above M_p at least, m/s^2.
+const USUAL_CLIMB: f32 = 0.1;
+
+/// Mass, inertia and gravity, SI.
+const USUAL_VEHICLE: f32 = 1e4;
 
 /// Everything the law remembers from one tick to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,8 +80,6 @@ impl Memory {
 pub struct Command {
     /// T and tau.
     pub wrench: Wrench,
-    /// p~, m, world.
-    pub position_error: Vector3<f32>,
     /// theta~.
     pub mrp: Vector3<f32>,
 }
@@ -128,6 +133,10 @@ pub struct Controller {
     transition: FilterTransition,
     switching_scalar: f32,
     thrust_floor: Option<f32>,
+    /// [`USUAL_SQUARES`], or zero where the vehicle is not usual.
+    usual_squares: f32,
+    /// M_p and [`USUAL_CLIMB`], m/s^2.
+    usual_climb: f32,
     memory: Memory,
 }
 
@@ -161,8 +170,19 @@ impl Controller {
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);
         let attitude_law = AttitudeLaw::new(&gains, &vehicle.inertia);
-        let memory = Memory::RESET;
-        Ok(Self { vehicle, gains, position_law, attitude_law, transition, switching_scalar, thrust_floor, memory })
+        let heaviest = vehicle.mass.max(vehicle.inertia.max()).max(vehicle.gravity);
+        Ok(Self {
+            vehicle,
+            gains,
+            position_law,
+            attitude_law,
+            transition,
+            switching_scalar,
+            thrust_floor,
+            usual_squares: if heaviest <= USUAL_VEHICLE { USUAL_SQUARES } else { 0.0 },
+            usual_climb: gains.m_p + USUAL_CLIMB,
+            memory: Memory::RESET,
+        })
     }
 
     /// Changes the time by which the next steps advance the filters, s.
@@ -197,8 +217,8 @@ impl Controller {
     /// As [`Self::step`].
     #[inline(never)]
     pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
-        let (wrench, Diagnostics { position_error, mrp, .. }) = self.step(state, reference)?;
-        Ok(Command { wrench, position_error, mrp })
+        let (wrench, Diagnostics { mrp, .. }) = self.step(state, reference)?;
+        Ok(Command { wrench, mrp })
     }
 
     /// One tick of the law.
@@ -210,34 +230,42 @@ impl Controller {
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
         let FilterState { filtered, intermediate } = self.memory.filter;
+        let travelled = state.travel_squares() + reference.travel_squares();
         let command = self.position_law.command(state, reference, &self.memory.filter);
-        let desired = DesiredAttitude::new(&command.acceleration_command, &reference.heading);
         let CommandRates { jerk_command, snap_command } =
             self.position_law.rates(reference, &self.memory.filter, &command.feedback);
+        let filter = self.transition.advance(&self.memory.filter, &command.feedback);
+
+        // Nearly every input passes at once. One that does not is looked at, and may have to leave no trace in the end.
+        let climbs = reference.acceleration.z + self.vehicle.gravity > self.usual_climb;
+        let squares = travelled
+            + state.turning_squares()
+            + reference.rate_squares()
+            + command.acceleration_command.norm_squared();
+        let usual = state.has_unit_attitude() & climbs & (squares <= self.usual_squares);
+        let before = if usual { None } else { Some(self.examine(state, reference)?) };
+        self.memory.filter = filter;
+
+        let desired = DesiredAttitude::new(&command.acceleration_command, &reference.heading);
         let motion = desired.motion(&jerk_command, &snap_command, &reference.heading);
-        let is_rotation = state.has_unit_attitude();
-        let mass = self.vehicle.mass;
-        let thrust = match self.thrust_floor {
-            None => mass * desired.magnitude(),
-            Some(floor) => projected_thrust(mass, &command.acceleration_command, &state.attitude, floor),
-        };
         let error = desired.error(&state.attitude);
         let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
-        let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } = self
-            .attitude_law
-            .command(&lifted.quaternion, &state.angular_velocity, &motion.velocity, &motion.acceleration);
-        let wrench = Wrench { thrust, torque };
-
-        // Nothing is remembered yet, so this is early enough to look at the input. Nearly every one passes at once.
-        let climbs = reference.acceleration.z > self.gains.m_p - self.vehicle.gravity;
-        let usual = state.squares() + reference.squares() + wrench.squares() <= USUAL_SQUARES;
-        if !(is_rotation && climbs && usual) {
-            self.examine(state, reference, thrust + torque.sum())?;
-        }
-
-        self.memory.filter = self.transition.advance(&self.memory.filter, &command.feedback);
         if lifted.jumped {
             self.memory.lift = Some(lifted.lift);
+        }
+        let thrust = self.vehicle.mass * desired.magnitude();
+        let thrust = self.thrust_floor.map_or(thrust, |floor| projected_thrust(thrust, &error, floor));
+        let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } = self
+            .attitude_law
+            .command(&error, lifted.factor, &state.angular_velocity, &motion.velocity, &motion.acceleration);
+        let wrench = Wrench { thrust, torque };
+
+        if let Some(before) = before
+            && !wrench.is_finite()
+        {
+            // Inputs in range can overflow together, on a reference that all but cancels gravity.
+            self.memory = before;
+            return Err(InputError::OutOfRange { field: "reference" });
         }
         let diagnostics = Diagnostics {
             position_error: command.position_error,
@@ -261,17 +289,16 @@ impl Controller {
         Ok((wrench, diagnostics))
     }
 
-    /// What is wrong with an input that stands out, if anything.
+    /// What is wrong with an input that stands out; the memory as it is, if nothing.
     #[cold]
     #[inline(never)]
-    fn examine(&self, state: &State, reference: &Reference, wrench_sum: f32) -> Result<(), InputError> {
+    fn examine(&self, state: &State, reference: &Reference) -> Result<Memory, InputError> {
         state.check()?;
         reference.check()?;
         if reference.acceleration.z <= self.gains.m_p - self.vehicle.gravity {
             return Err(InputError::FallsTooFast);
         }
-        // Inputs in range can still overflow together, on a reference that all but cancels gravity.
-        if wrench_sum.is_finite() { Ok(()) } else { Err(InputError::OutOfRange { field: "reference" }) }
+        Ok(self.memory)
     }
 }
 
@@ -309,6 +336,60 @@ mod tests {
         used.reset();
         assert_eq!(used.memory(), Memory::RESET);
         assert_eq!(used.step(&away, &reference).unwrap(), first);
+    }
+
+    /// Table I's vehicle all but falling with its reference: how far p_d'' + g is above M_p, and how large the rest is.
+    fn plunge(climb: f32, rates: f32) -> (Controller, State, Reference) {
+        let mut controller = controller();
+        let m_p = controller.gains.m_p;
+        let filtered = Vector3::new(m_p, -m_p, -m_p);
+        controller.restore(Memory { filter: FilterState { filtered, intermediate: -filtered }, lift: None });
+        let half = core::f32::consts::FRAC_1_SQRT_2;
+        let attitude = Quaternion::new(half, -half, 0.0, 0.0);
+        let turning = Vector3::new(-rates, rates, rates);
+        let state = State { position: turning, velocity: -turning, attitude, angular_velocity: turning };
+        let reference = Reference {
+            position: -turning,
+            velocity: turning,
+            acceleration: Vector3::new(-rates, rates, m_p - controller.vehicle.gravity + climb),
+            jerk: turning,
+            snap: -turning,
+            heading: Heading::new(nalgebra::Vector2::new(-half, half), rates, -rates).unwrap(),
+        };
+        (controller, state, reference)
+    }
+
+    #[test]
+    fn no_usual_input_overflows() {
+        let vehicle = Vehicle::new(VehicleParameters {
+            mass: USUAL_VEHICLE,
+            inertia: Vector3::repeat(USUAL_VEHICLE),
+            gravity: USUAL_VEHICLE,
+        });
+        let gains = GainParameters { k_f: 999.0, k_s: 999.0, m_p: 999.0, ..GainParameters::TABLE_1 };
+        let gains = Gains::new(gains, &vehicle.unwrap()).unwrap();
+        let mut heavy = Controller::uncertified(vehicle.unwrap(), gains, None, 0.01).unwrap();
+        for rates in [1.0, 1e2, 2e4] {
+            let (mut controller, state, mut reference) = plunge(1.1 * USUAL_CLIMB, rates);
+            let (wrench, diagnostics) = controller.step(&state, &reference).unwrap();
+            assert!(wrench.is_finite() && diagnostics.desired_angular_acceleration.amax() < 1e28);
+            heavy.restore(Memory::RESET);
+            reference.acceleration.z = 1.1 * USUAL_CLIMB + gains.m_p - USUAL_VEHICLE;
+            assert!(heavy.step(&state, &reference).unwrap().0.is_finite());
+        }
+    }
+
+    #[test]
+    fn an_input_that_overflows_on_the_way_is_refused_and_leaves_no_trace() {
+        let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
+        let star = Vehicle::new(VehicleParameters { mass: 3e38, inertia, gravity: 9.81 }).unwrap();
+        let gains = Gains::new(GainParameters::TABLE_1, &star).unwrap();
+        let mut controller = Controller::uncertified(star, gains, None, 0.01).unwrap();
+        let (_, state, reference) = plunge(USUAL_CLIMB, 1.0);
+        let before = controller.clone();
+        let refused = controller.step(&state, &reference);
+        assert_eq!(refused.unwrap_err(), InputError::OutOfRange { field: "reference" });
+        assert_eq!(controller, before);
     }
 
     #[test]

@@ -62,7 +62,7 @@
 //!
 //! | paper | what it says | here | checked by |
 //! |---|---|---|---|
-//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh_of_double`], [`position::PositionLaw::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
+//! | Definition 1 | saturation sigma; M tanh(s / M) in Section VI | [`math::tanh_of_scaled`], [`position::PositionLaw::command`] | math.rs: `tanh_is_within_its_stated_error_odd_and_bounded`; the independent law |
 //! | Section II | R(q), phi(q), Upsilon(theta), T(theta) | [`mrp::rotation`], [`mrp::from_quaternion`], [`mrp::shadow`], [`mrp::kinematics`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from`, `the_shadow_of_the_shadow_is_the_parameter_and_unit_length_is_the_border`, `parameters_move_as_their_kinematics_say` |
 //! | (1) | rotation from MRP, sign put right | [`mrp::to_rotation`] | tests/kinematics.rs: `parameters_and_their_shadow_describe_the_rotation_they_came_from` |
 //! | (2a), (2b) | the rigid body | `host_sim::plant`; its constants are [`vehicle::Vehicle`] | host-sim/src/plant/tests.rs: `agrees_with_a_plain_integration_of_the_printed_equations` |

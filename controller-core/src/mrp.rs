@@ -11,7 +11,7 @@
 //! The printed eq. (1) has a minus before its middle term, which with the paper's own R(q), phi and T gives the
 //! transpose; here it is the plus that makes R_theta(phi(q)) = R(q).
 //!
-//! The tick uses [`from_quaternion`] only, behind the path lifting, which keeps 1 + q_0 away from zero.
+//! The tick uses [`from_multiple`] only, behind the path lifting, which keeps 1 + q_0 away from zero.
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
@@ -23,10 +23,16 @@ pub fn rotation(q: &Quaternion<f32>) -> Matrix3<f32> {
 }
 
 /// phi(q) for a unit quaternion other than (-1, 0, 0, 0), where it is infinite.
-#[inline]
 #[must_use]
 pub fn from_quaternion(q: &Quaternion<f32>) -> Vector3<f32> {
-    q.imag() * (1.0 / (1.0 + q.w))
+    from_multiple(q, 1.0, 1.0)
+}
+
+/// phi of the unit quaternion `sign` Q / N for a quaternion Q of length N: `sign` Q_1 / (N + `sign` Q_0).
+#[inline(always)]
+#[must_use]
+pub fn from_multiple(q: &Quaternion<f32>, sign: f32, length: f32) -> Vector3<f32> {
+    q.imag() * (sign / (length + sign * q.w))
 }
 
 /// The shadow parameters of the same rotation, Upsilon(theta), theta not zero.

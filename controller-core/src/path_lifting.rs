@@ -37,6 +37,8 @@ pub struct Lift {
 pub struct Lifted {
     /// m* Phi(q_hat, R~), a unit quaternion with q_0 above [`switching_scalar`].
     pub quaternion: Quaternion<f32>,
+    /// +1 or -1: the error given is N times this along the lift.
+    pub factor: f32,
     /// theta~ = phi of it, |theta~| <= 1 + delta.
     pub mrp: Vector3<f32>,
     /// The memory after this instant's jumps.
@@ -54,8 +56,9 @@ pub fn switching_scalar(delta: f32) -> f32 {
 
 /// Lifts the attitude error `error`, continuing from `lift` or starting afresh.
 ///
-/// `error` is a quaternion along R~, of either sign and any length N: both sides of each comparison are multiplied by N, and
-/// one factor then carries Phi's sign, m* and 1/N. `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the
+/// `error` is a quaternion along R~, of either sign and any length N: both sides of each comparison are multiplied by N. A
+/// memory that does not jump is at least 1 - alpha along one lift, so that one comparison says both that nothing jumps and
+/// which lift is the nearest. `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the
 /// memory's distance, 1 - q_hat . p.
 #[inline(always)]
 #[must_use]
@@ -67,25 +70,29 @@ pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: 
         None => Lift { memory: *error * (canonical_sign(error) / length), sign: 1.0 },
     };
     let agreement = memory.w * error.w + memory.i * error.i + memory.j * error.j + memory.k * error.k;
-    let nearest = if agreement > 0.0 {
-        1.0
-    } else if agreement < 0.0 {
-        -1.0
-    } else {
-        canonical_sign(error)
-    };
-    if sign * nearest * error.w <= switching_scalar * length {
+    let near = (1.0 - alpha) * length;
+    let mut factor = sign; // m* times the nearest lift's sign
+    let mut follows = false;
+    if agreement <= near {
+        if agreement < 0.0 || agreement == 0.0 && canonical_sign(error) < 0.0 {
+            factor = -sign;
+        }
+        follows = agreement >= -near;
+    }
+    if factor * error.w <= switching_scalar * length {
         cold_path();
         sign = -sign;
+        factor = -factor;
         jumped = true;
     }
-    let quaternion = *error * (sign * nearest / length);
-    if agreement.abs() <= (1.0 - alpha) * length {
+    let quaternion = *error * (factor / length);
+    if follows {
         cold_path();
         memory = quaternion * sign;
         jumped = true;
     }
-    Lifted { quaternion, mrp: mrp::from_quaternion(&quaternion), lift: Lift { memory, sign }, jumped }
+    let mrp = mrp::from_multiple(error, factor, length);
+    Lifted { quaternion, factor, mrp, lift: Lift { memory, sign }, jumped }
 }
 
 /// The sign of the one of ±q with q_0 > 0, or at q_0 = 0 with its first non-zero vector component positive.

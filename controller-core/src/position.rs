@@ -18,7 +18,10 @@
 //!
 //! k_p / M_p,  (k_p (1/k_f + 1/k_s) + k_v) / M_p,  (k_p / (k_s k_f) + k_v / k_f) / M_p,  k_v / (k_s M_p),
 //!
-//! and halves of these, because tanh is worked out from half its argument.
+//! all multiplied by the scale at which [`math::tanh_of_scaled`] takes its argument. u' and u'' are made of the differences
+//! u_s - u_f and ubar_p - u_s, which the filters' step needs too:
+//!
+//! u' = k_f (u_s - u_f) + p_d''',  u'' = k_f k_s (ubar_p - u_s) - k_f^2 (u_s - u_f) + p_d''''.
 
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::gains::{GainParameters, Gains};
@@ -103,14 +106,17 @@ impl FilterTransition {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
     k_f: f32,
-    k_s: f32,
+    /// k_f^2, 1/s^2.
+    k_f_squared: f32,
+    /// k_f k_s, 1/s^2.
+    k_f_k_s: f32,
     m_p: f32,
     /// 1 / k_f, s.
     second_lag: f32,
     /// 1 / k_s, s.
     first_lag: f32,
-    /// Weights of p~, v~, u_f and u_s in (k_p z_1 + k_v z_2) / (2 M_p).
-    half_weights: [f32; 4],
+    /// Weights of p~, v~, u_f and u_s in (k_p z_1 + k_v z_2) / M_p, scaled as [`math::tanh_of_scaled`] wants it.
+    weights: [f32; 4],
     /// g, m/s^2.
     gravity: f32,
 }
@@ -147,9 +153,10 @@ impl PositionLaw {
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;
         let [p, v, f, s, m] = [gains.k_p, gains.k_v, k_f, k_s, m_p].map(f64::from);
-        let half_weights =
-            [p, p * (1.0 / f + 1.0 / s) + v, (p / s + v) / f, v / s].map(|weight| (0.5 * weight / m) as f32);
-        Self { k_f, k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, half_weights, gravity }
+        let weights = [p, p * (1.0 / f + 1.0 / s) + v, (p / s + v) / f, v / s]
+            .map(|weight| (weight / m * math::TANH_SCALE) as f32);
+        let (k_f_squared, k_f_k_s) = ((f * f) as f32, (f * s) as f32);
+        Self { k_f, k_f_squared, k_f_k_s, m_p, second_lag: 1.0 / k_f, first_lag: 1.0 / k_s, weights, gravity }
     }
 
     /// Evaluates the law at one instant; the filters are read, not advanced.
@@ -157,20 +164,20 @@ impl PositionLaw {
     #[must_use]
     pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
         let Self { second_lag, first_lag, .. } = *self;
-        let [of_position, of_velocity, of_filtered, of_intermediate] = self.half_weights;
+        let [of_position, of_velocity, of_filtered, of_intermediate] = self.weights;
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
         let a = &reference.acceleration;
 
         let position_error = state.position - reference.position;
         let velocity_error = state.velocity - reference.velocity;
-        let half =
+        let scaled =
             position_error * of_position + velocity_error * of_velocity + u_f * of_filtered + u_s * of_intermediate;
         PositionCommand {
             position_error,
             velocity_error,
             z_1: position_error + velocity_error * (second_lag + first_lag) + u_f * (second_lag * first_lag),
             z_2: velocity_error + u_f * second_lag + u_s * first_lag,
-            feedback: math::tanh_of_doubles(&half) * -self.m_p,
+            feedback: math::tanh_of_all_scaled(&scaled) * -self.m_p,
             acceleration_command: Vector3::new(u_f.x + a.x, u_f.y + a.y, u_f.z + (a.z + self.gravity)),
         }
     }
@@ -180,11 +187,11 @@ impl PositionLaw {
     #[must_use]
     pub fn rates(&self, reference: &Reference, filter: &FilterState, feedback: &Vector3<f32>) -> CommandRates {
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
-        let filtered_rate = (u_s - u_f) * self.k_f;
-        let intermediate_rate = (feedback - u_s) * self.k_s;
+        let towards_intermediate = u_s - u_f;
+        let towards_feedback = feedback - u_s;
         CommandRates {
-            jerk_command: filtered_rate + reference.jerk,
-            snap_command: (intermediate_rate - filtered_rate) * self.k_f + reference.snap,
+            jerk_command: reference.jerk + towards_intermediate * self.k_f,
+            snap_command: reference.snap + towards_feedback * self.k_f_k_s - towards_intermediate * self.k_f_squared,
         }
     }
 }

@@ -41,17 +41,23 @@ pub(crate) fn sum_of_squares(vectors: &[&Vector3<f32>]) -> f32 {
     vectors.iter().fold(0.0, |sum, v| sum + v.x * v.x + v.y * v.y + v.z * v.z)
 }
 
-/// |q|^2, summed in one order everywhere.
+/// |q|^2, summed in one order everywhere: its parts then serve others.
 #[inline(always)]
 pub(crate) fn length_squared(q: &Quaternion<f32>) -> f32 {
-    q.w * q.w + q.i * q.i + q.j * q.j + q.k * q.k
+    q.i * q.i + q.j * q.j + q.k * q.k + q.w * q.w
 }
 
 impl State {
-    /// The sum of the squares of everything but the attitude.
+    /// The sum of the squares of position and velocity.
     #[inline(always)]
-    pub(crate) fn squares(&self) -> f32 {
-        sum_of_squares(&[&self.position, &self.velocity, &self.angular_velocity])
+    pub(crate) fn travel_squares(&self) -> f32 {
+        sum_of_squares(&[&self.position, &self.velocity])
+    }
+
+    /// The sum of the squares of the angular velocity.
+    #[inline(always)]
+    pub(crate) fn turning_squares(&self) -> f32 {
+        sum_of_squares(&[&self.angular_velocity])
     }
 
     /// Whether the attitude is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
@@ -87,9 +93,8 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// The sum of all squares.
-    #[inline(always)]
-    pub(crate) fn squares(&self) -> f32 {
-        self.thrust * self.thrust + self.torque.norm_squared()
+    /// Whether every component is.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.thrust.is_finite() && self.torque.iter().all(|component| component.is_finite())
     }
 }

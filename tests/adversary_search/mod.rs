@@ -158,6 +158,7 @@ impl Situation {
         let law = AttitudeLaw::new(configuration.gains(), &configuration.vehicle().inertia);
         law.command(
             error,
+            1.0,
             &(self.rate_error + attitude::rotate_back(error, &desired.angular_velocity)),
             &desired.angular_velocity,
             &desired.angular_acceleration,

@@ -166,7 +166,8 @@ impl Chain {
     #[inline]
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
-        let Command { wrench, position_error, mrp } = self.controller.command(state, &self.reference)?;
+        let Command { wrench, mrp } = self.controller.command(state, &self.reference)?;
+        let position_error = state.position - self.reference.position;
         let allocation = self.mixer.allocate(&wrench)?;
         self.refusals = 0;
         self.thrusts = Some(allocation.thrusts);
