@@ -11,7 +11,8 @@
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `smoother`: the averages in integers, and the quintic spline that makes the output one smooth function of time;
 //! - `turning`: the same for the heading;
-//! - `bridge`: how a reference already accelerating is taken over.
+//! - `take_over`, `bridge`: how a reference already accelerating is taken over. A [`Governor`] starts from steady motion and
+//!   knows nothing of this; a [`TakeOver`] puts a bridge before one.
 //!
 //! What holds by construction: every bound, at every instant (on a bridge: every tick), whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
@@ -22,8 +23,7 @@
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
 //! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and accelerating
 //! as it does, within the bounds; what changes within a second or two comes out smoothed, and a circle too tight for the
-//! averages comes out smaller. A start that accelerates is first brought to a
-//! steady velocity (`bridge`); setpoints take effect then.
+//! averages comes out smaller.
 
 mod braking;
 mod bridge;
@@ -31,20 +31,22 @@ mod lead;
 mod pursuit;
 mod setpoint;
 mod smoother;
+mod take_over;
 mod turning;
 mod windows;
 
 pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
+pub use take_over::{TakeOver, TakeOverError};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
+use crate::heading::Heading;
 use crate::reference::{Reference, ReferenceBounds};
-use bridge::Bridge;
-use core::fmt;
+use crate::state::check_vector;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use smoother::{Knot, Smoother};
-use turning::{TurnGoal, Turning};
+use turning::{TURN_HISTORY, TurnGoal, Turning};
 use windows::Windows;
 
 /// Ticks of commands remembered: what the three averages may span together.
@@ -75,49 +77,6 @@ impl Default for GovernorLimits {
     }
 }
 
-/// Why a governor does not start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum GovernorError {
-    /// A bound, limit or period it cannot work with.
-    Parameter(ParameterError),
-    /// A starting reference that is not finite or out of range.
-    Start(InputError),
-    /// A starting reference from which no way to rest inside the bounds was found.
-    NoWayOn {
-        /// The part of the reference to blame.
-        field: &'static str,
-    },
-}
-
-impl From<ParameterError> for GovernorError {
-    #[inline]
-    fn from(error: ParameterError) -> Self {
-        Self::Parameter(error)
-    }
-}
-
-impl From<InputError> for GovernorError {
-    #[inline]
-    fn from(error: InputError) -> Self {
-        Self::Start(error)
-    }
-}
-
-impl fmt::Display for GovernorError {
-    #[inline]
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter(error) => write!(f, "{error}"),
-            Self::Start(error) => write!(f, "{error}"),
-            Self::NoWayOn { field } => write!(f, "{field}: cannot be brought to rest within the reference bounds"),
-        }
-    }
-}
-
-impl core::error::Error for GovernorError {}
-
 /// What the position is to do, in length units and ticks where exactness matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Goal {
@@ -132,42 +91,52 @@ enum Goal {
     },
 }
 
-/// The bounded-reference generator. Memory: about 7 KB.
+/// The commands that the averages remember, 6.7 KB: whoever makes a governor says where they lie.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Governor {
-    bounds: ReferenceBounds,
+pub struct Memory {
+    accelerations: [Vector3<i32>; HISTORY],
+    turns: [i64; TURN_HISTORY],
+}
+
+impl Memory {
+    /// Of nothing.
+    pub const EMPTY: Self = Self { accelerations: [Vector3::new(0, 0, 0); HISTORY], turns: [0; TURN_HISTORY] };
+}
+
+/// The bounded-reference generator.
+#[derive(Debug, PartialEq)]
+pub struct Governor<'m> {
     period: f32,
     /// Ticks after which what must be renewed is stale.
     timeout: u32,
     windows: Windows,
     pursuit: Pursuit,
     lead: Lead,
-    smoother: Smoother,
-    turning: Turning,
-    bridge: Option<(Bridge, u32)>,
+    smoother: Smoother<'m>,
+    turning: Turning<'m>,
     goal: Goal,
     goal_age: u32,
     turn: TurnGoal,
     turn_age: u32,
 }
 
-impl Governor {
-    /// A governor for `bounds` that ticks every `period` seconds, starting at `initial`.
+impl<'m> Governor<'m> {
+    /// A governor for `bounds` that ticks every `period` seconds, at rest at the origin along world x. What is in `memory`
+    /// is lost.
     ///
     /// # Errors
-    /// [`GovernorError::Parameter`] for a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too
-    /// unlike each other for the integers; otherwise as [`Self::restart`].
+    /// For a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too unlike each other for the
+    /// integers.
     #[inline]
     pub fn new(
-        bounds: ReferenceBounds,
-        limits: GovernorLimits,
+        bounds: &ReferenceBounds,
+        limits: &GovernorLimits,
         period: f32,
-        initial: &Reference,
-    ) -> Result<Self, GovernorError> {
-        let bounds = bounds.validated()?;
-        require_positive(period, "governor.period")?;
-        require(period <= 0.1, "governor.period", Reason::NotAbove(0.1))?;
+        memory: &'m mut Memory,
+    ) -> Result<Self, ParameterError> {
+        bounds.validated()?;
         for (value, most, field) in [
+            (period, 0.1, "governor.period"),
             (limits.horizontal_speed, SPEED_RANGE, "governor.horizontal_speed"),
             (limits.vertical_speed, SPEED_RANGE, "governor.vertical_speed"),
             (limits.snap_ramp, LONGEST_TIME, "governor.snap_ramp"),
@@ -177,9 +146,8 @@ impl Governor {
             require_positive(value, field)?;
             require(value <= most, field, Reason::NotAbove(most))?;
         }
-        let windows = Windows::design(&bounds, &limits, period)?;
-        let mut governor = Self {
-            bounds,
+        let windows = Windows::design(bounds, limits, period)?;
+        Ok(Self {
             period,
             timeout: windows::ticks(limits.timeout, period) as u32,
             windows,
@@ -189,57 +157,39 @@ impl Governor {
                 variance: windows.variance() * period * period,
                 acceleration: windows.horizontal / (windows.per_metre * period * period),
             },
-            smoother: Smoother::new(&windows, period),
-            turning: Turning::new(&bounds, &limits, period)?,
-            bridge: None,
+            smoother: Smoother::new(&windows, period, &mut memory.accelerations),
+            turning: Turning::new(bounds, limits, period, &mut memory.turns)?,
             goal: Goal::Stop,
             goal_age: 0,
             turn: TurnGoal::Stop,
             turn_age: 0,
-        };
-        governor.restart(initial)?;
-        Ok(governor)
+        })
     }
 
-    /// Takes over from any reference, in motion or not; without setpoints it is brought to a smooth stop.
-    ///
-    /// A change of mode, not a tick: the search for a way on (see the module `bridge`) has no tick's time limit.
+    /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its rates are
+    /// dropped). Without setpoints it is brought to a smooth stop.
     ///
     /// # Errors
-    /// [`GovernorError::Start`] for numbers not finite or out of range, [`GovernorError::NoWayOn`] for a reference outside
-    /// the bounds or about to leave them. The governor goes on as before then.
+    /// For numbers not finite or out of range; the governor goes on as before then.
     #[inline]
-    pub fn restart(&mut self, from: &Reference) -> Result<(), GovernorError> {
-        from.check()?;
-        crate::state::check_vector(&from.position, POSITION_RANGE, "initial.position")?;
-        crate::state::check_vector(&from.velocity, SPEED_RANGE, "initial.velocity")?;
-        let start = Knot {
-            position: from.position,
-            velocity: from.velocity,
-            acceleration: from.acceleration,
-            jerk: from.jerk,
-            snap: from.snap,
-        };
-        if !self.bounds.contain(from, 1e-6) {
-            return Err(GovernorError::NoWayOn { field: "initial reference" });
-        }
-        let bridge = if bridge::is_steady(&start) {
-            None
-        } else {
-            let found = Bridge::search(&start, &self.bounds, self.period, self.windows.first());
-            Some(found.ok_or(GovernorError::NoWayOn { field: "initial.acceleration" })?)
-        };
-        self.turning.start(&from.heading)?;
-        self.bridge = bridge.map(|bridge| (bridge, 0));
-        self.settle(&start);
+    pub fn start(
+        &mut self,
+        position: &Vector3<f32>,
+        velocity: &Vector3<f32>,
+        heading: &Heading,
+    ) -> Result<(), InputError> {
+        check_vector(position, POSITION_RANGE, "initial.position")?;
+        check_vector(velocity, SPEED_RANGE, "initial.velocity")?;
+        self.settle(position, velocity);
+        self.turning.start(turning::phase_of(heading), 0);
         self.stop();
         Ok(())
     }
 
-    /// Hands a steady knot to the smoother.
+    /// Hands a steady velocity to the smoother.
     #[inline]
-    fn settle(&mut self, knot: &Knot) {
-        self.smoother.start(self.length(&knot.position), self.length(&(knot.velocity * self.period)));
+    fn settle(&mut self, position: &Vector3<f32>, velocity: &Vector3<f32>) {
+        self.smoother.start(self.length(position), self.length(&(velocity * self.period)));
     }
 
     /// Metres as length units.
@@ -287,45 +237,36 @@ impl Governor {
     #[must_use]
     #[inline]
     pub fn at_rest(&self) -> bool {
-        let commanded = self.pursue() != Vector3::zeros();
-        self.bridge.is_none() && !commanded && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
+        self.pursue() == Vector3::zeros() && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
     #[inline]
     pub fn tick(&mut self) -> Reference {
-        self.goal_age = self.goal_age.saturating_add(1);
-        self.turn_age = self.turn_age.saturating_add(1);
-        self.turning.tick(&self.turn_goal());
-        let knot = match self.bridge {
-            Some((bridge, elapsed)) => self.cross(&bridge, elapsed + 1),
-            None => {
-                let acceleration = self.pursue();
-                self.smoother.push(acceleration);
-                self.smoother.knot()
-            }
-        };
-        Reference {
-            position: knot.position,
-            velocity: knot.velocity,
-            acceleration: knot.acceleration,
-            jerk: knot.jerk,
-            snap: knot.snap,
-            heading: self.turning.heading(),
-        }
+        self.age();
+        let Knot { position, velocity, acceleration, jerk, snap } = self.travel();
+        Reference { position, velocity, acceleration, jerk, snap, heading: self.turn() }
     }
 
-    /// One tick on the bridge; the smoother starts where it ends.
+    /// A tick passes for what was asked.
     #[inline]
-    fn cross(&mut self, bridge: &Bridge, elapsed: u32) -> Knot {
-        let knot = bridge.knot(elapsed as f32);
-        if elapsed < bridge.duration() {
-            self.bridge = Some((*bridge, elapsed));
-        } else {
-            self.bridge = None;
-            self.settle(&knot);
-        }
-        knot
+    fn age(&mut self) {
+        self.goal_age = self.goal_age.saturating_add(1);
+        self.turn_age = self.turn_age.saturating_add(1);
+    }
+
+    /// The position's part of a tick.
+    #[inline]
+    fn travel(&mut self) -> Knot {
+        self.smoother.push(self.pursue());
+        self.smoother.knot()
+    }
+
+    /// The heading's part of a tick.
+    #[inline]
+    fn turn(&mut self) -> Heading {
+        self.turning.tick(&self.turn_goal());
+        self.turning.heading()
     }
 
     /// The commanded acceleration of this tick.

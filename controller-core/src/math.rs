@@ -173,13 +173,6 @@ pub fn floor(x: f64) -> f64 {
     libm::floor(x)
 }
 
-/// The angle of the point (x, y), rad in [-pi, pi], for configuration time.
-#[inline]
-#[must_use]
-pub fn atan2(y: f64, x: f64) -> f64 {
-    libm::atan2(y, x)
-}
-
 /// e^x - 1 without cancellation near zero, for configuration time.
 #[inline]
 #[must_use]

@@ -57,6 +57,7 @@ impl Reference {
     }
 
     /// Checks that every field is finite and in range.
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vector(&self.position, STATE_RANGE, "reference.position")?;
         check_vector(&self.velocity, STATE_RANGE, "reference.velocity")?;

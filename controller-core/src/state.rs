@@ -23,6 +23,7 @@ pub struct State {
 }
 
 /// Refuses non-finite components and magnitudes beyond `range`.
+#[inline]
 pub(crate) fn check_vector(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), InputError> {
     // A NaN compares false with everything, so it fails here too; no branch until all three are compared.
     let within = |component: f32| component.abs() <= range;
@@ -68,6 +69,7 @@ impl State {
     }
 
     /// Checks every field, one by one.
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vector(&self.position, STATE_RANGE, "state.position")?;
         check_vector(&self.velocity, STATE_RANGE, "state.velocity")?;

@@ -27,7 +27,7 @@ const WRITING_MAX: u64 = 2_000;
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
     shared: &'a Shared<M>,
-    pilot: &'a mut Pilot,
+    pilot: &'a mut Pilot<'static>,
     outputs: Outputs,
     timing: Timing,
     /// Whether sensors and motors are a simulator's, as the last tick found it.
@@ -46,7 +46,7 @@ struct Complaint {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
-    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
+    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
         Self { shared, pilot, outputs, timing: Timing::default(), simulated: false, complaint: Complaint::default() }
     }
 

@@ -7,7 +7,7 @@ use super::chain::{Chain, Flown};
 use super::measurement::{Newest, is_in_time};
 use super::permission::{self, MotorTest};
 use super::propagation::PropagatedAttitude;
-use super::reason::{Grounded, Refusal, blamed};
+use super::reason::{Grounded, Refusal, field};
 use super::rules::{
     self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, IMU_AGE_MAX, LEVELLING_MAX, Mode, POSE_AGE_MAX, Transition,
 };
@@ -15,13 +15,13 @@ use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::configuration::{Certified, Refused};
 use crate::error::InputError;
-use crate::governor::{GovernorLimits, Setpoint};
+use crate::governor::{GovernorLimits, Memory, Setpoint};
 use crate::state::State;
 
-/// Everything that decides what the motors do. Memory: about 15 KB, most of it the governor's and the mixer's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pilot {
-    chain: Result<Chain, Grounded>,
+/// Everything that decides what the motors do. Memory: about 8 KB, most of it the mixer's, and the governor's [`Memory`].
+#[derive(Debug, PartialEq)]
+pub struct Pilot<'m> {
+    chain: Result<Chain<'m>, Grounded>,
     mode: Mode,
     /// When the mode was entered, us.
     since: u64,
@@ -32,18 +32,22 @@ pub struct Pilot {
     test: MotorTest,
 }
 
-impl Pilot {
-    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time.
+impl<'m> Pilot<'m> {
+    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. Its
+    /// governor remembers in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
-    /// arms, and says why. On a desktop it takes 36 KB of stack (a tick takes 2 KB): to be called before
-    /// anything else needs it.
+    /// arms, and says why.
     #[must_use]
     #[inline]
-    pub fn new(certification: Result<&Certified, &Refused>, limits: GovernorLimits) -> Self {
+    pub fn new(
+        certification: Result<&Certified, &Refused>,
+        limits: &GovernorLimits,
+        memory: &'m mut Memory,
+    ) -> Self {
         Self {
             chain: match certification {
-                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6),
+                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
                 Err(refused) => Err(Grounded::from(refused)),
             },
             mode: Mode::Disarmed,
@@ -105,7 +109,7 @@ impl Pilot {
             Request::Arm => {
                 let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
                 let start = permission::to_arm(&self.imu, &self.pose, is_silent(inputs), inputs.now)?;
-                chain.start(start.position, &start.heading).map_err(|error| Refusal::Reference(blamed(error)))
+                chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
             }
             Request::MotorTest(test) => {
                 permission::to_test(&test, self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;

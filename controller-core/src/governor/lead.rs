@@ -10,6 +10,7 @@
 //! As w -> 0 the first becomes the second. Motions that change otherwise within d (a second or so) come out smoothed.
 
 use crate::math;
+use crate::reference::phase::swing;
 use nalgebra::{Vector2, Vector3};
 
 /// Turns slower than this, rad/s, are parabolas to within single precision.
@@ -50,7 +51,7 @@ impl Lead {
         let x = rate * rate * self.variance;
         let needed = math::sqrt(speed_squared) * rate.abs();
         let gain = (1.0 + 0.5 * x + 0.125 * x * x).min(CIRCLING_SHARE * self.acceleration / needed);
-        let (sin, cos) = math::sin_cos_turns(phase(rate * lead));
+        let (sin, cos) = math::sin_cos_turns(swing(rate * lead));
         let sideways = Vector2::new(-v.y, v.x);
         let along = v * (v.dot(&a) / speed_squared);
         let ahead = (v * (gain * sin) + sideways * (1.0 - gain * cos)) / rate + along * spread;
@@ -58,13 +59,6 @@ impl Lead {
         let rise = (velocity.z * lead + acceleration.z * spread, velocity.z + acceleration.z * lead);
         (Vector3::new(ahead.x, ahead.y, rise.0), Vector3::new(feed.x, feed.y, rise.1))
     }
-}
-
-/// An angle of a few radians as a phase.
-#[inline]
-fn phase(angle: f32) -> u64 {
-    const PER_RADIAN: f32 = 4_294_967_296.0 / core::f32::consts::TAU;
-    ((angle * PER_RADIAN) as i64 as u64) << 32
 }
 
 #[cfg(test)]

@@ -38,9 +38,9 @@ struct Scales {
 }
 
 /// The filter's memory. Sums carry the factor N_1 N_2 N_3; lengths are in units, times in ticks.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Smoother {
-    history: [Vector3<i32>; HISTORY],
+#[derive(Debug, PartialEq)]
+pub(super) struct Smoother<'m> {
+    history: &'m mut [Vector3<i32>; HISTORY],
     newest: usize,
     taps: [(usize, i64); 8],
     product: i64,
@@ -55,14 +55,16 @@ pub(super) struct Smoother {
     difference: [Vector3<i64>; 4],
 }
 
-impl Smoother {
+impl<'m> Smoother<'m> {
+    /// At rest at the origin.
     #[inline]
-    pub fn new(windows: &Windows, period: f32) -> Self {
+    pub fn new(windows: &Windows, period: f32, history: &'m mut [Vector3<i32>; HISTORY]) -> Self {
         let [first, second, third] = windows.lengths;
         let unit = 1.0 / (windows.per_metre * windows.product() as f32);
         let rate = 1.0 / period;
+        history.fill(Vector3::zeros());
         Self {
-            history: [Vector3::zeros(); HISTORY],
+            history,
             newest: 0,
             taps: [
                 (0, 1),
@@ -93,12 +95,13 @@ impl Smoother {
     /// Starts as if always in steady motion: the knot at hand has `position` (units) and `speed` (units a tick).
     #[inline]
     pub fn start(&mut self, position: Vector3<i64>, speed: Vector3<i64>) {
-        self.history = [Vector3::zeros(); HISTORY];
+        self.history.fill(Vector3::zeros());
         self.speed = speed;
         // N_3 is even, so is the product, and the halving is exact.
         self.trail = speed * (self.product / 2 * (self.total - 3));
         self.difference = [speed * self.product, Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
-        self.commanded = position + self.trail.map(|trail| divided(trail, self.product)) + speed * 2;
+        // trail / N, rounded to the nearest, and the two ticks that the control points are ahead.
+        self.commanded = position + speed.map(|speed| (speed * (self.total + 1) + 1) >> 1);
     }
 
     /// Advances by one tick of commanded acceleration, in units per tick squared.
@@ -149,7 +152,7 @@ impl Smoother {
         let here = second - third;
         // Twice the central third difference.
         let around = third * 2 - fourth;
-        let behind = self.trail + first * 2 - second - here.map(|d| d / 4) - fourth.map(|d| d / 120);
+        let behind = self.trail + first * 2 - second - here.map(|d| d >> 2) - fourth.map(|d| i64::from(d as i32 / 120));
         let position = self.commanded - behind.map(|sum| divided(sum, self.product));
         let single = |sum: Vector3<i64>, scale: f32| sum.map(|component| component as f32) * scale;
         Knot {
@@ -162,10 +165,17 @@ impl Smoother {
     }
 }
 
-/// `sum` / `count`, rounded to the nearest.
+/// `sum` / `count` to a unit or to 2^-44 of it, whichever is more: each pass of single precision leaves 2^-22 of what there was.
 #[inline]
-fn divided(sum: i64, count: i64) -> i64 {
-    (sum + count / 2).checked_div_euclid(count).unwrap_or(0)
+pub(super) fn divided(sum: i64, count: i64) -> i64 {
+    let share = 1.0 / count as f32;
+    let (mut quotient, mut rest) = (0, sum);
+    for _ in 0..2 {
+        let part = (rest as f32 * share) as i64;
+        quotient += part;
+        rest -= part * count;
+    }
+    quotient
 }
 
 #[cfg(test)]
@@ -194,8 +204,8 @@ mod tests {
     #[test]
     fn the_comb_and_its_sums_are_three_moving_averages() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
-        smoother.start(Vector3::zeros(), Vector3::zeros());
+        let mut history = [Vector3::zeros(); HISTORY];
+        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
         let mut random = Random::new(5);
         let commands: Vec<i32> = (0..1_500).map(|_| (random.signed() * 60_000.0) as i32).collect();
         let expected = averaged(&commands.iter().map(|&c| f64::from(c)).collect::<Vec<_>>(), windows.lengths);
@@ -209,7 +219,8 @@ mod tests {
     #[test]
     fn a_steady_motion_comes_out_as_it_went_in() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
+        let mut history = [Vector3::zeros(); HISTORY];
+        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
         let unit = windows.per_metre;
         smoother.start(Vector3::new(unit as i64 * 3, 0, -(unit as i64)), Vector3::new(0, (unit * 0.02) as i64, 0));
         for tick in 0..2_000 {
@@ -222,10 +233,21 @@ mod tests {
     }
 
     #[test]
+    fn a_quotient_is_off_by_a_unit_or_by_next_to_nothing() {
+        let mut random = Random::new(7);
+        for _ in 0..100_000 {
+            let sum = (random.signed() * 2.0_f32.powf(62.0 * random.unit())) as i64;
+            let count = (2.0_f32.powf(23.0 * random.unit())) as i64;
+            let miss = (divided(sum, count) - sum / count).abs();
+            assert!(miss <= 1 + ((sum / count).abs() >> 44), "{sum} by {count}: off by {miss}");
+        }
+    }
+
+    #[test]
     fn a_million_ticks_of_noise_leave_no_trace() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
-        smoother.start(Vector3::zeros(), Vector3::zeros());
+        let mut history = [Vector3::zeros(); HISTORY];
+        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
         let mut random = Random::new(6);
         for _ in 0..1_000_000 {
             let speed = smoother.speed().x as f32 / 1e7;

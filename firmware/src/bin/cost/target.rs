@@ -7,7 +7,7 @@ use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
-use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
@@ -19,6 +19,7 @@ use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
 use firmware::configuration;
 use nalgebra::{Quaternion, Vector3};
+use static_cell::ConstStaticCell;
 
 /// Steps of a measured flight.
 const STEPS: u64 = 1000;
@@ -190,18 +191,12 @@ const TUMBLING: State = State {
 
 /// A minute of the governor under steps of position: there and back every ten seconds.
 fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
-    let start = Reference {
-        position: Vector3::zeros(),
-        velocity: Vector3::zeros(),
-        acceleration: Vector3::zeros(),
-        jerk: Vector3::zeros(),
-        snap: Vector3::zeros(),
-        heading: Heading::FORWARD,
-    };
-    let Ok(mut governor) = Governor::new(*configuration.bounds(), GovernorLimits::default(), PERIOD, &start) else {
+    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
+    let (bounds, limits) = (configuration.bounds(), GovernorLimits::default());
+    let Ok(mut governor) = Governor::new(bounds, &limits, PERIOD, MEMORY.take()) else {
         return false;
     };
-    let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
+    let tick: fn(&mut Governor<'static>) -> Reference = black_box(Governor::tick);
     for number in 0..6000_u32 {
         if number % 1000 == 0 {
             let away = if number % 2000 == 0 { 3.0 } else { 0.0 };
