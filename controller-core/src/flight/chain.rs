@@ -1,4 +1,4 @@
-//! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, mixer.
+//! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
 //! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle and
 //! every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach, and
@@ -13,8 +13,7 @@
 use super::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
-use crate::allocation::Mixer;
-use crate::allocation::mixer::Thrusts;
+use crate::allocation::{MinimumNorm, Thrusts};
 use crate::certificate::configuration::Certified;
 use crate::controller::{Command, Controller};
 use crate::error::InputError;
@@ -33,7 +32,7 @@ pub struct Flown {
     pub reference: Reference,
     /// The wrench the law asked for.
     pub wrench: Wrench,
-    /// The wrench the rotors are asked for: the same, unless the mixer had to give something up.
+    /// The wrench the rotors are asked for: the same but for rounding, as is proven.
     pub achieved: Wrench,
     /// p~, m, world.
     pub position_error: Vector3<f32>,
@@ -41,12 +40,12 @@ pub struct Flown {
     pub mrp: Vector3<f32>,
 }
 
-/// Governor, law and mixer, with what they hand from tick to tick.
+/// Governor, law and allocation, with what they hand from tick to tick.
 #[derive(Debug, PartialEq)]
 pub(super) struct Chain<'m> {
     governor: Governor<'m>,
     controller: Controller,
-    mixer: Mixer,
+    allocation: MinimumNorm,
     rotors: usize,
     /// The last tick's.
     reference: Reference,
@@ -76,7 +75,7 @@ impl<'m> Chain<'m> {
         Ok(Self {
             governor: Governor::new(configuration.bounds(), limits, period, memory)?,
             controller: Controller::new(certified, period)?,
-            mixer: Mixer::new(rotors),
+            allocation: MinimumNorm::new(rotors),
             rotors: rotors.len(),
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
@@ -145,7 +144,7 @@ impl<'m> Chain<'m> {
     /// One tick on the governor's reference.
     ///
     /// # Errors
-    /// What the law or the mixer cannot use.
+    /// What the law or the allocation cannot use.
     #[inline]
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         self.reference = self.governor.tick();
@@ -171,7 +170,7 @@ impl<'m> Chain<'m> {
         self.refusals = self.refusals.saturating_add(1);
         let Command { wrench, mrp } = self.controller.command(state, &self.reference)?;
         let position_error = state.position - self.reference.position;
-        let allocation = self.mixer.allocate(&wrench)?;
+        let allocation = self.allocation.allocate(&wrench)?;
         self.refusals = 0;
         self.thrusts = Some(allocation.thrusts);
         Ok(Flown {

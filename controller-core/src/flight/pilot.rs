@@ -1,4 +1,4 @@
-//! The pilot: flight rules, governor, law and mixer in one synchronous tick that cannot fail.
+//! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
 //! In a tick, in this order: the newest usable measurements are taken; a request is answered; the rules' conditions are worked
 //! out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output is worked out.
@@ -18,7 +18,7 @@ use crate::error::InputError;
 use crate::governor::{GovernorLimits, Memory, Setpoint};
 use crate::state::State;
 
-/// Everything that decides what the motors do. Memory: about 8 KB, most of it the mixer's, and the governor's [`Memory`].
+/// Everything that decides what the motors do. Memory: about 1.5 KB, and the governor's [`Memory`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m> {
     chain: Result<Chain<'m>, Grounded>,

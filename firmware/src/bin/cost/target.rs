@@ -3,7 +3,8 @@
 use crate::body;
 use crate::counter::Counter;
 use crate::stack;
-use controller_core::allocation::{Allocation, Mixer};
+use controller_core::allocation::MinimumNorm;
+use controller_core::allocation::minimum_norm::Delivered;
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
@@ -53,7 +54,7 @@ impl Cost {
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
-type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
+type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -93,11 +94,11 @@ fn measure() -> bool {
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
     let plain = embedded.with_gains(*embedded.gains()).ok().and_then(|plain| Certified::new(plain).ok());
     let Some(plain) = plain.and_then(|plain| Controller::new(&plain, PERIOD).ok()) else { return false };
-    let mixer = Mixer::new(rotors);
+    let minimum_norm = MinimumNorm::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@400MHz");
-    let mut flight = Flight { controller, mixer: &mixer, certified: &certified, counter: &counter };
+    let mut flight = Flight { controller, minimum_norm: &minimum_norm, certified: &certified, counter: &counter };
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
@@ -135,16 +136,16 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certifi
 /// A flight under the law, with what it needs.
 struct Flight<'a> {
     controller: Controller,
-    mixer: &'a Mixer,
+    minimum_norm: &'a MinimumNorm,
     certified: &'a Certified,
     counter: &'a Counter,
 }
 
 impl Flight<'_> {
-    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
+    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the allocation refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
         let step: Step = black_box(Controller::command);
-        let allocate: Allocate = black_box(Mixer::allocate);
+        let allocate: Allocate = black_box(MinimumNorm::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
         for tick in 0..STEPS {
@@ -152,7 +153,7 @@ impl Flight<'_> {
             let (instructions, command) = self.counter.short(|| step(&mut self.controller, &state, &reference));
             cost.add(instructions);
             let wrench = command.ok()?.wrench;
-            let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
+            let (instructions, allocated) = self.counter.short(|| allocate(self.minimum_norm, &wrench));
             allocation.add(instructions);
             let achieved = allocated.ok()?.achieved;
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
