@@ -41,7 +41,7 @@ pub use take_over::{TakeOver, TakeOverError};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
 use crate::reference::{Reference, ReferenceBounds};
-use crate::state::check_vector;
+use crate::state::check_vectors;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
@@ -77,19 +77,24 @@ impl Default for GovernorLimits {
     }
 }
 
-/// What the position is to do, in length units and ticks where exactness matters.
+/// What the position is to do: be at a point, or, without one, move. What moves is renewed or stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Goal {
-    Stop,
-    Position(Vector3<i64>),
-    Velocity(Vector3<i64>),
-    /// A point seen `age` ticks ago: units, m/s, m/s^2.
-    Moving {
-        position: Vector3<i64>,
-        velocity: Vector3<f32>,
-        acceleration: Vector3<f32>,
-    },
+struct Goal {
+    /// Length units.
+    position: Option<Vector3<i64>>,
+    /// m/s.
+    velocity: Vector3<f32>,
+    /// m/s^2.
+    acceleration: Vector3<f32>,
 }
+
+impl Goal {
+    /// Come to rest.
+    const STOP: Self = Self { position: None, velocity: STILL, acceleration: STILL };
+}
+
+/// No motion.
+const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
 
 /// The commands that the averages remember, 6.7 KB: whoever makes a governor says where they lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,9 +164,9 @@ impl<'m> Governor<'m> {
             },
             smoother: Smoother::new(&windows, period, &mut memory.accelerations),
             turning: Turning::new(bounds, limits, period, &mut memory.turns)?,
-            goal: Goal::Stop,
+            goal: Goal::STOP,
             goal_age: 0,
-            turn: TurnGoal::Stop,
+            turn: TurnGoal::STOP,
             turn_age: 0,
         })
     }
@@ -178,8 +183,7 @@ impl<'m> Governor<'m> {
         velocity: &Vector3<f32>,
         heading: &Heading,
     ) -> Result<(), InputError> {
-        check_vector(position, POSITION_RANGE, "initial.position")?;
-        check_vector(velocity, SPEED_RANGE, "initial.velocity")?;
+        check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
         self.settle(position, velocity);
         self.turning.start(turning::phase_of(heading), 0);
         self.stop();
@@ -189,7 +193,7 @@ impl<'m> Governor<'m> {
     /// Hands a steady velocity to the smoother.
     #[inline]
     fn settle(&mut self, position: &Vector3<f32>, velocity: &Vector3<f32>) {
-        self.smoother.start(self.length(position), self.length(&(velocity * self.period)));
+        self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
     }
 
     /// Metres as length units.
@@ -205,32 +209,21 @@ impl<'m> Governor<'m> {
     #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         setpoint.check()?;
+        let (position, velocity, acceleration) = setpoint.motion.parts();
+        self.goal = Goal { position: position.map(|position| self.length(&position)), velocity, acceleration };
         self.goal_age = 0;
-        self.goal = match setpoint.motion {
-            Motion::Position(position) => Goal::Position(self.length(&position)),
-            Motion::Velocity(velocity) => Goal::Velocity(self.length(&(velocity * self.period))),
-            Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
-                Goal::Moving { position: self.length(&position), velocity, acceleration }
-            }
-        };
-        let rate = |rate: f32| turning::units(rate, self.period);
-        let turn = match setpoint.turn {
-            Turn::Keep => return Ok(()),
-            Turn::Angle { angle, rate: turning } => {
-                TurnGoal::Angle { phase: turning::phase(angle), rate: rate(turning) }
-            }
-            Turn::Rate(turning) => TurnGoal::Rate { rate: rate(turning) },
-        };
-        self.turn = turn;
-        self.turn_age = 0;
+        if let Some((angle, rate)) = setpoint.turn.parts() {
+            self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
+            self.turn_age = 0;
+        }
         Ok(())
     }
 
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
     #[inline]
     pub fn stop(&mut self) {
-        self.goal = Goal::Stop;
-        self.turn = TurnGoal::Stop;
+        self.goal = Goal::STOP;
+        self.turn = TurnGoal::STOP;
     }
 
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
@@ -258,7 +251,7 @@ impl<'m> Governor<'m> {
     /// The position's part of a tick.
     #[inline]
     fn travel(&mut self) -> Knot {
-        self.smoother.push(self.pursue());
+        self.smoother.push(&self.pursue());
         self.smoother.knot()
     }
 
@@ -272,48 +265,31 @@ impl<'m> Governor<'m> {
     /// The commanded acceleration of this tick.
     #[inline]
     fn pursue(&self) -> Vector3<i32> {
-        let (x, u) = (self.smoother.commanded(), self.smoother.speed());
-        let still = Vector3::zeros();
-        match self.goal {
-            Goal::Stop => self.pursuit.towards_velocity(still, u),
-            Goal::Velocity(_) if self.goal_age > self.timeout => self.pursuit.towards_velocity(still, u),
-            Goal::Velocity(velocity) => self.pursuit.towards_velocity(velocity, u),
-            Goal::Position(target) => self.pursuit.towards_position(target - x, u),
-            Goal::Moving { position, .. } if self.goal_age > self.timeout => {
-                self.pursuit.towards_position(position - x, u)
-            }
-            Goal::Moving { position, velocity, acceleration } => {
-                let (ahead, feed) = self.ahead(&velocity, &acceleration);
+        let u = self.smoother.speed();
+        let Goal { position, velocity, acceleration } = &self.goal;
+        let stale = self.goal_age > self.timeout;
+        let (velocity, acceleration) = if stale { (&STILL, &STILL) } else { (velocity, acceleration) };
+        let wanted = match position {
+            None => self.length(&(velocity * self.period)),
+            Some(position) => {
+                // The command at hand is where it was a tick ago.
+                let age = (self.goal_age as f32 - 1.0) * self.period;
+                let (ahead, feed) = self.lead.of(velocity, acceleration, age);
+                let error = position + self.length(&ahead) - self.smoother.commanded();
                 let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
-                self.pursuit.towards_moving(position + ahead - x, feed, &acceleration, u)
+                self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration)
             }
-        }
-    }
-
-    /// Where the command must be for the averages to come out on a moving point, relative to where that was last seen,
-    /// and how fast it must move, units a tick.
-    #[inline]
-    fn ahead(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>) -> (Vector3<i64>, Vector3<i64>) {
-        // The command at hand is where it was a tick ago.
-        let age = (self.goal_age as f32 - 1.0) * self.period;
-        let (ahead, feed) = self.lead.of(velocity, acceleration, age);
-        (self.length(&ahead), self.length(&(feed * self.period)))
+        };
+        self.pursuit.towards_velocity(&wanted, &u)
     }
 
     /// The heading's goal of this tick.
     #[inline]
     fn turn_goal(&self) -> TurnGoal {
-        let stale = self.turn_age > self.timeout;
-        match self.turn {
-            TurnGoal::Stop => TurnGoal::Stop,
-            TurnGoal::Rate { .. } if stale => TurnGoal::Stop,
-            TurnGoal::Rate { rate } => TurnGoal::Rate { rate },
-            TurnGoal::Angle { phase, .. } if stale => TurnGoal::Angle { phase, rate: 0 },
-            TurnGoal::Angle { phase, rate } => {
-                let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
-                TurnGoal::Angle { phase: phase.wrapping_add((rate as f32 * lead) as i64), rate }
-            }
-        }
+        let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
+        let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add((rate as f32 * lead) as i64));
+        TurnGoal { phase, rate }
     }
 }
 

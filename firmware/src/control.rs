@@ -107,7 +107,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
                 refusal.inspect(|refusal| self.shared.announce(Severity::Warning, refusal));
             }
         }
-        let refused = outcome.flown.and_then(Result::err);
+        let refused = outcome.flown.as_ref().and_then(|flown| flown.as_ref().err().copied());
         if refused != self.complaint.law {
             self.complaint.law = refused;
             refused.inspect(|error| self.shared.announce(Severity::Critical, error));
@@ -115,7 +115,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     fn report(&self, inputs: &Inputs, outcome: &Outcome) {
-        let flown = outcome.flown.and_then(Result::ok);
+        let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
         let report = Report {
             mode: outcome.mode,
             state: flown.map(|flown| flown.state).or_else(|| measured(inputs)),

@@ -12,7 +12,7 @@
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
 use crate::error::InputError;
-use crate::state::{STATE_RANGE, Wrench, check_vector};
+use crate::state::{STATE_RANGE, Wrench, check_vectors};
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
@@ -76,8 +76,8 @@ impl MinimumNorm {
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
     #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
-        check_vector(&Vector3::new(wrench.thrust, 0.0, 0.0), STATE_RANGE, "wrench.thrust")?;
-        check_vector(&wrench.torque, STATE_RANGE, "wrench.torque")?;
+        let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
+        check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
         let mut thrusts = self.preferred(&components(wrench));
         let clipped = self.clip(&mut thrusts);
         Ok(Delivered { achieved: self.wrench(&thrusts), thrusts, clipped })

@@ -91,9 +91,9 @@ impl<'m> Pilot<'m> {
     #[inline]
     fn measure(&mut self, inputs: &Inputs) {
         let now = inputs.now;
-        self.imu.offer(inputs.imu, now);
+        self.imu.offer(&inputs.imu, now);
         let rates = self.imu.within(u64::MAX, now).map_or_else(Default::default, |imu| imu.value.angular_velocity);
-        if let Some(pose) = self.pose.offer(inputs.pose, now) {
+        if let Some(pose) = self.pose.offer(&inputs.pose, now) {
             self.attitude = Some(PropagatedAttitude::new(pose.value.attitude, rates, pose.time));
         }
         if let Some(attitude) = &mut self.attitude {
@@ -127,7 +127,7 @@ impl<'m> Pilot<'m> {
         let granted = answer == Some(Ok(()));
         let pose = self.pose.within(POSE_AGE_MAX, now);
         let silent = is_silent(inputs);
-        let regained = match (self.mode, &mut self.chain, &pose) {
+        let regained = match (self.mode, &mut self.chain, pose) {
             (Mode::Levelling, Ok(chain), Some(pose)) => chain.regain(&pose.value).is_ok(),
             _ => false,
         };
@@ -183,7 +183,7 @@ impl<'m> Pilot<'m> {
             Mode::Disarmed | Mode::MotorTest => return (Output::Stop, None),
             Mode::Levelling => chain.fly_level(attitude, angular_velocity),
             Mode::Flying | Mode::Holding => {
-                let Pose { position, velocity, .. } = pose.value;
+                let &Pose { position, velocity, .. } = &pose.value;
                 chain.fly(&State { position, velocity, attitude, angular_velocity })
             }
         };

@@ -11,7 +11,7 @@
 
 use crate::math;
 use crate::reference::phase::swing;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 /// Turns slower than this, rad/s, are parabolas to within single precision.
 const SLOWEST: f32 = 1e-2;
@@ -52,12 +52,12 @@ impl Lead {
         let needed = math::sqrt(speed_squared) * rate.abs();
         let gain = (1.0 + 0.5 * x + 0.125 * x * x).min(CIRCLING_SHARE * self.acceleration / needed);
         let (sin, cos) = math::sin_cos_turns(swing(rate * lead));
-        let sideways = Vector2::new(-v.y, v.x);
+        let turned = |cos: f32, sin: f32, rise: f32| Vector3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, rise);
         let along = v * (v.dot(&a) / speed_squared);
-        let ahead = (v * (gain * sin) + sideways * (1.0 - gain * cos)) / rate + along * spread;
-        let feed = (v * cos + sideways * sin) * gain + along * lead;
-        let rise = (velocity.z * lead + acceleration.z * spread, velocity.z + acceleration.z * lead);
-        (Vector3::new(ahead.x, ahead.y, rise.0), Vector3::new(feed.x, feed.y, rise.1))
+        let along = Vector3::new(along.x, along.y, acceleration.z);
+        let ahead = turned(gain * sin / rate, (1.0 - gain * cos) / rate, velocity.z * lead) + along * spread;
+        let feed = turned(gain * cos, gain * sin, velocity.z) + along * lead;
+        (ahead, feed)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::InputError;
 use crate::reference::DERIVATIVE_RANGE;
-use crate::state::check_vector;
+use crate::state::check_vectors;
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a setpoint's or a starting position's component, m.
@@ -51,25 +51,45 @@ pub struct Setpoint {
     pub turn: Turn,
 }
 
+impl Motion {
+    /// The point, if there is one, its velocity and its acceleration.
+    #[inline]
+    pub(super) fn parts(&self) -> (Option<Vector3<f32>>, Vector3<f32>, Vector3<f32>) {
+        let still = Vector3::zeros();
+        match *self {
+            Self::Position(position) => (Some(position), still, still),
+            Self::Velocity(velocity) => (None, velocity, still),
+            Self::PositionVelocityAcceleration { position, velocity, acceleration } => {
+                (Some(position), velocity, acceleration)
+            }
+        }
+    }
+}
+
+impl Turn {
+    /// The angle, if there is one, and its rate; none to keep both.
+    #[inline]
+    pub(super) fn parts(&self) -> Option<(Option<f32>, f32)> {
+        match *self {
+            Self::Keep => None,
+            Self::Angle { angle, rate } => Some((Some(angle), rate)),
+            Self::Rate(rate) => Some((None, rate)),
+        }
+    }
+}
+
 impl Setpoint {
     /// Checks that every field is finite and in range.
     #[inline]
     pub(super) fn check(&self) -> Result<(), InputError> {
-        match &self.motion {
-            Motion::Position(position) => check_vector(position, POSITION_RANGE, "setpoint.position")?,
-            Motion::Velocity(velocity) => check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?,
-            Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
-                check_vector(position, POSITION_RANGE, "setpoint.position")?;
-                check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?;
-                check_vector(acceleration, DERIVATIVE_RANGE, "setpoint.acceleration")?;
-            }
-        }
-        let (angle, rate) = match self.turn {
-            Turn::Keep => (0.0, 0.0),
-            Turn::Angle { angle, rate } => (angle, rate),
-            Turn::Rate(rate) => (0.0, rate),
-        };
-        check_vector(&Vector3::new(angle, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw")?;
-        check_vector(&Vector3::new(rate, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw_rate")
+        let (position, velocity, acceleration) = self.motion.parts();
+        let (angle, rate) = self.turn.parts().unwrap_or_default();
+        check_vectors(&[
+            (&position.unwrap_or_default(), POSITION_RANGE, "setpoint.position"),
+            (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
+            (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
+            (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),
+            (&Vector3::repeat(rate), DERIVATIVE_RANGE, "setpoint.yaw_rate"),
+        ])
     }
 }

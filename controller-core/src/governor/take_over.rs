@@ -11,7 +11,7 @@ use super::{Governor, GovernorLimits, Memory, POSITION_RANGE, SPEED_RANGE, Setpo
 use crate::error::{InputError, ParameterError};
 use crate::heading::Heading;
 use crate::reference::{Reference, ReferenceBounds};
-use crate::state::check_vector;
+use crate::state::check_vectors;
 use core::fmt;
 
 /// Why a reference cannot be taken over.
@@ -85,8 +85,10 @@ impl<'m> TakeOver<'m> {
     #[inline]
     pub fn restart(&mut self, from: &Reference) -> Result<(), TakeOverError> {
         from.check()?;
-        check_vector(&from.position, POSITION_RANGE, "initial.position")?;
-        check_vector(&from.velocity, SPEED_RANGE, "initial.velocity")?;
+        check_vectors(&[
+            (&from.position, POSITION_RANGE, "initial.position"),
+            (&from.velocity, SPEED_RANGE, "initial.velocity"),
+        ])?;
         if !self.bounds.contain(from, 1e-6) {
             return Err(TakeOverError::NoWayOn { field: "initial reference" });
         }

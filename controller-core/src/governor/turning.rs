@@ -36,15 +36,17 @@ pub(super) const TURN_HISTORY: usize = 64;
 /// The share of sqrt(K_nu'') that makes the shortest half turn: the minimum of pi/r + r/sqrt(1-r^4).
 const RATE_SHARE: f32 = 0.857;
 
-/// What the heading is to do.
+/// What the heading is to do: be at a phase (units) that moves, or, without one, keep turning.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum TurnGoal {
+pub(super) struct TurnGoal {
+    pub phase: Option<i64>,
+    /// Units a tick.
+    pub rate: i64,
+}
+
+impl TurnGoal {
     /// Come to rest.
-    Stop,
-    /// Turn to a phase (units) that moves at a rate (units a tick).
-    Angle { phase: i64, rate: i64 },
-    /// Keep turning, units a tick.
-    Rate { rate: i64 },
+    pub const STOP: Self = Self { phase: None, rate: 0 };
 }
 
 /// Command, average and spline of the heading.
@@ -122,7 +124,7 @@ impl<'m> Turning<'m> {
     pub fn start(&mut self, phase: i64, rate: i64) {
         let length = self.length as i64;
         // What a turn that always was steady trails behind. Halving is exact: the rate is even.
-        let behind = rate / 2 * (length - 1);
+        let behind = (rate >> 1) * (length - 1);
         self.history.fill(0);
         self.rate = rate;
         self.trail = behind * length;
@@ -140,15 +142,12 @@ impl<'m> Turning<'m> {
     /// The commanded acceleration towards `goal`, units per tick squared.
     #[inline]
     fn command(&self, goal: &TurnGoal) -> i64 {
-        let wanted = match *goal {
-            TurnGoal::Stop => 0,
-            TurnGoal::Rate { rate } => rate,
-            TurnGoal::Angle { phase, rate } => rate.saturating_add(self.approach(phase)),
-        };
+        // Far from 64 bits: a rate is below 2^58 for every setpoint, and half a turn is 2^43.
+        let wanted = goal.rate + goal.phase.map_or(0, |phase| self.approach(phase));
         let strongest = if self.rate.abs() > self.fastest { self.strongest_above } else { self.strongest };
-        let wanted = wanted.min(self.fastest).max(-self.fastest);
         // Not `clamp`, which may panic.
-        wanted.saturating_sub(self.rate).min(strongest).max(-strongest)
+        let wanted = wanted.min(self.fastest).max(-self.fastest);
+        (wanted - self.rate).min(strongest).max(-strongest)
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
