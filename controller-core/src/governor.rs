@@ -40,13 +40,15 @@ pub use take_over::{TakeOver, TakeOverError};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
+use crate::math;
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
+use setpoint::Parts;
 use smoother::{Knot, Smoother};
-use turning::{TURN_HISTORY, TurnGoal, Turning};
+use turning::{TurnGoal, Turning};
 use windows::Windows;
 
 /// Ticks of commands remembered: what the three averages may span together.
@@ -96,51 +98,65 @@ impl Goal {
 /// No motion.
 const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
 
-/// The commands that the averages remember, 6.7 KB: whoever makes a governor says where they lie.
+/// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Memory {
-    accelerations: [Vector3<i32>; HISTORY],
-    turns: [i64; TURN_HISTORY],
-}
+pub struct Memory(Governor);
 
 impl Memory {
-    /// Of nothing.
-    pub const EMPTY: Self = Self { accelerations: [Vector3::new(0, 0, 0); HISTORY], turns: [0; TURN_HISTORY] };
+    /// For any governor. All zeros: a static one takes no flash.
+    pub const EMPTY: Self = Self(Governor {
+        period: 0.0,
+        timeout: 0,
+        windows: Windows::NONE,
+        pursuit: Pursuit::NONE,
+        lead: Lead::NONE,
+        smoother: Smoother::NONE,
+        turning: Turning::NONE,
+        goal: Goal::STOP,
+        goal_age: 0,
+        turn: TurnGoal::STOP,
+        turn_age: 0,
+    });
 }
 
 /// The bounded-reference generator.
-#[derive(Debug, PartialEq)]
-pub struct Governor<'m> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Governor {
     period: f32,
     /// Ticks after which what must be renewed is stale.
     timeout: u32,
     windows: Windows,
     pursuit: Pursuit,
     lead: Lead,
-    smoother: Smoother<'m>,
-    turning: Turning<'m>,
+    smoother: Smoother,
+    turning: Turning,
     goal: Goal,
     goal_age: u32,
     turn: TurnGoal,
     turn_age: u32,
 }
 
-impl<'m> Governor<'m> {
-    /// A governor for `bounds` that ticks every `period` seconds, at rest at the origin along world x. What is in `memory`
-    /// is lost.
+impl Governor {
+    /// A governor in `memory` for `bounds` that ticks every `period` seconds, at rest at the origin along world x. What was there
+    /// before is lost.
     ///
     /// # Errors
     /// For a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too unlike each other for the
     /// integers.
     #[inline]
-    pub fn new(
+    pub fn new<'m>(
         bounds: &ReferenceBounds,
         limits: &GovernorLimits,
         period: f32,
         memory: &'m mut Memory,
-    ) -> Result<Self, ParameterError> {
-        bounds.validated()?;
+    ) -> Result<&'m mut Self, ParameterError> {
         for (value, most, field) in [
+            (bounds.horizontal_acceleration, f32::MAX, "reference_bounds.horizontal_acceleration"),
+            (bounds.vertical_acceleration, f32::MAX, "reference_bounds.vertical_acceleration"),
+            (bounds.jerk, f32::MAX, "reference_bounds.jerk"),
+            (bounds.snap, f32::MAX, "reference_bounds.snap"),
+            (bounds.heading_rate, f32::MAX, "reference_bounds.heading_rate"),
+            (bounds.heading_second_derivative, f32::MAX, "reference_bounds.heading_second_derivative"),
             (period, 0.1, "governor.period"),
             (limits.horizontal_speed, SPEED_RANGE, "governor.horizontal_speed"),
             (limits.vertical_speed, SPEED_RANGE, "governor.vertical_speed"),
@@ -151,24 +167,24 @@ impl<'m> Governor<'m> {
             require_positive(value, field)?;
             require(value <= most, field, Reason::NotAbove(most))?;
         }
+        // In place: built apart and moved here, a governor would take its size in code and on the stack.
+        let governor = &mut memory.0;
         let windows = Windows::design(bounds, limits, period)?;
-        Ok(Self {
-            period,
-            timeout: windows::ticks(limits.timeout, period) as u32,
-            windows,
-            pursuit: Pursuit::new(&windows, limits.horizontal_speed, limits.vertical_speed, period),
-            lead: Lead {
-                delay: windows.delay() * period,
-                variance: windows.variance() * period * period,
-                acceleration: windows.horizontal / (windows.per_metre * period * period),
-            },
-            smoother: Smoother::new(&windows, period, &mut memory.accelerations),
-            turning: Turning::new(bounds, limits, period, &mut memory.turns)?,
-            goal: Goal::STOP,
-            goal_age: 0,
-            turn: TurnGoal::STOP,
-            turn_age: 0,
-        })
+        governor.turning.design(bounds, limits, period)?;
+        governor.smoother.design(&windows, period);
+        governor.pursuit = Pursuit::new(&windows, limits.horizontal_speed, limits.vertical_speed, period);
+        governor.lead = Lead {
+            delay: windows.delay() * period,
+            variance: windows.variance() * period * period,
+            acceleration: windows.horizontal / (windows.per_metre * period * period),
+        };
+        governor.windows = windows;
+        governor.period = period;
+        governor.timeout = windows::ticks(limits.timeout, period) as u32;
+        governor.smoother.start(&Vector3::zeros(), &Vector3::zeros());
+        governor.turning.start(0, 0);
+        governor.stop();
+        Ok(governor)
     }
 
     /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its rates are
@@ -199,7 +215,7 @@ impl<'m> Governor<'m> {
     /// Metres as length units.
     #[inline]
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        metres.map(|component| (component * self.windows.per_metre) as i64)
+        (metres * self.windows.per_metre).map(math::whole)
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -208,11 +224,10 @@ impl<'m> Governor<'m> {
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
     #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
-        setpoint.check()?;
-        let (position, velocity, acceleration) = setpoint.motion.parts();
+        let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         self.goal = Goal { position: position.map(|position| self.length(&position)), velocity, acceleration };
         self.goal_age = 0;
-        if let Some((angle, rate)) = setpoint.turn.parts() {
+        if let Some((angle, rate)) = turn {
             self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
             self.turn_age = 0;
         }
@@ -288,7 +303,7 @@ impl<'m> Governor<'m> {
     fn turn_goal(&self) -> TurnGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
         let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
-        let phase = self.turn.phase.map(|phase| phase.wrapping_add((rate as f32 * lead) as i64));
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add(math::whole(rate as f32 * lead)));
         TurnGoal { phase, rate }
     }
 }

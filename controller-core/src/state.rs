@@ -23,7 +23,7 @@ pub struct State {
 }
 
 /// Refuses the first of `vectors` with a component that is not finite, or greater than the range beside it.
-#[inline]
+#[inline(never)] // once in an image
 pub(crate) fn check_vectors(vectors: &[(&Vector3<f32>, f32, &'static str)]) -> Result<(), InputError> {
     for &(vector, range, field) in vectors {
         // A NaN compares false with everything, so it fails here too.

@@ -105,7 +105,7 @@ impl Case {
     /// Where a governor is that was sent about at random for a while, from a rest.
     pub fn interrupted(&self, random: &mut Random, resting: &Reference) -> Reference {
         let mut memory = Memory::EMPTY;
-        let mut governor = Governor::new(&self.bounds, &self.limits, self.period, &mut memory).unwrap();
+        let governor = Governor::new(&self.bounds, &self.limits, self.period, &mut memory).unwrap();
         governor.start(&resting.position, &resting.velocity, &resting.heading).unwrap();
         let mut last = governor.tick();
         for _ in 0..1 + random.below(3) {

@@ -43,7 +43,7 @@ pub struct Flown {
 /// Governor, law and allocation, with what they hand from tick to tick.
 #[derive(Debug, PartialEq)]
 pub(super) struct Chain<'m> {
-    governor: Governor<'m>,
+    governor: &'m mut Governor,
     controller: Controller,
     allocation: MinimumNorm,
     rotors: usize,

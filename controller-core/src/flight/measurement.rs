@@ -18,8 +18,14 @@ pub const BODY_RATE_MAX: f32 = 100.0;
 
 /// Whether a time stamp can be of something that has happened.
 #[inline]
-pub(super) fn is_in_time(time: u64, now: u64) -> bool {
+fn is_in_time(time: u64, now: u64) -> bool {
     time <= now.saturating_add(STAMP_LEAD_MAX)
+}
+
+/// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
+#[inline(never)] // once in an image: asked everywhere
+pub(super) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
+    now.saturating_sub(time) <= age_max && is_in_time(time, now)
 }
 
 /// Something measured that can be told to be usable.
@@ -96,7 +102,7 @@ impl<T: Measurement> Newest<T> {
     /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
     #[inline]
     pub fn within(&self, age_max: u64, now: u64) -> Option<&Stamped<T>> {
-        self.usable.as_ref().filter(|kept| kept.age(now) <= age_max && is_in_time(kept.time, now))
+        self.usable.as_ref().filter(|kept| is_fresh(kept.time, age_max, now))
     }
 
     /// The field for which the newest one offered cannot be used, if so.

@@ -4,7 +4,7 @@
 //! out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output is worked out.
 
 use super::chain::{Chain, Flown};
-use super::measurement::{Newest, is_in_time};
+use super::measurement::{Newest, is_fresh};
 use super::permission::{self, MotorTest};
 use super::propagation::PropagatedAttitude;
 use super::reason::{Grounded, Refusal, field};
@@ -77,8 +77,9 @@ impl<'m> Pilot<'m> {
     #[inline]
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         self.measure(inputs);
-        let answer = inputs.request.map(|request| self.answer(request, inputs));
-        let transition = rules::transition(self.mode, self.conditions(inputs, answer));
+        let silent = is_silent(inputs);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, silent));
+        let transition = rules::transition(self.mode, self.conditions(inputs, answer, silent));
         if let Some(transition) = transition {
             self.enter(&transition, inputs);
         }
@@ -103,12 +104,12 @@ impl<'m> Pilot<'m> {
 
     /// Whether a request is granted. Granting an arm request readies the chain for it.
     #[inline]
-    fn answer(&mut self, request: Request, inputs: &Inputs) -> Result<(), Refusal> {
+    fn answer(&mut self, request: Request, inputs: &Inputs, silent: bool) -> Result<(), Refusal> {
         permission::to_leave(self.mode, inputs.disarm)?;
         match request {
             Request::Arm => {
                 let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
-                let start = permission::to_arm(&self.imu, &self.pose, is_silent(inputs), inputs.now)?;
+                let start = permission::to_arm(&self.imu, &self.pose, silent, inputs.now)?;
                 chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
             }
             Request::MotorTest(test) => {
@@ -121,12 +122,11 @@ impl<'m> Pilot<'m> {
 
     /// What the rules need to know in this tick.
     #[inline]
-    fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>) -> Conditions {
+    fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>, silent: bool) -> Conditions {
         let now = inputs.now;
         let elapsed = now.saturating_sub(self.since);
         let granted = answer == Some(Ok(()));
         let pose = self.pose.within(POSE_AGE_MAX, now);
-        let silent = is_silent(inputs);
         let regained = match (self.mode, &mut self.chain, pose) {
             (Mode::Levelling, Ok(chain), Some(pose)) => chain.regain(&pose.value).is_ok(),
             _ => false,
@@ -195,9 +195,7 @@ impl<'m> Pilot<'m> {
 /// Whether the ground station has been silent for too long.
 #[inline]
 fn is_silent(inputs: &Inputs) -> bool {
-    inputs.ground_station.is_none_or(|heard| {
-        !is_in_time(heard, inputs.now) || inputs.now.saturating_sub(heard) >= GROUND_STATION_SILENCE_MAX
-    })
+    !inputs.ground_station.is_some_and(|heard| is_fresh(heard, GROUND_STATION_SILENCE_MAX - 1, inputs.now))
 }
 
 #[cfg(test)]

@@ -24,6 +24,8 @@ struct Cylinder {
 }
 
 impl Cylinder {
+    const NONE: Self = Self { per_horizontal: 0.0, per_vertical: 0.0 };
+
     #[inline]
     fn new(horizontal: f32, vertical: f32) -> Self {
         Self { per_horizontal: 1.0 / horizontal, per_vertical: 1.0 / vertical }
@@ -51,7 +53,7 @@ fn single(y: &Vector3<i64>) -> Vector3<f32> {
 /// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
 #[inline]
 fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
-    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(|component| component as i64) }
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
 }
 
 /// The law, in length units and ticks.
@@ -62,6 +64,9 @@ pub(super) struct Pursuit {
 }
 
 impl Pursuit {
+    /// Not designed yet.
+    pub const NONE: Self = Self { accelerations: Cylinder::NONE, speeds: Cylinder::NONE };
+
     /// Speeds in m/s.
     #[inline]
     pub fn new(windows: &Windows, horizontal_speed: f32, vertical_speed: f32, period: f32) -> Self {

@@ -51,45 +51,43 @@ pub struct Setpoint {
     pub turn: Turn,
 }
 
-impl Motion {
-    /// The point, if there is one, its velocity and its acceleration.
-    #[inline]
-    pub(super) fn parts(&self) -> (Option<Vector3<f32>>, Vector3<f32>, Vector3<f32>) {
-        let still = Vector3::zeros();
-        match *self {
-            Self::Position(position) => (Some(position), still, still),
-            Self::Velocity(velocity) => (None, velocity, still),
-            Self::PositionVelocityAcceleration { position, velocity, acceleration } => {
-                (Some(position), velocity, acceleration)
-            }
-        }
-    }
-}
-
-impl Turn {
-    /// The angle, if there is one, and its rate; none to keep both.
-    #[inline]
-    pub(super) fn parts(&self) -> Option<(Option<f32>, f32)> {
-        match *self {
-            Self::Keep => None,
-            Self::Angle { angle, rate } => Some((Some(angle), rate)),
-            Self::Rate(rate) => Some((None, rate)),
-        }
-    }
+/// A setpoint taken apart.
+pub(super) struct Parts {
+    /// The point to be at, if there is one, m.
+    pub position: Option<Vector3<f32>>,
+    /// Its velocity, or the one to move at, m/s.
+    pub velocity: Vector3<f32>,
+    /// m/s^2.
+    pub acceleration: Vector3<f32>,
+    /// The angle to turn to, if there is one, rad, and its rate, or the one to turn at, rad/s; none to keep both.
+    pub turn: Option<(Option<f32>, f32)>,
 }
 
 impl Setpoint {
-    /// Checks that every field is finite and in range.
+    /// Its parts, where every one of them is finite and in range.
     #[inline]
-    pub(super) fn check(&self) -> Result<(), InputError> {
-        let (position, velocity, acceleration) = self.motion.parts();
-        let (angle, rate) = self.turn.parts().unwrap_or_default();
+    pub(super) fn checked(&self) -> Result<Parts, InputError> {
+        let still = Vector3::zeros();
+        let (position, velocity, acceleration) = match self.motion {
+            Motion::Position(position) => (Some(position), still, still),
+            Motion::Velocity(velocity) => (None, velocity, still),
+            Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
+                (Some(position), velocity, acceleration)
+            }
+        };
+        let turn = match self.turn {
+            Turn::Keep => None,
+            Turn::Angle { angle, rate } => Some((Some(angle), rate)),
+            Turn::Rate(rate) => Some((None, rate)),
+        };
+        let (angle, rate) = turn.unwrap_or_default();
         check_vectors(&[
             (&position.unwrap_or_default(), POSITION_RANGE, "setpoint.position"),
             (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
             (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
             (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),
             (&Vector3::repeat(rate), DERIVATIVE_RANGE, "setpoint.yaw_rate"),
-        ])
+        ])?;
+        Ok(Parts { position, velocity, acceleration, turn })
     }
 }

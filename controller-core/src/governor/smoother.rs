@@ -15,6 +15,7 @@
 
 use super::HISTORY;
 use super::windows::Windows;
+use crate::math;
 use nalgebra::Vector3;
 
 /// Position and derivatives at a knot of the spline: of one axis, or of all three.
@@ -47,7 +48,7 @@ impl Axis {
     const AT_REST: Self = Self { commanded: 0, speed: 0, trail: 0, difference: [0; 4] };
 
     /// Always in steady motion, with averages that span `total` ticks together.
-    #[inline]
+    #[inline(never)] // once in an image, not once an axis
     fn steady(position: i64, speed: i64, product: i64, total: i64) -> Self {
         Self {
             // The trail, rounded to the nearest unit, and the two ticks that the control points are ahead.
@@ -59,7 +60,7 @@ impl Axis {
         }
     }
 
-    #[inline]
+    #[inline(never)] // once in an image, not once an axis
     fn push(&mut self, acceleration: i32, comb: i32, product: i64) {
         let [first, second, third, fourth] = &mut self.difference;
         *fourth += i64::from(comb);
@@ -74,25 +75,26 @@ impl Axis {
     #[inline]
     fn knot(&self, product: i64, scales: &Derivatives<f32>) -> Derivatives<f32> {
         let [first, second, third, fourth] = self.difference;
+        let behind = self.trail + 2 * first - second;
+        let (first, second, third, fourth) = (first as f32, second as f32, third as f32, fourth as f32);
         let here = second - third;
-        // Twice the central third difference.
-        let around = 2 * third - fourth;
-        // The fourth is the comb's sum: it fits 32 bits.
-        let behind = self.trail + 2 * first - second - (here >> 2) - i64::from(fourth as i32 / 120);
+        // The central third difference.
+        let around = third - 0.5 * fourth;
+        let bend = 0.25 * here + fourth / 120.0;
         Derivatives {
-            position: (self.commanded - divided(behind, product)) as f32 * scales.position,
-            velocity: (12 * (2 * (first - second) - here) + around) as f32 * scales.velocity,
-            acceleration: (6 * here + fourth) as f32 * scales.acceleration,
-            jerk: around as f32 * scales.jerk,
-            snap: fourth as f32 * scales.snap,
+            position: (self.commanded - divided(behind - math::whole(bend), product)) as f32 * scales.position,
+            velocity: (first - second - 0.5 * here + around / 12.0) * scales.velocity,
+            acceleration: (here + fourth / 6.0) * scales.acceleration,
+            jerk: around * scales.jerk,
+            snap: fourth * scales.snap,
         }
     }
 }
 
 /// The filter's memory.
-#[derive(Debug, PartialEq)]
-pub(super) struct Smoother<'m> {
-    history: &'m mut [Vector3<i32>; HISTORY],
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Smoother {
+    history: [Vector3<i32>; HISTORY],
     newest: usize,
     taps: [(usize, i32); 8],
     product: i64,
@@ -102,47 +104,51 @@ pub(super) struct Smoother<'m> {
     axes: [Axis; 3],
 }
 
-impl<'m> Smoother<'m> {
-    /// At rest at the origin.
+impl Smoother {
+    /// Not designed yet.
+    pub const NONE: Self = Self {
+        history: [Vector3::new(0, 0, 0); HISTORY],
+        newest: 0,
+        taps: [(0, 0); 8],
+        product: 0,
+        total: 0,
+        scales: Derivatives { position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0, snap: 0.0 },
+        axes: [Axis::AT_REST; 3],
+    };
+
+    /// Prepares for `windows`; [`Self::start`] is next.
     #[inline]
-    pub fn new(windows: &Windows, period: f32, history: &'m mut [Vector3<i32>; HISTORY]) -> Self {
+    pub fn design(&mut self, windows: &Windows, period: f32) {
         let [first, second, third] = windows.lengths;
-        let unit = 1.0 / (windows.per_metre * windows.product() as f32);
+        self.product = windows.product();
+        self.total = (first + second + third) as i64;
+        self.taps = [
+            (0, 1),
+            (first, -1),
+            (second, -1),
+            (third, -1),
+            (first + second, 1),
+            (first + third, 1),
+            (second + third, 1),
+            (first + second + third, -1),
+        ];
+        let unit = 1.0 / (windows.per_metre * self.product as f32);
         let rate = 1.0 / period;
-        history.fill(Vector3::zeros());
-        Self {
-            history,
-            newest: 0,
-            taps: [
-                (0, 1),
-                (first, -1),
-                (second, -1),
-                (third, -1),
-                (first + second, 1),
-                (first + third, 1),
-                (second + third, 1),
-                (first + second + third, -1),
-            ],
-            product: windows.product(),
-            total: windows.lengths.iter().map(|&length| length as i64).sum(),
-            scales: Derivatives {
-                position: 1.0 / windows.per_metre,
-                velocity: unit * rate / 24.0,
-                acceleration: unit * rate * rate / 6.0,
-                jerk: 0.5 * unit * rate * rate * rate,
-                snap: unit * rate * rate * rate * rate,
-            },
-            axes: [Axis::AT_REST; 3],
-        }
+        self.scales = Derivatives {
+            position: 1.0 / windows.per_metre,
+            velocity: unit * rate,
+            acceleration: unit * rate * rate,
+            jerk: unit * rate * rate * rate,
+            snap: unit * rate * rate * rate * rate,
+        };
     }
 
     /// Starts as if always in steady motion: the knot at hand has `position` (units) and `speed` (units a tick).
     #[inline]
     pub fn start(&mut self, position: &Vector3<i64>, speed: &Vector3<i64>) {
         self.history.fill(Vector3::zeros());
-        for ((axis, &position), &speed) in self.axes.iter_mut().zip(position).zip(speed) {
-            *axis = Axis::steady(position, speed, self.product, self.total);
-        }
+        let steady = |position: i64, speed: i64| Axis::steady(position, speed, self.product, self.total);
+        self.axes = [steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)];
     }
 
     /// Advances by one tick of commanded acceleration, in units per tick squared.
@@ -158,9 +164,10 @@ impl<'m> Smoother<'m> {
                 comb += past * sign;
             }
         }
-        for ((axis, &acceleration), &comb) in self.axes.iter_mut().zip(acceleration).zip(&comb) {
-            axis.push(acceleration, comb, self.product);
-        }
+        let [x, y, z] = &mut self.axes;
+        x.push(acceleration.x, comb.x, self.product);
+        y.push(acceleration.y, comb.y, self.product);
+        z.push(acceleration.z, comb.z, self.product);
     }
 
     /// The commanded position x_0, units.
@@ -187,7 +194,8 @@ impl<'m> Smoother<'m> {
     #[inline]
     pub fn knot(&self) -> Knot {
         let [x, y, z] = &self.axes;
-        let [x, y, z] = [x, y, z].map(|axis| axis.knot(self.product, &self.scales));
+        let knot = |axis: &Axis| axis.knot(self.product, &self.scales);
+        let (x, y, z) = (knot(x), knot(y), knot(z));
         Knot {
             position: Vector3::new(x.position, y.position, z.position),
             velocity: Vector3::new(x.velocity, y.velocity, z.velocity),
@@ -199,12 +207,12 @@ impl<'m> Smoother<'m> {
 }
 
 /// `sum` / `count` to a unit or to 2^-44 of it, whichever is more: each pass of single precision leaves 2^-22 of what there was.
-#[inline]
+#[inline(never)] // once in an image
 pub(super) fn divided(sum: i64, count: i64) -> i64 {
     let share = 1.0 / count as f32;
     let (mut quotient, mut rest) = (0, sum);
     for _ in 0..2 {
-        let part = (rest as f32 * share) as i64;
+        let part = math::whole(rest as f32 * share);
         quotient += part;
         rest -= part * count;
     }
@@ -223,6 +231,13 @@ mod tests {
         Windows::design(&TYPICAL, &GovernorLimits::default(), 0.01).unwrap()
     }
 
+    /// At rest at the origin.
+    fn smoother(windows: &Windows) -> Smoother {
+        let mut smoother = Smoother::NONE;
+        smoother.design(windows, 0.01);
+        smoother
+    }
+
     /// Three averages of the commands, run one after another in floating point.
     fn averaged(commands: &[f64], lengths: [usize; 3]) -> Vec<f64> {
         let mut signal = commands.to_vec();
@@ -237,8 +252,7 @@ mod tests {
     #[test]
     fn the_comb_and_its_sums_are_three_moving_averages() {
         let windows = windows();
-        let mut history = [Vector3::zeros(); HISTORY];
-        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
+        let mut smoother = smoother(&windows);
         let mut random = Random::new(5);
         let commands: Vec<i32> = (0..1_500).map(|_| (random.signed() * 60_000.0) as i32).collect();
         let expected = averaged(&commands.iter().map(|&c| f64::from(c)).collect::<Vec<_>>(), windows.lengths);
@@ -252,8 +266,7 @@ mod tests {
     #[test]
     fn a_steady_motion_comes_out_as_it_went_in() {
         let windows = windows();
-        let mut history = [Vector3::zeros(); HISTORY];
-        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
+        let mut smoother = smoother(&windows);
         let unit = windows.per_metre;
         smoother.start(&Vector3::new(unit as i64 * 3, 0, -(unit as i64)), &Vector3::new(0, (unit * 0.02) as i64, 0));
         for tick in 0..2_000 {
@@ -279,8 +292,7 @@ mod tests {
     #[test]
     fn a_million_ticks_of_noise_leave_no_trace() {
         let windows = windows();
-        let mut history = [Vector3::zeros(); HISTORY];
-        let mut smoother = Smoother::new(&windows, 0.01, &mut history);
+        let mut smoother = smoother(&windows);
         let mut random = Random::new(6);
         for _ in 0..1_000_000 {
             let speed = smoother.speed().x as f32 / 1e7;

@@ -49,7 +49,7 @@ impl core::error::Error for TakeOverError {}
 /// A [`Governor`] behind bridges from references in motion.
 #[derive(Debug, PartialEq)]
 pub struct TakeOver<'m> {
-    governor: Governor<'m>,
+    governor: &'m mut Governor,
     bounds: ReferenceBounds,
     /// The position's bridge, and the ticks spent on it.
     bridge: Option<(Bridge, u32)>,

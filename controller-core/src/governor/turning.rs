@@ -17,7 +17,7 @@ use super::GovernorLimits;
 use super::braking::{BRAKING_SHARE, approach_speed};
 use super::smoother::divided;
 use super::windows::{ROUNDING_ROOM, ticks};
-use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::ReferenceBounds;
@@ -31,7 +31,7 @@ pub(super) const SPARE_BITS: u32 = 64 - TURN_BITS;
 pub(super) const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
 
 /// Longest average, ticks.
-pub(super) const TURN_HISTORY: usize = 64;
+const TURN_HISTORY: usize = 64;
 
 /// The share of sqrt(K_nu'') that makes the shortest half turn: the minimum of pi/r + r/sqrt(1-r^4).
 const RATE_SHARE: f32 = 0.857;
@@ -50,11 +50,13 @@ impl TurnGoal {
 }
 
 /// Command, average and spline of the heading.
-#[derive(Debug, PartialEq)]
-pub(super) struct Turning<'m> {
-    history: &'m mut [i64; TURN_HISTORY],
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Turning {
+    history: [i64; TURN_HISTORY],
     newest: usize,
     length: usize,
+    /// By how many ticks a steady turn comes out late.
+    delay: f32,
     period: f32,
     /// R and B in units a tick (squared), and the B in force while above R.
     fastest: i64,
@@ -68,38 +70,44 @@ pub(super) struct Turning<'m> {
     second: i64,
 }
 
-impl<'m> Turning<'m> {
-    /// At rest along world x.
+impl Turning {
+    /// Not designed yet.
+    pub const NONE: Self = Self {
+        history: [0; TURN_HISTORY],
+        newest: 0,
+        length: 0,
+        delay: 0.0,
+        period: 0.0,
+        fastest: 0,
+        strongest: 0,
+        strongest_above: 0,
+        commanded: 0,
+        rate: 0,
+        trail: 0,
+        first: 0,
+        second: 0,
+    };
+
+    /// Prepares for `bounds` that are positive; [`Self::start`] is next.
     #[inline]
-    pub fn new(
+    pub fn design(
+        &mut self,
         bounds: &ReferenceBounds,
         limits: &GovernorLimits,
         period: f32,
-        history: &'m mut [i64; TURN_HISTORY],
-    ) -> Result<Self, ParameterError> {
-        require_positive(bounds.heading_rate, "reference_bounds.heading_rate")?;
-        require_positive(bounds.heading_second_derivative, "reference_bounds.heading_second_derivative")?;
+    ) -> Result<(), ParameterError> {
         let length = ticks(limits.heading_ramp, period);
         require(length <= TURN_HISTORY, "governor.heading_ramp", Reason::NotAbove(TURN_HISTORY as f32 * period))?;
         let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
         let rate = (bounds.heading_rate * (1.0 - ROUNDING_ROOM)).min(RATE_SHARE * math::sqrt(second));
         let strongest = strongest_at(rate, bounds, period);
         require(strongest > 0, "reference_bounds.heading_second_derivative", Reason::NotPositive)?;
-        history.fill(0);
-        Ok(Self {
-            history,
-            newest: 0,
-            length,
-            period,
-            fastest: units(rate, period),
-            strongest,
-            strongest_above: strongest,
-            commanded: 0,
-            rate: 0,
-            trail: 0,
-            first: 0,
-            second: 0,
-        })
+        self.length = length;
+        self.delay = (length as f32 - 1.0) * 0.5 + 1.0;
+        self.period = period;
+        self.fastest = units(rate, period);
+        self.strongest = strongest;
+        Ok(())
     }
 
     /// Lets the next start turn at `rate` (units a tick), be it faster than R: then it slows down by `strongest`, units per
@@ -159,7 +167,7 @@ impl<'m> Turning<'m> {
         if distance.abs() <= 1.0 {
             return error;
         }
-        (strongest * approach_speed(distance.abs()).copysign(distance)) as i64
+        math::whole(strongest * approach_speed(distance.abs()).copysign(distance))
     }
 
     #[inline]
@@ -188,7 +196,7 @@ impl<'m> Turning<'m> {
     /// By how many ticks a steady turn comes out late.
     #[inline]
     pub fn delay(&self) -> f32 {
-        (self.length as f32 - 1.0) * 0.5 + 1.0
+        self.delay
     }
 
     /// The heading at hand.
@@ -207,7 +215,7 @@ impl<'m> Turning<'m> {
 pub(super) fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
     let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
     let left = (second * second - rate * rate * rate * rate).max(0.0);
-    (math::sqrt(left) * period * period * PER_RADIAN) as i64
+    math::whole(math::sqrt(left) * period * period * PER_RADIAN)
 }
 
 /// An angle (rad) as a phase in units, to 2^-34 turns for any angle that a setpoint may have.
@@ -219,7 +227,7 @@ pub(super) fn phase(angle: f32) -> i64 {
     /// 2^32 / (2 pi): its whole part, and 2^22 times the rest.
     const WHOLE: i64 = 683_565_275;
     const REST: i64 = 2_417_729;
-    let fine = (angle * 4_294_967_296.0) as i64;
+    let fine = math::whole(angle * 4_294_967_296.0);
     fine.wrapping_mul(WHOLE).wrapping_add((fine >> 22).wrapping_mul(REST)) >> SPARE_BITS
 }
 
@@ -236,7 +244,7 @@ pub(super) fn phase_of(heading: &Heading) -> i64 {
     }
     for _ in 0..3 {
         let here = direction(phase);
-        phase += ((here.x * target.y - here.y * target.x) * PER_RADIAN) as i64;
+        phase += math::whole((here.x * target.y - here.y * target.x) * PER_RADIAN);
     }
     phase
 }
@@ -251,7 +259,7 @@ fn direction(phase: i64) -> Vector2<f32> {
 /// A rate (rad/s) in units a tick; an angle with `period` one.
 #[inline]
 pub(super) fn units(rate: f32, period: f32) -> i64 {
-    (rate * period * PER_RADIAN) as i64
+    math::whole(rate * period * PER_RADIAN)
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ pub fn turns(angle: f64) -> u64 {
 pub(crate) fn swing(angle: f32) -> u64 {
     /// 2^32 / (2 pi).
     const PER_RADIAN: f32 = 683_565_275.576_431_6;
-    ((angle * PER_RADIAN) as i64 as u64).wrapping_shl(32)
+    (math::whole(angle * PER_RADIAN) as u64).wrapping_shl(32)
 }
 
 #[cfg(test)]

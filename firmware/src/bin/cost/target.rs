@@ -194,10 +194,10 @@ const TUMBLING: State = State {
 fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
     static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
     let (bounds, limits) = (configuration.bounds(), GovernorLimits::default());
-    let Ok(mut governor) = Governor::new(bounds, &limits, PERIOD, MEMORY.take()) else {
+    let Ok(governor) = Governor::new(bounds, &limits, PERIOD, MEMORY.take()) else {
         return false;
     };
-    let tick: fn(&mut Governor<'static>) -> Reference = black_box(Governor::tick);
+    let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
     for number in 0..6000_u32 {
         if number % 1000 == 0 {
             let away = if number % 2000 == 0 { 3.0 } else { 0.0 };
@@ -207,7 +207,7 @@ fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
                 return false;
             }
         }
-        let (instructions, reference) = counter.short(|| tick(&mut governor));
+        let (instructions, reference) = counter.short(|| tick(governor));
         black_box(reference);
         cost.add(instructions);
     }
