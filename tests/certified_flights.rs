@@ -9,7 +9,7 @@ use adversary_search::Domain;
 use adversary_search::configurations::{around_table_1, limited};
 use adversary_search::search::{Objective, Worst, worst};
 use body::Body;
-use controller_core::allocation::{Mixer, QuadX, Rotors};
+use controller_core::allocation::{MinimumNorm, Mixer, QuadX, Rotors, Thrusts};
 use controller_core::certificate::configuration::{Certified, Configuration};
 use controller_core::certificate::{Certificate, Form};
 use controller_core::controller::Controller;
@@ -189,8 +189,15 @@ impl Usage {
         self.thrust = self.thrust.max(thrust / sharp.thrust.greatest).max(sharp.thrust.least / thrust);
         self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
 
-        let allocation = Mixer::new(certified.configuration().rotors().unwrap()).allocate(wrench).unwrap();
-        assert!(allocation.is_exact(), "{allocation:?}");
+        // What flies never clips, and so is what the mixer does with all its priorities.
+        let rotors_flown = certified.configuration().rotors().unwrap();
+        let allocation = MinimumNorm::new(rotors_flown).allocate(wrench).unwrap();
+        assert!(!allocation.clipped, "{allocation:?}");
+        let mixed = Mixer::new(rotors_flown).allocate(wrench).unwrap();
+        assert!(mixed.is_exact(), "{mixed:?}");
+        let bits = |thrusts: &Thrusts| thrusts.iter().map(|thrust| thrust.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&allocation.thrusts), bits(&mixed.thrusts));
+        assert_eq!(allocation.achieved, mixed.achieved);
         for (thrust, report) in allocation.thrusts.iter().zip(rotors) {
             let thrust = f64::from(*thrust);
             self.rotor = self.rotor.max(thrust / report.demand.greatest).max(report.demand.least / thrust);

@@ -21,7 +21,7 @@ mod witness;
 
 use adversary::Adversary;
 use case::{Case, Random};
-use controller_core::governor::{Governor, Motion, Setpoint, Turn};
+use controller_core::governor::{Memory, Motion, Setpoint, TakeOver, Turn};
 use controller_core::prelude::{Vector2, Vector3};
 use core::f32::consts::PI;
 use witness::{Approach, Tally, Witness};
@@ -36,10 +36,12 @@ fn fly(seed: u64, tally: &mut Tally) {
     let adversary = Adversary::draw(&mut random, &case);
     let resting = case.resting(&mut random);
     let mut start = resting;
-    let mut governor = Governor::new(case.bounds, case.limits, case.period, &resting).unwrap();
+    let mut memory = Memory::EMPTY;
+    let mut governor = TakeOver::new(&case.bounds, &case.limits, case.period, &mut memory).unwrap();
+    governor.restart(&resting).unwrap();
     if !matches!(adversary, Adversary::Constant) && random.below(3) > 0 {
         let interrupted = random.below(2) == 0;
-        start = if interrupted { case.interrupted(&mut random, governor.clone()) } else { case.orbiting(&mut random) };
+        start = if interrupted { case.interrupted(&mut random, &resting) } else { case.orbiting(&mut random) };
         *(if interrupted { &mut tally.interrupted } else { &mut tally.orbiting }) += 1;
         if governor.restart(&start).is_err() {
             // Counted, and flown from rest instead.

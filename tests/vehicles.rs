@@ -1,12 +1,21 @@
 //! The vehicles of `vehicles/`, with their rotors turning: certified to the last rotor, and flown without one that saturates.
+//! What the boards allocate with clips nothing of what their certificates allow.
 //! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
 
-use controller_core::certificate::Certificate;
+mod random;
+
+use controller_core::allocation::support::ROUNDING;
+use controller_core::allocation::{MinimumNorm, Mixer, Rotors};
+use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate};
 use controller_core::gains::{GainParameters, Gains};
+use controller_core::state::Wrench;
 use host_sim::flight::Flight;
 use host_sim::plant::attitude_from_euler;
 use host_sim::scenario::Scenario;
 use host_sim::tune::candidate::recovery;
+use nalgebra::{Matrix3, Vector3};
+use rand::RngExt;
+use random::ChaCha8Rng;
 use std::path::Path;
 
 const VEHICLES: [&str; 2] = ["hummingbird", "study"];
@@ -207,5 +216,82 @@ fn with_ten_times_table_ones_attitude_feedback_the_same_rotors_saturate() {
         scenario.configuration = scenario.configuration.with_gains(gains).unwrap();
         assert!(!Certificate::new(&scenario.configuration).unwrap().holds());
         assert!(flown(&scenario).saturated > 0, "{name}");
+    }
+}
+
+/// The direction of omega in which row . (omega x J omega) is greatest: an eigenvector of that form.
+fn most_gyroscopic(inertia: &Vector3<f64>, row: &Vector3<f64>) -> Vector3<f64> {
+    let differences = Vector3::new(inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x);
+    let form = differences.component_mul(row);
+    let eigen = Matrix3::new(0.0, form.z, form.y, form.z, 0.0, form.x, form.y, form.x, 0.0).symmetric_eigen();
+    eigen.eigenvectors.column(eigen.eigenvalues.imax()).into()
+}
+
+/// A wrench of `used` times what the certificate allows, where a rotor's thrust is nearly at an end of what it may be.
+fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut ChaCha8Rng) -> Wrench {
+    let form = &certificate.sharp;
+    let inertia = scenario.configuration.vehicle().inertia.cast::<f64>();
+    let rows = scenario.configuration.rotors().unwrap().pseudo_inverse();
+    let up = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    let row = rows[rng.random_range(0..rows.len())].fixed_rows::<3>(1) * up;
+    let raised = used * (1.0 + ARITHMETIC_ALLOWANCE);
+    // Along the row, more or less, which is where the ball's support function is taken.
+    let spread = random::log_uniform(rng, 1e-6, 1.0);
+    let mut ball = |radius: f64, row: Vector3<f64>| {
+        let direction = row.normalize() + random::vector(rng, spread).cast();
+        direction.normalize() * radius
+    };
+    let feedback = ball(form.feedback_torque * raised, row);
+    let acceleration = ball(form.rates.angular_acceleration * raised, inertia.component_mul(&row));
+    let velocity = ball(form.rates.angular_velocity * raised, most_gyroscopic(&inertia, &row));
+    let torque = feedback + inertia.component_mul(&acceleration) + velocity.cross(&inertia.component_mul(&velocity));
+    let middle = 0.5 * (form.thrust.least + form.thrust.greatest);
+    let thrust = middle + used * 0.5 * up * (form.thrust.greatest - form.thrust.least);
+    Wrench { thrust: thrust as f32, torque: torque.cast() }
+}
+
+/// The mixer's priorities are not on the boards: here is why they need not be.
+#[test]
+fn every_allowed_wrench_is_within_the_rotors_and_what_flies_agrees_with_the_mixer_to_the_bit() {
+    let mut rng = random::generator(52);
+    for name in ["hummingbird", "study", "hummingbird-paper", "study-paper"] {
+        let scenario = vehicle(name);
+        let certificate = Certificate::new(&scenario.configuration).unwrap();
+        let rotors = scenario.configuration.rotors().unwrap();
+        let (flown, mixer) = (MinimumNorm::new(rotors), Mixer::new(rotors));
+        for _ in 0..100_000 {
+            let wrench = allowed(&scenario, &certificate, 1.0, &mut rng);
+            let (ours, mixed) = (flown.allocate(&wrench).unwrap(), mixer.allocate(&wrench).unwrap());
+            assert!(!ours.clipped && mixed.is_exact(), "{name}: {wrench:?} {ours:?}");
+            let same = ours.thrusts.iter().zip(&mixed.thrusts).all(|(a, b)| a.to_bits() == b.to_bits());
+            assert!(same && ours.achieved == mixed.achieved, "{name}: {wrench:?} {ours:?} {mixed:?}");
+        }
+        // A tenth more than the tightest rotor has to spare is too much: the search does come to the ends.
+        let beyond = 1.1 / (1.0 - certificate.tightest().unwrap().margin());
+        let clips = |_| flown.allocate(&allowed(&scenario, &certificate, beyond, &mut rng)).unwrap().clipped;
+        assert!((0..100_000).any(clips), "{name}");
+    }
+}
+
+/// Rotors with exactly the range that is asked of them, in single precision: what is clipped is rounding, if anything is.
+#[test]
+fn without_any_margin_clipping_takes_no_more_than_rounding() {
+    let mut rng = random::generator(53);
+    for name in VEHICLES {
+        let scenario = vehicle(name);
+        let certificate = Certificate::new(&scenario.configuration).unwrap();
+        let mut rotors = scenario.configuration.rotors().unwrap().to_vec();
+        for (rotor, report) in rotors.iter_mut().zip(&certificate.rotors) {
+            (rotor.thrust_min, rotor.thrust_max) = (report.demand.least as f32, report.demand.greatest as f32);
+        }
+        let flown = MinimumNorm::new(&Rotors::new(&rotors).unwrap());
+        for _ in 0..100_000 {
+            let wrench = allowed(&scenario, &certificate, 1.0, &mut rng);
+            let achieved = flown.allocate(&wrench).unwrap().achieved;
+            let thrust = f64::from((achieved.thrust - wrench.thrust).abs());
+            let torque = f64::from((achieved.torque - wrench.torque).norm());
+            let rounding = ROUNDING * certificate.sharp.thrust.greatest;
+            assert!(thrust < rounding && torque < rounding, "{name}: {wrench:?} {achieved:?}");
+        }
     }
 }

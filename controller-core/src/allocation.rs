@@ -10,19 +10,22 @@
 //! body z. The wrenches they can deliver, the *polytope*, are the image of a box.
 //!
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
+//! - [`minimum_norm`]: wrench to rotor thrusts by B+, each within its range: what a certified flight needs;
+//! - [`mixer`]: what any other needs on top of it, giving up yaw first, then thrust, roll and pitch last;
 //! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks;
-//! - [`mixer`]: wrench to rotor thrusts, giving up yaw first, then thrust, roll and pitch last;
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
 //! - [`support`]: which thrusts a whole set of wrenches can ask of each rotor: the certificate's last link.
 
 mod attainable;
 pub mod curve;
 pub mod geometry;
+pub mod minimum_norm;
 pub mod mixer;
 pub mod support;
 
 pub use curve::{Battery, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
+pub use minimum_norm::{MinimumNorm, Thrusts};
 pub use mixer::{Allocation, Mixer};
 pub use support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
 

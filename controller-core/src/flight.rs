@@ -2,7 +2,7 @@
 //!
 //! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
 //! - [`reason`]: reasons in words, for every transition and every refusal;
-//! - [`pilot`]: [`Pilot`], which composes rules, governor, law and mixer into one tick;
+//! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
 //! - `permission`: what arming and a motor test need;
 //! - `measurement`: which IMU sample and which pose are flown;
 //! - [`propagation`]: the attitude between poses, by gyro;
@@ -34,7 +34,7 @@ pub use pilot::Pilot;
 pub use reason::{Grounded, Reason, Refusal};
 pub use rules::{Mode, Transition};
 
-use crate::allocation::mixer::Thrusts;
+use crate::allocation::Thrusts;
 use crate::error::InputError;
 use crate::governor::Setpoint;
 use nalgebra::{Quaternion, Vector3};

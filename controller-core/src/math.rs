@@ -43,10 +43,18 @@ extern "C" fn sqrtf(x: f32) -> f32 {
     f32::from_bits(bits)
 }
 
+/// `x` rounded towards zero, at the end of the range where it is beyond, zero if it is no number.
+#[must_use]
+#[inline(never)] // saturating takes more than the call does
+pub fn whole(x: f32) -> i64 {
+    x as i64
+}
+
 /// Sine and cosine of `phase` / 2^64 turns.
 ///
 /// The phase is an integer, so its reduction to an octant is exact however long the clock has run.
 #[must_use]
+#[inline(never)] // once in an image: 0.1 KB
 pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
     /// Radians per unit of a phase whose full turn is 2^32.
     const RADIANS: f32 = core::f32::consts::TAU / 4_294_967_296.0;
@@ -171,13 +179,6 @@ pub fn round(x: f64) -> f64 {
 #[must_use]
 pub fn floor(x: f64) -> f64 {
     libm::floor(x)
-}
-
-/// The angle of the point (x, y), rad in [-pi, pi], for configuration time.
-#[inline]
-#[must_use]
-pub fn atan2(y: f64, x: f64) -> f64 {
-    libm::atan2(y, x)
 }
 
 /// e^x - 1 without cancellation near zero, for configuration time.

@@ -19,7 +19,7 @@ pub mod waypoints;
 
 use crate::error::{InputError, ParameterError, Reason, require, require_finite};
 use crate::heading::Heading;
-use crate::state::{STATE_RANGE, check_vector, sum_of_squares};
+use crate::state::{STATE_RANGE, check_vectors, sum_of_squares};
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a reference derivative's component, in its SI unit.
@@ -57,14 +57,17 @@ impl Reference {
     }
 
     /// Checks that every field is finite and in range.
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
-        check_vector(&self.position, STATE_RANGE, "reference.position")?;
-        check_vector(&self.velocity, STATE_RANGE, "reference.velocity")?;
-        check_vector(&self.acceleration, DERIVATIVE_RANGE, "reference.acceleration")?;
-        check_vector(&self.jerk, DERIVATIVE_RANGE, "reference.jerk")?;
-        check_vector(&self.snap, DERIVATIVE_RANGE, "reference.snap")?;
         let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
-        check_vector(&turning, DERIVATIVE_RANGE, "reference.heading")
+        check_vectors(&[
+            (&self.position, STATE_RANGE, "reference.position"),
+            (&self.velocity, STATE_RANGE, "reference.velocity"),
+            (&self.acceleration, DERIVATIVE_RANGE, "reference.acceleration"),
+            (&self.jerk, DERIVATIVE_RANGE, "reference.jerk"),
+            (&self.snap, DERIVATIVE_RANGE, "reference.snap"),
+            (&turning, DERIVATIVE_RANGE, "reference.heading"),
+        ])
     }
 }
 

@@ -22,17 +22,17 @@ pub struct State {
     pub angular_velocity: Vector3<f32>,
 }
 
-/// Refuses non-finite components and magnitudes beyond `range`.
-pub(crate) fn check_vector(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), InputError> {
-    // A NaN compares false with everything, so it fails here too; no branch until all three are compared.
-    let within = |component: f32| component.abs() <= range;
-    if within(vector.x) & within(vector.y) & within(vector.z) {
-        Ok(())
-    } else if vector.iter().all(|component| component.is_finite()) {
-        Err(InputError::OutOfRange { field })
-    } else {
-        Err(InputError::NotFinite { field })
+/// Refuses the first of `vectors` with a component that is not finite, or greater than the range beside it.
+#[inline(never)] // once in an image
+pub(crate) fn check_vectors(vectors: &[(&Vector3<f32>, f32, &'static str)]) -> Result<(), InputError> {
+    for &(vector, range, field) in vectors {
+        // A NaN compares false with everything, so it fails here too.
+        if !vector.iter().all(|component| component.abs() <= range) {
+            let finite = vector.iter().all(|component| component.is_finite());
+            return Err(if finite { InputError::OutOfRange { field } } else { InputError::NotFinite { field } });
+        }
     }
+    Ok(())
 }
 
 /// The sum of all components' squares: below the square of a range, every component is finite and in that range.
@@ -45,6 +45,13 @@ pub(crate) fn sum_of_squares(vectors: &[&Vector3<f32>]) -> f32 {
 #[inline(always)]
 pub(crate) fn length_squared(q: &Quaternion<f32>) -> f32 {
     q.i * q.i + q.j * q.j + q.k * q.k + q.w * q.w
+}
+
+/// Whether `q` is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
+#[inline(always)]
+pub(crate) fn is_rotation(q: &Quaternion<f32>) -> bool {
+    const SQUARE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
+    (length_squared(q) - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
 }
 
 impl State {
@@ -60,18 +67,20 @@ impl State {
         sum_of_squares(&[&self.angular_velocity])
     }
 
-    /// Whether the attitude is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
+    /// Whether the attitude is a rotation.
     #[inline(always)]
     pub(crate) fn has_unit_attitude(&self) -> bool {
-        const SQUARE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
-        (length_squared(&self.attitude) - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
+        is_rotation(&self.attitude)
     }
 
     /// Checks every field, one by one.
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
-        check_vector(&self.position, STATE_RANGE, "state.position")?;
-        check_vector(&self.velocity, STATE_RANGE, "state.velocity")?;
-        check_vector(&self.angular_velocity, STATE_RANGE, "state.angular_velocity")?;
+        check_vectors(&[
+            (&self.position, STATE_RANGE, "state.position"),
+            (&self.velocity, STATE_RANGE, "state.velocity"),
+            (&self.angular_velocity, STATE_RANGE, "state.angular_velocity"),
+        ])?;
         let field = "state.attitude";
         if self.has_unit_attitude() {
             Ok(())

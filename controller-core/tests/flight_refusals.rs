@@ -9,7 +9,7 @@ use controller_core::flight::{
 };
 use controller_core::governor::{GovernorLimits, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::{at_rest, certified, configuration, go_to, pilot, rotors};
+use flight::{at_rest, certified, configuration, go_to, memory, pilot, rotors};
 
 const NOW: u64 = 5_000_000;
 
@@ -146,7 +146,7 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
     let weak = Configuration::new(*base.vehicle(), weak, *base.gains(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
-    let pilot = Pilot::new(Err(&refused), GovernorLimits::default());
+    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), memory());
     let grounded = Grounded::Inequality("T2 yaw torque");
     assert_eq!(grounded.to_string(), "Not certified: T2 yaw torque");
     is_grounded(pilot, grounded);
@@ -156,13 +156,13 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
 fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     let limits = GovernorLimits::default();
     let rotorless = Certified::new(configuration()).unwrap();
-    is_grounded(Pilot::new(Ok(&rotorless), limits), Grounded::NoRotors);
+    is_grounded(Pilot::new(Ok(&rotorless), &limits, memory()), Grounded::NoRotors);
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
     let field = "reference_bounds.horizontal_acceleration";
-    is_grounded(Pilot::new(Ok(&hover), limits), Grounded::Parameter(field));
+    is_grounded(Pilot::new(Ok(&hover), &limits, memory()), Grounded::Parameter(field));
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
-    is_grounded(Pilot::new(Ok(&certified()), slow), Grounded::Parameter("governor.horizontal_speed"));
+    is_grounded(Pilot::new(Ok(&certified()), &slow, memory()), Grounded::Parameter("governor.horizontal_speed"));
     let error = ParameterError { field: "vehicle.mass", reason: Reason::NotPositive };
-    is_grounded(Pilot::new(Err(&Refused::Undefined(error)), limits), Grounded::Parameter("vehicle.mass"));
+    is_grounded(Pilot::new(Err(&Refused::Undefined(error)), &limits, memory()), Grounded::Parameter("vehicle.mass"));
 }

@@ -7,49 +7,65 @@ use crate::configuration;
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::parameters::table::Name;
-use controller_core::certificate::configuration::{Certified, Refused};
+use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::error::ParameterError;
 use controller_core::flight::Pilot;
-use controller_core::governor::GovernorLimits;
+use controller_core::governor::{GovernorLimits, Memory};
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use static_cell::StaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
+
+/// Where a pilot lies, and what its governor remembers.
+pub struct Place {
+    pilot: StaticCell<Pilot<'static>>,
+    memory: ConstStaticCell<Memory>,
+}
+
+impl Place {
+    /// For one pilot.
+    #[allow(clippy::new_without_default)] // it is made where it stays
+    pub const fn new() -> Self {
+        Self { pilot: StaticCell::new(), memory: ConstStaticCell::new(Memory::EMPTY) }
+    }
+}
 
 /// Certifies the embedded configuration, logs every margin, and makes a pilot of it, certified or grounded, in the place
 /// that is meant for it; with it comes what turns its thrusts into motor commands.
 ///
 /// # Errors
 /// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
+#[inline(never)]
 pub fn start<M: RawMutex>(
-    place: &'static StaticCell<Pilot>,
+    place: &'static Place,
     parameters: &Parameters<M>,
-) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
-    let outputs = Outputs::new(configuration::embedded()?.rotors().ok_or(configuration::NO_ROTORS)?)?;
-    let certification = certify();
+) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+    let configuration = configuration::embedded()?;
+    let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?)?;
     let limits = GovernorLimits {
         horizontal_speed: parameters.get(Name::HorizontalSpeed),
         vertical_speed: parameters.get(Name::VerticalSpeed),
         ..GovernorLimits::default()
     };
-    Ok((pilot(place, certification.as_ref(), limits), outputs))
+    let certification = certify(configuration);
+    log(&certification);
+    Ok((pilot(place, certification.as_ref(), &limits), outputs))
 }
 
-// The two that follow need most of the stack, one after the other: neither may become part of the other's frame.
+// The two that follow need most of the stack, one after the other: neither may become part of another's frame.
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]
-fn certify() -> Result<Certified, Refused> {
-    let certification = configuration::embedded().map_err(Refused::Undefined).and_then(Certified::new);
-    log(&certification);
-    certification
+fn certify(configuration: Configuration) -> Result<Certified, Refused> {
+    Certified::new(configuration)
 }
 
 #[inline(never)]
 fn pilot(
-    place: &'static StaticCell<Pilot>,
+    place: &'static Place,
     certification: Result<&Certified, &Refused>,
-    limits: GovernorLimits,
-) -> &'static mut Pilot {
-    place.init_with(|| Pilot::new(certification, limits))
+    limits: &GovernorLimits,
+) -> &'static mut Pilot<'static> {
+    let memory = place.memory.take();
+    place.pilot.init_with(|| Pilot::new(certification, limits, memory))
 }
 
 /// Every inequality that decides, with its margin, and the verdict.

@@ -27,7 +27,7 @@ const WRITING_MAX: u64 = 2_000;
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
     shared: &'a Shared<M>,
-    pilot: &'a mut Pilot,
+    pilot: &'a mut Pilot<'static>,
     outputs: Outputs,
     timing: Timing,
     /// Whether sensors and motors are a simulator's, as the last tick found it.
@@ -46,7 +46,7 @@ struct Complaint {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
-    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
+    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
         Self { shared, pilot, outputs, timing: Timing::default(), simulated: false, complaint: Complaint::default() }
     }
 
@@ -107,7 +107,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
                 refusal.inspect(|refusal| self.shared.announce(Severity::Warning, refusal));
             }
         }
-        let refused = outcome.flown.and_then(Result::err);
+        let refused = outcome.flown.as_ref().and_then(|flown| flown.as_ref().err().copied());
         if refused != self.complaint.law {
             self.complaint.law = refused;
             refused.inspect(|error| self.shared.announce(Severity::Critical, error));
@@ -115,7 +115,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     fn report(&self, inputs: &Inputs, outcome: &Outcome) {
-        let flown = outcome.flown.and_then(Result::ok);
+        let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
         let report = Report {
             mode: outcome.mode,
             state: flown.map(|flown| flown.state).or_else(|| measured(inputs)),

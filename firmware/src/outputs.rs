@@ -50,7 +50,7 @@ impl Outputs {
 mod tests {
     use super::*;
     use controller_core::allocation::QuadX;
-    use controller_core::allocation::mixer::Thrusts;
+    use controller_core::allocation::Thrusts;
 
     fn outputs() -> Outputs {
         let (thrust_coefficient, drag_coefficient) = (5.57e-6, 1.36e-7);

@@ -16,7 +16,7 @@
 pub mod rotors;
 
 use crate::plant::{Clipping, Diverged, Plant};
-use controller_core::allocation::mixer::{Mixer, Thrusts};
+use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
 use nalgebra::Vector3;

@@ -6,7 +6,7 @@
 use crate::actuators::{ActuationError, Actuators};
 use crate::plant::{BodyState, Clipping, Plant};
 use crate::scenario::Scenario;
-use controller_core::allocation::mixer::Thrusts;
+use controller_core::allocation::Thrusts;
 use controller_core::controller::{Controller, Diagnostics};
 use controller_core::error::{InputError, ParameterError};
 use controller_core::reference::{Reference, Trajectory};

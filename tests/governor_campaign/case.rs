@@ -1,6 +1,6 @@
 //! The conditions of a stream: bounds, limits, tick rate and where the reference starts, all drawn from a seed.
 
-use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::prelude::{Heading, Reference, ReferenceBounds, Vector2, Vector3};
 use core::f32::consts::PI;
 
@@ -102,8 +102,11 @@ impl Case {
         }
     }
 
-    /// Where a governor is that was sent about at random for a while.
-    pub fn interrupted(&self, random: &mut Random, mut governor: Governor) -> Reference {
+    /// Where a governor is that was sent about at random for a while, from a rest.
+    pub fn interrupted(&self, random: &mut Random, resting: &Reference) -> Reference {
+        let mut memory = Memory::EMPTY;
+        let governor = Governor::new(&self.bounds, &self.limits, self.period, &mut memory).unwrap();
+        governor.start(&resting.position, &resting.velocity, &resting.heading).unwrap();
         let mut last = governor.tick();
         for _ in 0..1 + random.below(3) {
             let motion = Motion::Velocity(random.vector(5.0));

@@ -34,11 +34,11 @@ pub struct Flight {
 impl Flight {
     /// Boots the firmware on a vehicle that stands on the ground, with poses and heartbeats coming in.
     pub fn boot() -> Self {
-        Self::with(|shared| boot::start(Box::leak(Box::new(StaticCell::new())), &shared.parameters).unwrap())
+        Self::with(|shared| boot::start(Box::leak(Box::new(boot::Place::new())), &shared.parameters).unwrap())
     }
 
     /// The same with what the firmware boots with.
-    pub fn with(boot: impl FnOnce(&Shared<CriticalSectionRawMutex>) -> (&'static mut Pilot, Outputs)) -> Self {
+    pub fn with(boot: impl FnOnce(&Shared<CriticalSectionRawMutex>) -> (&'static mut Pilot<'static>, Outputs)) -> Self {
         let pool = LocalPool::new();
         let spawner = pool.spawner();
         let clock = SimClock::default();

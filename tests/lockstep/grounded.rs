@@ -3,7 +3,7 @@
 use crate::flight::Flight;
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::flight::{Mode, Pilot};
-use controller_core::governor::GovernorLimits;
+use controller_core::governor::{GovernorLimits, Memory};
 use controller_core::reference::ReferenceBounds;
 use firmware::configuration;
 use firmware::hardware::MotorCommand;
@@ -22,7 +22,8 @@ fn refused() -> (Flight, &'static str) {
     let refused = Certified::new(too_agile()).unwrap_err();
     let Refused::Fails(certificate) = &refused else { panic!("{refused:?}") };
     let failed = certificate.inequalities().find(|inequality| !inequality.holds()).unwrap().name;
-    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), GovernorLimits::default())));
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &GovernorLimits::default(), memory)));
     let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap()).unwrap()));
     (flight, failed)
 }

@@ -2,7 +2,7 @@
 //!
 //! For w = (T, tau) and rotors f_min <= f <= f_max with w = B f (see [`super`]):
 //!
-//! 1. f = B+ w. If every rotor is within its range, done: nearly every tick ends here.
+//! 1. f = B+ w ([`MinimumNorm`]). If every rotor is within its range, done: every tick of a certified flight ends here.
 //! 2. Otherwise three projections, each onto exactly what the one before leaves (see `attainable.rs`):
 //!    - (tau_x, tau_y) to the nearest point of the roll-pitch polygon;
 //!    - T to the range it has at that roll and pitch, yaw being free;
@@ -20,16 +20,18 @@
 //! a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding, which
 //! [`Allocation::achieved`] shows: it is worked out from the thrusts.
 //!
-//! It does not know the rotors' lag, nor what they delivered last tick.
+//! It does not know the rotors' lag, nor what they delivered last tick. It is for flights that nothing is proven about:
+//! certified ones never come to step 2 and are flown without it.
 
 use super::attainable::{Polygon, Slabs, generators, normal};
 use super::collected;
 use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
+use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
 use crate::error::InputError;
 use crate::math::{component_product, dot};
-use crate::state::{STATE_RANGE, Wrench, check_vector};
+use crate::state::Wrench;
 use heapless::Vec;
-use nalgebra::{Vector2, Vector3, Vector4};
+use nalgebra::{Vector2, Vector4};
 
 /// Pairs of eight rotors.
 const PAIRS: usize = 28;
@@ -37,9 +39,6 @@ const PAIRS: usize = 28;
 const TRIPLES: usize = 56;
 /// Triples of the seven rotors after the first.
 const TRIPLES_AFTER_FIRST: usize = 35;
-
-/// Rotor thrusts, N, in the rotors' order.
-pub type Thrusts = Vec<f32, ROTORS_MAX>;
 
 /// What the rotors are asked to do, and what comes of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,29 +64,10 @@ impl Allocation {
     }
 }
 
-/// A rotor as the tick needs it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Actuator {
-    /// Its column of B.
-    column: Vector4<f32>,
-    /// Its row of B+.
-    share: Vector4<f32>,
-    least: f32,
-    greatest: f32,
-}
-
-impl Actuator {
-    #[inline]
-    fn clip(&self, thrust: f32) -> f32 {
-        thrust.max(self.least).min(self.greatest)
-    }
-}
-
 /// A rotor beyond the four that carry the wrench, with the ranges the rotors after it leave.
 #[derive(Debug, Clone, PartialEq)]
 struct Spare {
     rotor: usize,
-    column: Vector4<f32>,
     after: Slabs<TRIPLES_AFTER_FIRST>,
 }
 
@@ -101,7 +81,7 @@ struct Carrier {
 /// Everything about one set of rotors that a tick needs, worked out once. About 6 KB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixer {
-    actuators: Vec<Actuator, ROTORS_MAX>,
+    minimum_norm: MinimumNorm,
     roll_pitch: Polygon,
     thrust: Slabs<PAIRS>,
     yaw: Slabs<TRIPLES>,
@@ -114,17 +94,6 @@ impl Mixer {
     #[must_use]
     #[inline]
     pub fn new(rotors: &Rotors) -> Self {
-        let single = |v: &Vector4<f64>| v.map(|x| x as f32);
-        let actuator = |((rotor, column), share)| {
-            let rotor: &super::Rotor = rotor;
-            Actuator {
-                column: single(column),
-                share: single(share),
-                least: rotor.thrust_min,
-                greatest: rotor.thrust_max,
-            }
-        };
-        let actuators = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse()).map(actuator);
         let carriers = carriers(rotors);
         let carrying = || carriers.iter().map(|carrier| carrier.rotor);
         let spare = (0..rotors.len()).filter(|index| !carrying().any(|carrier| carrier == *index));
@@ -135,12 +104,12 @@ impl Mixer {
                 let rest = generators(rotors, order.iter().skip(place + 1));
                 let after = Slabs::new(rotors, &rest, None, *column);
                 // At most four spares beyond four carriers.
-                let _ = spares.push(Spare { rotor: *rotor, column: single(column), after });
+                let _ = spares.push(Spare { rotor: *rotor, after });
             }
         }
         let all = generators(rotors, order.iter());
         Self {
-            actuators: collected(actuators),
+            minimum_norm: MinimumNorm::new(rotors),
             roll_pitch: Polygon::new(rotors),
             thrust: Slabs::new(rotors, &all, Some(Vector4::w()), -Vector4::x()),
             yaw: Slabs::new(rotors, &all, None, -Vector4::w()),
@@ -155,36 +124,28 @@ impl Mixer {
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
     #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
-        check_vector(&Vector3::new(wrench.thrust, 0.0, 0.0), STATE_RANGE, "wrench.thrust")?;
-        check_vector(&wrench.torque, STATE_RANGE, "wrench.torque")?;
-        let asked = Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z);
-        let preferred = self.preferred(&asked);
-        let fits = |(actuator, thrust): (&Actuator, &f32)| actuator.clip(*thrust) == *thrust;
-        if self.actuators.iter().zip(&preferred).all(fits) {
-            return Ok(self.report(preferred, &asked, &asked));
+        let asked = components(wrench);
+        let Delivered { thrusts, achieved, clipped } = self.minimum_norm.allocate(wrench)?;
+        if !clipped {
+            let (roll_pitch_limited, thrust_limited, yaw_limited) = (false, false, false);
+            return Ok(Allocation { thrusts, achieved, roll_pitch_limited, thrust_limited, yaw_limited });
         }
         let given = self.attainable(&asked);
-        Ok(self.report(self.deliver(&given), &asked, &given))
+        let thrusts = self.deliver(&given);
+        Ok(Allocation {
+            achieved: self.wrench(&thrusts),
+            thrusts,
+            roll_pitch_limited: asked.y != given.y || asked.z != given.z,
+            thrust_limited: asked.x != given.x,
+            yaw_limited: asked.w != given.w,
+        })
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
     #[inline]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
-        let sum = self.sum(thrusts);
-        Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
-    }
-
-    /// B+ w.
-    #[inline]
-    fn preferred(&self, wrench: &Vector4<f32>) -> Thrusts {
-        collected(self.actuators.iter().map(|actuator| actuator.share.dot(wrench)))
-    }
-
-    /// B f.
-    #[inline]
-    fn sum(&self, thrusts: &[f32]) -> Vector4<f32> {
-        self.actuators.iter().zip(thrusts).map(|(actuator, thrust)| actuator.column * *thrust).sum()
+        self.minimum_norm.wrench(thrusts)
     }
 
     /// Step 2: the attainable wrench that stands in for `asked`.
@@ -199,13 +160,14 @@ impl Mixer {
     /// Step 3: thrusts within their ranges for an attainable `wrench`.
     #[inline]
     fn deliver(&self, wrench: &Vector4<f32>) -> Thrusts {
-        let mut thrusts = self.preferred(wrench);
+        let mut thrusts = self.minimum_norm.preferred(wrench);
         let mut rest = *wrench;
         for spare in &self.spares {
             let range = spare.after.range(&rest);
-            if let (Some(thrust), Some(actuator)) = (thrusts.get_mut(spare.rotor), self.actuators.get(spare.rotor)) {
+            let actuator = self.minimum_norm.actuators().get(spare.rotor);
+            if let (Some(thrust), Some(actuator)) = (thrusts.get_mut(spare.rotor), actuator) {
                 *thrust = actuator.clip(within(*thrust, range));
-                rest -= spare.column * *thrust;
+                rest -= actuator.column * *thrust;
             }
         }
         for carrier in &self.carriers {
@@ -213,32 +175,14 @@ impl Mixer {
                 *thrust = carrier.row.dot(&rest);
             }
         }
-        self.clip(&mut thrusts);
+        self.minimum_norm.clip(&mut thrusts);
         // Rounding so far is of the size of the wrench asked for; what remains is of the size of the error.
-        let missing = wrench - self.sum(&thrusts);
-        for (thrust, correction) in thrusts.iter_mut().zip(&self.preferred(&missing)) {
+        let missing = wrench - self.minimum_norm.sum(&thrusts);
+        for (thrust, correction) in thrusts.iter_mut().zip(&self.minimum_norm.preferred(&missing)) {
             *thrust += correction;
         }
-        self.clip(&mut thrusts);
+        self.minimum_norm.clip(&mut thrusts);
         thrusts
-    }
-
-    #[inline]
-    fn clip(&self, thrusts: &mut Thrusts) {
-        for (thrust, actuator) in thrusts.iter_mut().zip(&self.actuators) {
-            *thrust = actuator.clip(*thrust);
-        }
-    }
-
-    #[inline]
-    fn report(&self, thrusts: Thrusts, asked: &Vector4<f32>, given: &Vector4<f32>) -> Allocation {
-        Allocation {
-            achieved: self.wrench(&thrusts),
-            thrusts,
-            roll_pitch_limited: asked.y != given.y || asked.z != given.z,
-            thrust_limited: asked.x != given.x,
-            yaw_limited: asked.w != given.w,
-        }
     }
 }
 

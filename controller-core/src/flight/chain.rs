@@ -1,4 +1,4 @@
-//! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, mixer.
+//! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
 //! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle and
 //! every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach, and
@@ -7,18 +7,17 @@
 //! that it is where it should be (position and velocity errors zero); then z_1 = z_2 = 0, the filters stay at zero, and
 //! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had.
 //!
-//! Starting on the ground and regaining the pose both hand the governor a reference without acceleration, jerk and snap:
-//! nothing to fade out, so no bridge is searched for, and such a restart fits in a tick.
+//! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
+//! to fade out, so no bridge is needed, and such a start fits in a tick.
 
 use super::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
-use crate::allocation::Mixer;
-use crate::allocation::mixer::Thrusts;
+use crate::allocation::{MinimumNorm, Thrusts};
 use crate::certificate::configuration::Certified;
 use crate::controller::{Command, Controller};
 use crate::error::InputError;
-use crate::governor::{Governor, GovernorError, GovernorLimits, Setpoint};
+use crate::governor::{Governor, GovernorLimits, Memory, Setpoint};
 use crate::heading::Heading;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -33,7 +32,7 @@ pub struct Flown {
     pub reference: Reference,
     /// The wrench the law asked for.
     pub wrench: Wrench,
-    /// The wrench the rotors are asked for: the same, unless the mixer had to give something up.
+    /// The wrench the rotors are asked for: the same but for rounding, as is proven.
     pub achieved: Wrench,
     /// p~, m, world.
     pub position_error: Vector3<f32>,
@@ -41,12 +40,12 @@ pub struct Flown {
     pub mrp: Vector3<f32>,
 }
 
-/// Governor, law and mixer, with what they hand from tick to tick.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Chain {
-    governor: Governor,
+/// Governor, law and allocation, with what they hand from tick to tick.
+#[derive(Debug, PartialEq)]
+pub(super) struct Chain<'m> {
+    governor: &'m mut Governor,
     controller: Controller,
-    mixer: Mixer,
+    allocation: MinimumNorm,
     rotors: usize,
     /// The last tick's.
     reference: Reference,
@@ -55,26 +54,30 @@ pub(super) struct Chain {
     refusals: u32,
 }
 
-/// A reference without acceleration.
+/// A reference at rest.
 #[inline]
-fn steady(position: Vector3<f32>, velocity: Vector3<f32>, heading: &Heading) -> Reference {
+fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
     let zero = Vector3::zeros();
-    Reference { position, velocity, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
+    let position = *position;
+    Reference { position, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
 }
 
-impl Chain {
-    // In the caller's frame: a result of 14 KB is not copied once more.
-    #[inline(always)]
-    pub fn new(certified: &Certified, limits: GovernorLimits, period: f32) -> Result<Self, Grounded> {
+impl<'m> Chain<'m> {
+    #[inline]
+    pub fn new(
+        certified: &Certified,
+        limits: &GovernorLimits,
+        period: f32,
+        memory: &'m mut Memory,
+    ) -> Result<Self, Grounded> {
         let configuration = certified.configuration();
         let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
-        let reference = steady(Vector3::zeros(), Vector3::zeros(), &Heading::FORWARD);
         Ok(Self {
-            governor: Governor::new(*configuration.bounds(), limits, period, &reference)?,
+            governor: Governor::new(configuration.bounds(), limits, period, memory)?,
             controller: Controller::new(certified, period)?,
-            mixer: Mixer::new(rotors),
+            allocation: MinimumNorm::new(rotors),
             rotors: rotors.len(),
-            reference,
+            reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
             refusals: 0,
         })
@@ -91,11 +94,10 @@ impl Chain {
     /// # Errors
     /// The governor's; it goes on as before then.
     #[inline]
-    pub fn start(&mut self, position: Vector3<f32>, heading: &Heading) -> Result<(), GovernorError> {
-        let reference = steady(position, Vector3::zeros(), heading);
-        self.governor.restart(&reference)?;
+    pub fn start(&mut self, position: &Vector3<f32>, heading: &Heading) -> Result<(), InputError> {
+        self.governor.start(position, &Vector3::zeros(), heading)?;
         self.controller.reset();
-        self.reference = reference;
+        self.reference = resting(position, heading);
         self.thrusts = None;
         self.refusals = 0;
         Ok(())
@@ -104,7 +106,7 @@ impl Chain {
     /// Turns to levelling: a hover at the last heading, the law reset.
     #[inline]
     pub fn level(&mut self) {
-        self.reference = steady(self.reference.position, Vector3::zeros(), &self.reference.heading);
+        self.reference = resting(&self.reference.position, &self.reference.heading);
         self.controller.reset();
     }
 
@@ -114,8 +116,8 @@ impl Chain {
     /// # Errors
     /// As [`Self::start`].
     #[inline]
-    pub fn regain(&mut self, pose: &Pose) -> Result<(), GovernorError> {
-        self.governor.restart(&steady(pose.position, pose.velocity, &self.reference.heading))
+    pub fn regain(&mut self, pose: &Pose) -> Result<(), InputError> {
+        self.governor.start(&pose.position, &pose.velocity, &self.reference.heading)
     }
 
     /// Brings the reference to rest.
@@ -142,7 +144,7 @@ impl Chain {
     /// One tick on the governor's reference.
     ///
     /// # Errors
-    /// What the law or the mixer cannot use.
+    /// What the law or the allocation cannot use.
     #[inline]
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         self.reference = self.governor.tick();
@@ -168,7 +170,7 @@ impl Chain {
         self.refusals = self.refusals.saturating_add(1);
         let Command { wrench, mrp } = self.controller.command(state, &self.reference)?;
         let position_error = state.position - self.reference.position;
-        let allocation = self.mixer.allocate(&wrench)?;
+        let allocation = self.allocation.allocate(&wrench)?;
         self.refusals = 0;
         self.thrusts = Some(allocation.thrusts);
         Ok(Flown {

@@ -4,11 +4,11 @@
 //! before it ages on, and the limits on age in [`super::rules`] decide how long that may go on. So the law never sees a
 //! number that it could refuse.
 
+use super::reason::field;
 use super::{ImuSample, Pose, Stamped};
 use crate::governor::{POSITION_RANGE, SPEED_RANGE};
 use crate::math;
-use crate::state::{STATE_RANGE, State, check_vector};
-use nalgebra::Vector3;
+use crate::state::{STATE_RANGE, check_vectors, is_rotation};
 
 /// How far ahead of the clock a time stamp may be, us: a sample taken while the tick was beginning.
 pub const STAMP_LEAD_MAX: u64 = 1_000;
@@ -18,8 +18,14 @@ pub const BODY_RATE_MAX: f32 = 100.0;
 
 /// Whether a time stamp can be of something that has happened.
 #[inline]
-pub(super) fn is_in_time(time: u64, now: u64) -> bool {
+fn is_in_time(time: u64, now: u64) -> bool {
     time <= now.saturating_add(STAMP_LEAD_MAX)
+}
+
+/// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
+#[inline(never)] // once in an image: asked everywhere
+pub(super) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
+    now.saturating_sub(time) <= age_max && is_in_time(time, now)
 }
 
 /// Something measured that can be told to be usable.
@@ -27,27 +33,24 @@ pub(super) trait Measurement: Copy {
     /// The name of its time stamp.
     const TIME: &'static str;
 
-    /// It, with its attitude normalised.
+    /// Whether it can be used.
     ///
     /// # Errors
-    /// Names the field that cannot be used.
-    fn checked(self) -> Result<Self, &'static str>;
-}
+    /// Names the field that cannot.
+    fn check(&self) -> Result<(), &'static str>;
 
-/// Passes a vector that is finite and within `range`.
-#[inline]
-fn require(vector: &Vector3<f32>, range: f32, field: &'static str) -> Result<(), &'static str> {
-    check_vector(vector, range, field).map_err(|_| field)
+    /// Makes a unit quaternion of an attitude that passes for one.
+    #[inline]
+    fn normalise(&mut self) {}
 }
 
 impl Measurement for ImuSample {
     const TIME: &'static str = "imu.time";
 
     #[inline]
-    fn checked(self) -> Result<Self, &'static str> {
-        require(&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity")?;
-        require(&self.specific_force, STATE_RANGE, "imu.specific_force")?;
-        Ok(self)
+    fn check(&self) -> Result<(), &'static str> {
+        let rates = (&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity");
+        check_vectors(&[rates, (&self.specific_force, STATE_RANGE, "imu.specific_force")]).map_err(field)
     }
 }
 
@@ -55,14 +58,15 @@ impl Measurement for Pose {
     const TIME: &'static str = "pose.time";
 
     #[inline]
-    fn checked(self) -> Result<Self, &'static str> {
-        let Self { position, velocity, attitude } = self;
-        require(&position, POSITION_RANGE, "pose.position")?;
-        require(&velocity, SPEED_RANGE, "pose.velocity")?;
-        let state = State { position, velocity, attitude, angular_velocity: Vector3::zeros() };
-        state.check().map_err(|_| "pose.attitude")?;
-        let attitude = attitude * (1.0 / math::sqrt(attitude.norm_squared()));
-        Ok(Self { attitude, ..self })
+    fn check(&self) -> Result<(), &'static str> {
+        let position = (&self.position, POSITION_RANGE, "pose.position");
+        check_vectors(&[position, (&self.velocity, SPEED_RANGE, "pose.velocity")]).map_err(field)?;
+        if is_rotation(&self.attitude) { Ok(()) } else { Err("pose.attitude") }
+    }
+
+    #[inline]
+    fn normalise(&mut self) {
+        self.attitude *= 1.0 / math::sqrt(self.attitude.norm_squared());
     }
 }
 
@@ -80,23 +84,25 @@ impl<T: Measurement> Newest<T> {
     /// Considers what is offered in the tick at `now`; the same measurement may be offered again and again, and one older
     /// than what is here is passed over. Returns it if it is new and usable.
     #[inline]
-    pub fn offer(&mut self, offered: Option<Stamped<T>>, now: u64) -> Option<Stamped<T>> {
-        let Stamped { value, time } =
-            offered.filter(|offered| self.usable.as_ref().is_none_or(|kept| offered.time > kept.time))?;
-        match if is_in_time(time, now) { value.checked() } else { Err(T::TIME) } {
-            Ok(value) => *self = Self { usable: Some(Stamped { value, time }), unusable: None },
-            Err(field) => {
-                self.unusable = Some(field);
-                return None;
-            }
+    pub fn offer(&mut self, offered: &Option<Stamped<T>>, now: u64) -> Option<&Stamped<T>> {
+        let offered = offered.as_ref()?;
+        if self.usable.as_ref().is_some_and(|kept| offered.time <= kept.time) {
+            return None;
         }
-        self.usable
+        let checked = if is_in_time(offered.time, now) { offered.value.check() } else { Err(T::TIME) };
+        self.unusable = checked.err();
+        if self.unusable.is_some() {
+            return None;
+        }
+        let usable = self.usable.insert(*offered);
+        usable.value.normalise();
+        Some(usable)
     }
 
     /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
     #[inline]
-    pub fn within(&self, age_max: u64, now: u64) -> Option<Stamped<T>> {
-        self.usable.filter(|kept| kept.age(now) <= age_max && is_in_time(kept.time, now))
+    pub fn within(&self, age_max: u64, now: u64) -> Option<&Stamped<T>> {
+        self.usable.as_ref().filter(|kept| is_fresh(kept.time, age_max, now))
     }
 
     /// The field for which the newest one offered cannot be used, if so.

@@ -54,7 +54,7 @@ pub(super) fn to_arm(
 ) -> Result<Start, Refusal> {
     imu.unusable().or(pose.unusable()).map_or(Ok(()), |field| Err(Refusal::Unusable(field)))?;
     require(imu.within(IMU_AGE_MAX, now).is_some(), Refusal::ImuStale)?;
-    let pose = pose.within(POSE_AGE_MAX - 1, now).ok_or(Refusal::PoseStale)?.value;
+    let pose = &pose.within(POSE_AGE_MAX - 1, now).ok_or(Refusal::PoseStale)?.value;
     require(upright(&pose.attitude) > TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
     let heading = heading(&pose.attitude).ok_or(Refusal::Tilted)?;

@@ -1,13 +1,13 @@
-//! The pilot: flight rules, governor, law and mixer in one synchronous tick that cannot fail.
+//! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
 //! In a tick, in this order: the newest usable measurements are taken; a request is answered; the rules' conditions are worked
 //! out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output is worked out.
 
 use super::chain::{Chain, Flown};
-use super::measurement::{Newest, is_in_time};
+use super::measurement::{Newest, is_fresh};
 use super::permission::{self, MotorTest};
 use super::propagation::PropagatedAttitude;
-use super::reason::{Grounded, Refusal, blamed};
+use super::reason::{Grounded, Refusal, field};
 use super::rules::{
     self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, IMU_AGE_MAX, LEVELLING_MAX, Mode, POSE_AGE_MAX, Transition,
 };
@@ -15,13 +15,13 @@ use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::configuration::{Certified, Refused};
 use crate::error::InputError;
-use crate::governor::{GovernorLimits, Setpoint};
+use crate::governor::{GovernorLimits, Memory, Setpoint};
 use crate::state::State;
 
-/// Everything that decides what the motors do. Memory: about 15 KB, most of it the governor's and the mixer's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pilot {
-    chain: Result<Chain, Grounded>,
+/// Everything that decides what the motors do. Memory: about 1.5 KB, and the governor's [`Memory`].
+#[derive(Debug, PartialEq)]
+pub struct Pilot<'m> {
+    chain: Result<Chain<'m>, Grounded>,
     mode: Mode,
     /// When the mode was entered, us.
     since: u64,
@@ -32,18 +32,22 @@ pub struct Pilot {
     test: MotorTest,
 }
 
-impl Pilot {
-    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time.
+impl<'m> Pilot<'m> {
+    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. Its
+    /// governor remembers in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
-    /// arms, and says why. On a desktop it takes 36 KB of stack (a tick takes 2 KB): to be called before
-    /// anything else needs it.
+    /// arms, and says why.
     #[must_use]
     #[inline]
-    pub fn new(certification: Result<&Certified, &Refused>, limits: GovernorLimits) -> Self {
+    pub fn new(
+        certification: Result<&Certified, &Refused>,
+        limits: &GovernorLimits,
+        memory: &'m mut Memory,
+    ) -> Self {
         Self {
             chain: match certification {
-                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6),
+                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
                 Err(refused) => Err(Grounded::from(refused)),
             },
             mode: Mode::Disarmed,
@@ -73,8 +77,9 @@ impl Pilot {
     #[inline]
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         self.measure(inputs);
-        let answer = inputs.request.map(|request| self.answer(request, inputs));
-        let transition = rules::transition(self.mode, self.conditions(inputs, answer));
+        let silent = is_silent(inputs);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, silent));
+        let transition = rules::transition(self.mode, self.conditions(inputs, answer, silent));
         if let Some(transition) = transition {
             self.enter(&transition, inputs);
         }
@@ -87,9 +92,9 @@ impl Pilot {
     #[inline]
     fn measure(&mut self, inputs: &Inputs) {
         let now = inputs.now;
-        self.imu.offer(inputs.imu, now);
+        self.imu.offer(&inputs.imu, now);
         let rates = self.imu.within(u64::MAX, now).map_or_else(Default::default, |imu| imu.value.angular_velocity);
-        if let Some(pose) = self.pose.offer(inputs.pose, now) {
+        if let Some(pose) = self.pose.offer(&inputs.pose, now) {
             self.attitude = Some(PropagatedAttitude::new(pose.value.attitude, rates, pose.time));
         }
         if let Some(attitude) = &mut self.attitude {
@@ -99,13 +104,13 @@ impl Pilot {
 
     /// Whether a request is granted. Granting an arm request readies the chain for it.
     #[inline]
-    fn answer(&mut self, request: Request, inputs: &Inputs) -> Result<(), Refusal> {
+    fn answer(&mut self, request: Request, inputs: &Inputs, silent: bool) -> Result<(), Refusal> {
         permission::to_leave(self.mode, inputs.disarm)?;
         match request {
             Request::Arm => {
                 let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
-                let start = permission::to_arm(&self.imu, &self.pose, is_silent(inputs), inputs.now)?;
-                chain.start(start.position, &start.heading).map_err(|error| Refusal::Reference(blamed(error)))
+                let start = permission::to_arm(&self.imu, &self.pose, silent, inputs.now)?;
+                chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
             }
             Request::MotorTest(test) => {
                 permission::to_test(&test, self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
@@ -117,13 +122,12 @@ impl Pilot {
 
     /// What the rules need to know in this tick.
     #[inline]
-    fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>) -> Conditions {
+    fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>, silent: bool) -> Conditions {
         let now = inputs.now;
         let elapsed = now.saturating_sub(self.since);
         let granted = answer == Some(Ok(()));
         let pose = self.pose.within(POSE_AGE_MAX, now);
-        let silent = is_silent(inputs);
-        let regained = match (self.mode, &mut self.chain, &pose) {
+        let regained = match (self.mode, &mut self.chain, pose) {
             (Mode::Levelling, Ok(chain), Some(pose)) => chain.regain(&pose.value).is_ok(),
             _ => false,
         };
@@ -179,7 +183,7 @@ impl Pilot {
             Mode::Disarmed | Mode::MotorTest => return (Output::Stop, None),
             Mode::Levelling => chain.fly_level(attitude, angular_velocity),
             Mode::Flying | Mode::Holding => {
-                let Pose { position, velocity, .. } = pose.value;
+                let &Pose { position, velocity, .. } = &pose.value;
                 chain.fly(&State { position, velocity, attitude, angular_velocity })
             }
         };
@@ -191,9 +195,7 @@ impl Pilot {
 /// Whether the ground station has been silent for too long.
 #[inline]
 fn is_silent(inputs: &Inputs) -> bool {
-    inputs.ground_station.is_none_or(|heard| {
-        !is_in_time(heard, inputs.now) || inputs.now.saturating_sub(heard) >= GROUND_STATION_SILENCE_MAX
-    })
+    !inputs.ground_station.is_some_and(|heard| is_fresh(heard, GROUND_STATION_SILENCE_MAX - 1, inputs.now))
 }
 
 #[cfg(test)]

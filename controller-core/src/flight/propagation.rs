@@ -13,6 +13,7 @@
 //! Every new pose starts afresh at the time it was true, so the age of a pose on arrival is made up for too.
 
 use crate::math;
+use crate::reference::phase::swing;
 use nalgebra::{Quaternion, Vector3};
 
 /// An attitude with the time and the body rate it was true at.
@@ -57,8 +58,6 @@ impl PropagatedAttitude {
 fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
     /// Below this, |x|^2 and |x|^4 of the series suffice: the next term is under 2e-9.
     const SMALL: f32 = 0.01;
-    /// 2^32 / (2 pi): phases per radian, before 32 further bits that single precision cannot tell.
-    const PHASES: f32 = 4_294_967_296.0 / core::f32::consts::TAU;
     let square = x.norm_squared();
     if square < SMALL {
         let cos = 1.0 - square * (0.5 - square * (1.0 / 24.0));
@@ -66,7 +65,7 @@ fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
         return Quaternion::from_parts(cos, x * sinc);
     }
     let angle = math::sqrt(square);
-    let (sin, cos) = math::sin_cos_turns(((angle * PHASES) as u64) << 32);
+    let (sin, cos) = math::sin_cos_turns(swing(angle));
     Quaternion::from_parts(cos, x * (sin / angle))
 }
 

@@ -4,7 +4,6 @@
 
 use crate::certificate::configuration::Refused;
 use crate::error::{InputError, ParameterError};
-use crate::governor::GovernorError;
 use core::fmt;
 
 /// The length of a STATUSTEXT, characters.
@@ -104,13 +103,6 @@ impl From<ParameterError> for Grounded {
     }
 }
 
-impl From<GovernorError> for Grounded {
-    #[inline]
-    fn from(error: GovernorError) -> Self {
-        Self::Parameter(blamed(error))
-    }
-}
-
 impl From<&Refused> for Grounded {
     #[inline]
     fn from(refused: &Refused) -> Self {
@@ -121,15 +113,6 @@ impl From<&Refused> for Grounded {
             }
             Refused::Undefined(error) => Self::Parameter(error.field),
         }
-    }
-}
-
-/// The field that keeps a governor from starting.
-#[inline]
-pub(super) fn blamed(error: GovernorError) -> &'static str {
-    match error {
-        GovernorError::Parameter(ParameterError { field, .. }) | GovernorError::NoWayOn { field } => field,
-        GovernorError::Start(error) => field(error),
     }
 }
 

@@ -10,7 +10,8 @@
 //! As w -> 0 the first becomes the second. Motions that change otherwise within d (a second or so) come out smoothed.
 
 use crate::math;
-use nalgebra::{Vector2, Vector3};
+use crate::reference::phase::swing;
+use nalgebra::Vector3;
 
 /// Turns slower than this, rad/s, are parabolas to within single precision.
 const SLOWEST: f32 = 1e-2;
@@ -33,6 +34,9 @@ pub(super) struct Lead {
 }
 
 impl Lead {
+    /// Not designed yet.
+    pub const NONE: Self = Self { delay: 0.0, variance: 0.0, acceleration: 0.0 };
+
     /// How far ahead of where a point was `age` seconds ago the command must be (m), and how fast it must move (m/s).
     #[inline]
     pub fn of(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>, age: f32) -> (Vector3<f32>, Vector3<f32>) {
@@ -50,21 +54,14 @@ impl Lead {
         let x = rate * rate * self.variance;
         let needed = math::sqrt(speed_squared) * rate.abs();
         let gain = (1.0 + 0.5 * x + 0.125 * x * x).min(CIRCLING_SHARE * self.acceleration / needed);
-        let (sin, cos) = math::sin_cos_turns(phase(rate * lead));
-        let sideways = Vector2::new(-v.y, v.x);
+        let (sin, cos) = math::sin_cos_turns(swing(rate * lead));
+        let turned = |cos: f32, sin: f32, rise: f32| Vector3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, rise);
         let along = v * (v.dot(&a) / speed_squared);
-        let ahead = (v * (gain * sin) + sideways * (1.0 - gain * cos)) / rate + along * spread;
-        let feed = (v * cos + sideways * sin) * gain + along * lead;
-        let rise = (velocity.z * lead + acceleration.z * spread, velocity.z + acceleration.z * lead);
-        (Vector3::new(ahead.x, ahead.y, rise.0), Vector3::new(feed.x, feed.y, rise.1))
+        let along = Vector3::new(along.x, along.y, acceleration.z);
+        let ahead = turned(gain * sin / rate, (1.0 - gain * cos) / rate, velocity.z * lead) + along * spread;
+        let feed = turned(gain * cos, gain * sin, velocity.z) + along * lead;
+        (ahead, feed)
     }
-}
-
-/// An angle of a few radians as a phase.
-#[inline]
-fn phase(angle: f32) -> u64 {
-    const PER_RADIAN: f32 = 4_294_967_296.0 / core::f32::consts::TAU;
-    ((angle * PER_RADIAN) as i64 as u64) << 32
 }
 
 #[cfg(test)]

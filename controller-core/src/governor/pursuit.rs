@@ -24,6 +24,8 @@ struct Cylinder {
 }
 
 impl Cylinder {
+    const NONE: Self = Self { per_horizontal: 0.0, per_vertical: 0.0 };
+
     #[inline]
     fn new(horizontal: f32, vertical: f32) -> Self {
         Self { per_horizontal: 1.0 / horizontal, per_vertical: 1.0 / vertical }
@@ -37,11 +39,21 @@ impl Cylinder {
 
     /// `y` brought inside along its own direction; as it is if inside. Rounds towards zero.
     #[inline]
-    fn limited(&self, y: Vector3<i64>) -> Vector3<i64> {
-        let single = y.map(|component| component as f32);
-        let measure = self.measure(&single);
-        if measure <= 1.0 { y } else { (single / measure).map(|component| component as i64) }
+    fn limited(&self, y: &Vector3<i64>) -> Vector3<i64> {
+        shortened(y, self.measure(&single(y)), 1.0)
     }
+}
+
+/// `y` as single precision has it.
+#[inline]
+fn single(y: &Vector3<i64>) -> Vector3<f32> {
+    y.map(|component| component as f32)
+}
+
+/// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
+#[inline]
+fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
 }
 
 /// The law, in length units and ticks.
@@ -52,6 +64,9 @@ pub(super) struct Pursuit {
 }
 
 impl Pursuit {
+    /// Not designed yet.
+    pub const NONE: Self = Self { accelerations: Cylinder::NONE, speeds: Cylinder::NONE };
+
     /// Speeds in m/s.
     #[inline]
     pub fn new(windows: &Windows, horizontal_speed: f32, vertical_speed: f32, period: f32) -> Self {
@@ -64,39 +79,18 @@ impl Pursuit {
 
     /// The acceleration that takes velocity `u` to `wanted`, as far as one tick may.
     #[inline]
-    pub fn towards_velocity(&self, wanted: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
-        self.accelerations.limited(self.speeds.limited(wanted) - u).map(|component| component as i32)
+    pub fn towards_velocity(&self, wanted: &Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
+        self.accelerations.limited(&(self.speeds.limited(wanted) - u)).map(|component| component as i32)
     }
 
-    /// The acceleration of one tick towards a resting target `error` away.
+    /// The velocity wanted to reach a target `error` away that moves with `feed` and accelerates with `acceleration` (units per
+    /// tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what following the
+    /// target leaves.
     #[inline]
-    pub fn towards_position(&self, error: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
-        self.towards_velocity(self.approach(error, BRAKING_SHARE), u)
-    }
-
-    /// The acceleration of one tick towards a target `error` away that moves with `feed` and accelerates with
-    /// `acceleration` (units per tick squared). Braking is planned with what following it leaves.
-    #[inline]
-    pub fn towards_moving(
-        &self,
-        error: Vector3<i64>,
-        feed: Vector3<i64>,
-        acceleration: &Vector3<f32>,
-        u: &Vector3<i64>,
-    ) -> Vector3<i32> {
+    pub fn approach(&self, error: &Vector3<i64>, feed: &Vector3<i64>, acceleration: &Vector3<f32>) -> Vector3<i64> {
         let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
-        self.towards_velocity(feed.zip_map(&self.approach(error, share), i64::saturating_add), u)
-    }
-
-    /// The greatest velocity along `error` from which braking, with a share of the acceleration, ends on the target.
-    #[inline]
-    fn approach(&self, error: Vector3<i64>, share: f32) -> Vector3<i64> {
-        let single = error.map(|component| component as f32);
-        let distance = self.accelerations.measure(&single) / share;
-        if distance <= 1.0 {
-            return error;
-        }
-        (single * (approach_speed(distance) / distance)).map(|component| component as i64)
+        let distance = self.accelerations.measure(&single(error)) / share;
+        feed + shortened(error, distance, approach_speed(distance))
     }
 }
 
@@ -108,6 +102,13 @@ mod tests {
     use super::super::tests::TYPICAL;
     use super::super::{GovernorLimits, tests::Random};
     use super::*;
+
+    impl Pursuit {
+        /// The acceleration of one tick towards a resting target `error` away.
+        fn towards_position(&self, error: Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
+            self.towards_velocity(&self.approach(&error, &Vector3::zeros(), &Vector3::zeros()), u)
+        }
+    }
 
     fn pursuit() -> (Windows, Pursuit) {
         let windows = Windows::design(&TYPICAL, &GovernorLimits::default(), 0.01).unwrap();
@@ -171,7 +172,7 @@ mod tests {
                     u += if stopped {
                         pursuit.towards_position(target - x, &u)
                     } else {
-                        pursuit.towards_velocity(still, &u)
+                        pursuit.towards_velocity(&still, &u)
                     }
                     .map(i64::from);
                     x += u;

@@ -2,7 +2,7 @@
 
 use crate::error::InputError;
 use crate::reference::DERIVATIVE_RANGE;
-use crate::state::check_vector;
+use crate::state::check_vectors;
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a setpoint's or a starting position's component, m.
@@ -51,25 +51,43 @@ pub struct Setpoint {
     pub turn: Turn,
 }
 
+/// A setpoint taken apart.
+pub(super) struct Parts {
+    /// The point to be at, if there is one, m.
+    pub position: Option<Vector3<f32>>,
+    /// Its velocity, or the one to move at, m/s.
+    pub velocity: Vector3<f32>,
+    /// m/s^2.
+    pub acceleration: Vector3<f32>,
+    /// The angle to turn to, if there is one, rad, and its rate, or the one to turn at, rad/s; none to keep both.
+    pub turn: Option<(Option<f32>, f32)>,
+}
+
 impl Setpoint {
-    /// Checks that every field is finite and in range.
+    /// Its parts, where every one of them is finite and in range.
     #[inline]
-    pub(super) fn check(&self) -> Result<(), InputError> {
-        match &self.motion {
-            Motion::Position(position) => check_vector(position, POSITION_RANGE, "setpoint.position")?,
-            Motion::Velocity(velocity) => check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?,
+    pub(super) fn checked(&self) -> Result<Parts, InputError> {
+        let still = Vector3::zeros();
+        let (position, velocity, acceleration) = match self.motion {
+            Motion::Position(position) => (Some(position), still, still),
+            Motion::Velocity(velocity) => (None, velocity, still),
             Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
-                check_vector(position, POSITION_RANGE, "setpoint.position")?;
-                check_vector(velocity, DERIVATIVE_RANGE, "setpoint.velocity")?;
-                check_vector(acceleration, DERIVATIVE_RANGE, "setpoint.acceleration")?;
+                (Some(position), velocity, acceleration)
             }
-        }
-        let (angle, rate) = match self.turn {
-            Turn::Keep => (0.0, 0.0),
-            Turn::Angle { angle, rate } => (angle, rate),
-            Turn::Rate(rate) => (0.0, rate),
         };
-        check_vector(&Vector3::new(angle, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw")?;
-        check_vector(&Vector3::new(rate, 0.0, 0.0), DERIVATIVE_RANGE, "setpoint.yaw_rate")
+        let turn = match self.turn {
+            Turn::Keep => None,
+            Turn::Angle { angle, rate } => Some((Some(angle), rate)),
+            Turn::Rate(rate) => Some((None, rate)),
+        };
+        let (angle, rate) = turn.unwrap_or_default();
+        check_vectors(&[
+            (&position.unwrap_or_default(), POSITION_RANGE, "setpoint.position"),
+            (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
+            (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
+            (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),
+            (&Vector3::repeat(rate), DERIVATIVE_RANGE, "setpoint.yaw_rate"),
+        ])?;
+        Ok(Parts { position, velocity, acceleration, turn })
     }
 }

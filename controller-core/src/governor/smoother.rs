@@ -15,157 +15,208 @@
 
 use super::HISTORY;
 use super::windows::Windows;
+use crate::math;
 use nalgebra::Vector3;
 
+/// Position and derivatives at a knot of the spline: of one axis, or of all three.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Derivatives<T> {
+    pub position: T,
+    pub velocity: T,
+    pub acceleration: T,
+    pub jerk: T,
+    pub snap: T,
+}
+
 /// One knot of the spline. World frame, SI units.
+pub(super) type Knot = Derivatives<Vector3<f32>>;
+
+/// One axis of the filter's memory. Sums carry the factor N = N_1 N_2 N_3; lengths are in units, times in ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Knot {
-    pub position: Vector3<f32>,
-    pub velocity: Vector3<f32>,
-    pub acceleration: Vector3<f32>,
-    pub jerk: Vector3<f32>,
-    pub snap: Vector3<f32>,
+struct Axis {
+    /// Command: position x_0 and velocity u.
+    commanded: i64,
+    speed: i64,
+    /// N (x_0 - P) of the newest control point.
+    trail: i64,
+    /// N times the newest difference, second difference and so on of the control points.
+    difference: [i64; 4],
 }
 
-/// What turns the integers into SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Scales {
-    metre: f32,
-    velocity: f32,
-    acceleration: f32,
-    jerk: f32,
-    snap: f32,
+impl Axis {
+    /// At rest at the origin.
+    const AT_REST: Self = Self { commanded: 0, speed: 0, trail: 0, difference: [0; 4] };
+
+    /// Always in steady motion, with averages that span `total` ticks together.
+    #[inline(never)] // once in an image, not once an axis
+    fn steady(position: i64, speed: i64, product: i64, total: i64) -> Self {
+        Self {
+            // The trail, rounded to the nearest unit, and the two ticks that the control points are ahead.
+            commanded: position + ((speed * (total + 1) + 1) >> 1),
+            speed,
+            // N_3 is even, so is the product, and the halving is exact.
+            trail: speed * ((product >> 1) * (total - 3)),
+            difference: [speed * product, 0, 0, 0],
+        }
+    }
+
+    #[inline(never)] // once in an image, not once an axis
+    fn push(&mut self, acceleration: i32, comb: i32, product: i64) {
+        let [first, second, third, fourth] = &mut self.difference;
+        *fourth += i64::from(comb);
+        *third += *fourth;
+        *second += *third;
+        *first += *second;
+        self.speed += i64::from(acceleration);
+        self.commanded += self.speed;
+        self.trail += self.speed * product - *first;
+    }
+
+    #[inline]
+    fn knot(&self, product: i64, scales: &Derivatives<f32>) -> Derivatives<f32> {
+        let [first, second, third, fourth] = self.difference;
+        let behind = self.trail + 2 * first - second;
+        let (first, second, third, fourth) = (first as f32, second as f32, third as f32, fourth as f32);
+        let here = second - third;
+        // The central third difference.
+        let around = third - 0.5 * fourth;
+        let bend = 0.25 * here + fourth / 120.0;
+        Derivatives {
+            position: (self.commanded - divided(behind - math::whole(bend), product)) as f32 * scales.position,
+            velocity: (first - second - 0.5 * here + around / 12.0) * scales.velocity,
+            acceleration: (here + fourth / 6.0) * scales.acceleration,
+            jerk: around * scales.jerk,
+            snap: fourth * scales.snap,
+        }
+    }
 }
 
-/// The filter's memory. Sums carry the factor N_1 N_2 N_3; lengths are in units, times in ticks.
+/// The filter's memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Smoother {
     history: [Vector3<i32>; HISTORY],
     newest: usize,
-    taps: [(usize, i64); 8],
+    taps: [(usize, i32); 8],
     product: i64,
     total: i64,
-    scales: Scales,
-    /// Command: position x_0 and velocity u.
-    commanded: Vector3<i64>,
-    speed: Vector3<i64>,
-    /// N (x_0 - P) of the newest control point.
-    trail: Vector3<i64>,
-    /// N times the newest difference, second difference and so on of the control points.
-    difference: [Vector3<i64>; 4],
+    /// What turns the integers into SI units.
+    scales: Derivatives<f32>,
+    axes: [Axis; 3],
 }
 
 impl Smoother {
+    /// Not designed yet.
+    pub const NONE: Self = Self {
+        history: [Vector3::new(0, 0, 0); HISTORY],
+        newest: 0,
+        taps: [(0, 0); 8],
+        product: 0,
+        total: 0,
+        scales: Derivatives { position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0, snap: 0.0 },
+        axes: [Axis::AT_REST; 3],
+    };
+
+    /// Prepares for `windows`; [`Self::start`] is next.
     #[inline]
-    pub fn new(windows: &Windows, period: f32) -> Self {
+    pub fn design(&mut self, windows: &Windows, period: f32) {
         let [first, second, third] = windows.lengths;
-        let unit = 1.0 / (windows.per_metre * windows.product() as f32);
+        self.product = windows.product();
+        self.total = (first + second + third) as i64;
+        self.taps = [
+            (0, 1),
+            (first, -1),
+            (second, -1),
+            (third, -1),
+            (first + second, 1),
+            (first + third, 1),
+            (second + third, 1),
+            (first + second + third, -1),
+        ];
+        let unit = 1.0 / (windows.per_metre * self.product as f32);
         let rate = 1.0 / period;
-        Self {
-            history: [Vector3::zeros(); HISTORY],
-            newest: 0,
-            taps: [
-                (0, 1),
-                (first, -1),
-                (second, -1),
-                (third, -1),
-                (first + second, 1),
-                (first + third, 1),
-                (second + third, 1),
-                (first + second + third, -1),
-            ],
-            product: windows.product(),
-            total: windows.lengths.iter().map(|&length| length as i64).sum(),
-            scales: Scales {
-                metre: 1.0 / windows.per_metre,
-                velocity: unit * rate / 24.0,
-                acceleration: unit * rate * rate / 6.0,
-                jerk: 0.5 * unit * rate * rate * rate,
-                snap: unit * rate * rate * rate * rate,
-            },
-            commanded: Vector3::zeros(),
-            speed: Vector3::zeros(),
-            trail: Vector3::zeros(),
-            difference: [Vector3::zeros(); 4],
-        }
+        self.scales = Derivatives {
+            position: 1.0 / windows.per_metre,
+            velocity: unit * rate,
+            acceleration: unit * rate * rate,
+            jerk: unit * rate * rate * rate,
+            snap: unit * rate * rate * rate * rate,
+        };
     }
 
     /// Starts as if always in steady motion: the knot at hand has `position` (units) and `speed` (units a tick).
     #[inline]
-    pub fn start(&mut self, position: Vector3<i64>, speed: Vector3<i64>) {
-        self.history = [Vector3::zeros(); HISTORY];
-        self.speed = speed;
-        // N_3 is even, so is the product, and the halving is exact.
-        self.trail = speed * (self.product / 2 * (self.total - 3));
-        self.difference = [speed * self.product, Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
-        self.commanded = position + self.trail.map(|trail| divided(trail, self.product)) + speed * 2;
+    pub fn start(&mut self, position: &Vector3<i64>, speed: &Vector3<i64>) {
+        self.history.fill(Vector3::zeros());
+        let steady = |position: i64, speed: i64| Axis::steady(position, speed, self.product, self.total);
+        self.axes = [steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)];
     }
 
     /// Advances by one tick of commanded acceleration, in units per tick squared.
     #[inline]
-    pub fn push(&mut self, acceleration: Vector3<i32>) {
+    pub fn push(&mut self, acceleration: &Vector3<i32>) {
         self.newest = (self.newest + 1) % HISTORY;
         if let Some(slot) = self.history.get_mut(self.newest) {
-            *slot = acceleration;
+            *slot = *acceleration;
         }
         let mut comb = Vector3::zeros();
         for (delay, sign) in self.taps {
             if let Some(past) = self.history.get((self.newest + HISTORY - delay) % HISTORY) {
-                comb += past.map(i64::from) * sign;
+                comb += past * sign;
             }
         }
-        let [first, second, third, fourth] = &mut self.difference;
-        *fourth += comb;
-        *third += *fourth;
-        *second += *third;
-        *first += *second;
-        self.speed += acceleration.map(i64::from);
-        self.commanded += self.speed;
-        self.trail += self.speed * self.product - *first;
+        let [x, y, z] = &mut self.axes;
+        x.push(acceleration.x, comb.x, self.product);
+        y.push(acceleration.y, comb.y, self.product);
+        z.push(acceleration.z, comb.z, self.product);
     }
 
     /// The commanded position x_0, units.
     #[inline]
-    pub fn commanded(&self) -> &Vector3<i64> {
-        &self.commanded
+    pub fn commanded(&self) -> Vector3<i64> {
+        let [x, y, z] = &self.axes;
+        Vector3::new(x.commanded, y.commanded, z.commanded)
     }
 
     /// The commanded velocity u, units a tick.
     #[inline]
-    pub fn speed(&self) -> &Vector3<i64> {
-        &self.speed
+    pub fn speed(&self) -> Vector3<i64> {
+        let [x, y, z] = &self.axes;
+        Vector3::new(x.speed, y.speed, z.speed)
     }
 
     /// Whether nothing moves, nor will unless commanded.
     #[inline]
     pub fn at_rest(&self) -> bool {
-        self.speed == Vector3::zeros() && self.trail == Vector3::zeros() && self.difference == [Vector3::zeros(); 4]
+        self.axes.iter().all(|axis| *axis == Axis { commanded: axis.commanded, ..Axis::AT_REST })
     }
 
     /// The knot at hand: one behind the newest control point but one, the last with all differences known.
     #[inline]
     pub fn knot(&self) -> Knot {
-        let [first, second, third, fourth] = &self.difference;
-        let here = second - third;
-        // Twice the central third difference.
-        let around = third * 2 - fourth;
-        let behind = self.trail + first * 2 - second - here.map(|d| d / 4) - fourth.map(|d| d / 120);
-        let position = self.commanded - behind.map(|sum| divided(sum, self.product));
-        let single = |sum: Vector3<i64>, scale: f32| sum.map(|component| component as f32) * scale;
+        let [x, y, z] = &self.axes;
+        let knot = |axis: &Axis| axis.knot(self.product, &self.scales);
+        let (x, y, z) = (knot(x), knot(y), knot(z));
         Knot {
-            position: single(position, self.scales.metre),
-            velocity: single(first * 24 - second * 24 - here * 12 + around, self.scales.velocity),
-            acceleration: single(here * 6 + fourth, self.scales.acceleration),
-            jerk: single(around, self.scales.jerk),
-            snap: single(*fourth, self.scales.snap),
+            position: Vector3::new(x.position, y.position, z.position),
+            velocity: Vector3::new(x.velocity, y.velocity, z.velocity),
+            acceleration: Vector3::new(x.acceleration, y.acceleration, z.acceleration),
+            jerk: Vector3::new(x.jerk, y.jerk, z.jerk),
+            snap: Vector3::new(x.snap, y.snap, z.snap),
         }
     }
 }
 
-/// `sum` / `count`, rounded to the nearest.
-#[inline]
-fn divided(sum: i64, count: i64) -> i64 {
-    (sum + count / 2).checked_div_euclid(count).unwrap_or(0)
+/// `sum` / `count` to a unit or to 2^-44 of it, whichever is more: each pass of single precision leaves 2^-22 of what there was.
+#[inline(never)] // once in an image
+pub(super) fn divided(sum: i64, count: i64) -> i64 {
+    let share = 1.0 / count as f32;
+    let (mut quotient, mut rest) = (0, sum);
+    for _ in 0..2 {
+        let part = math::whole(rest as f32 * share);
+        quotient += part;
+        rest -= part * count;
+    }
+    quotient
 }
 
 #[cfg(test)]
@@ -178,6 +229,13 @@ mod tests {
 
     fn windows() -> Windows {
         Windows::design(&TYPICAL, &GovernorLimits::default(), 0.01).unwrap()
+    }
+
+    /// At rest at the origin.
+    fn smoother(windows: &Windows) -> Smoother {
+        let mut smoother = Smoother::NONE;
+        smoother.design(windows, 0.01);
+        smoother
     }
 
     /// Three averages of the commands, run one after another in floating point.
@@ -194,14 +252,13 @@ mod tests {
     #[test]
     fn the_comb_and_its_sums_are_three_moving_averages() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
-        smoother.start(Vector3::zeros(), Vector3::zeros());
+        let mut smoother = smoother(&windows);
         let mut random = Random::new(5);
         let commands: Vec<i32> = (0..1_500).map(|_| (random.signed() * 60_000.0) as i32).collect();
         let expected = averaged(&commands.iter().map(|&c| f64::from(c)).collect::<Vec<_>>(), windows.lengths);
         for (command, expected) in commands.iter().zip(&expected) {
-            smoother.push(Vector3::new(*command, -command, 0));
-            let average = smoother.difference[1].x as f64 / windows.product() as f64;
+            smoother.push(&Vector3::new(*command, -command, 0));
+            let average = smoother.axes[0].difference[1] as f64 / windows.product() as f64;
             assert!((average - expected).abs() < 1e-6, "{average} against {expected}");
         }
     }
@@ -209,35 +266,45 @@ mod tests {
     #[test]
     fn a_steady_motion_comes_out_as_it_went_in() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
+        let mut smoother = smoother(&windows);
         let unit = windows.per_metre;
-        smoother.start(Vector3::new(unit as i64 * 3, 0, -(unit as i64)), Vector3::new(0, (unit * 0.02) as i64, 0));
+        smoother.start(&Vector3::new(unit as i64 * 3, 0, -(unit as i64)), &Vector3::new(0, (unit * 0.02) as i64, 0));
         for tick in 0..2_000 {
             let knot = smoother.knot();
             assert_eq!((knot.position.x, knot.position.z), (3.0, -1.0));
             assert!((knot.position.y - 0.02 * tick as f32).abs() < 1e-5, "{} at {tick}", knot.position.y);
             assert!((knot.velocity.y - 2.0).abs() < 1e-6 && knot.acceleration.norm() == 0.0);
-            smoother.push(Vector3::zeros());
+            smoother.push(&Vector3::zeros());
+        }
+    }
+
+    #[test]
+    fn a_quotient_is_off_by_a_unit_or_by_next_to_nothing() {
+        let mut random = Random::new(7);
+        for _ in 0..100_000 {
+            let sum = (random.signed() * 2.0_f32.powf(62.0 * random.unit())) as i64;
+            let count = (2.0_f32.powf(23.0 * random.unit())) as i64;
+            let miss = (divided(sum, count) - sum / count).abs();
+            assert!(miss <= 1 + ((sum / count).abs() >> 44), "{sum} by {count}: off by {miss}");
         }
     }
 
     #[test]
     fn a_million_ticks_of_noise_leave_no_trace() {
         let windows = windows();
-        let mut smoother = Smoother::new(&windows, 0.01);
-        smoother.start(Vector3::zeros(), Vector3::zeros());
+        let mut smoother = smoother(&windows);
         let mut random = Random::new(6);
         for _ in 0..1_000_000 {
             let speed = smoother.speed().x as f32 / 1e7;
-            smoother.push(Vector3::new(((random.signed() - speed) * 30_000.0) as i32, 0, 0));
+            smoother.push(&Vector3::new(((random.signed() - speed) * 30_000.0) as i32, 0, 0));
         }
         let steps = 100;
         let (whole, rest) = (smoother.speed().x / steps, smoother.speed().x % steps);
         for step in 0..steps {
-            smoother.push(Vector3::new(-(whole + i64::from(step == 0) * rest) as i32, 0, 0));
+            smoother.push(&Vector3::new(-(whole + i64::from(step == 0) * rest) as i32, 0, 0));
         }
         for _ in 0..HISTORY {
-            smoother.push(Vector3::zeros());
+            smoother.push(&Vector3::zeros());
         }
         assert!(smoother.at_rest());
     }

@@ -1,8 +1,9 @@
 //! The governor as a whole: times, arrivals, refusals. Streams by the thousand are in `tests/governor_campaign.rs`.
 
+extern crate std;
 use super::*;
-use crate::heading::Heading;
 use nalgebra::Vector2;
+use std::boxed::Box;
 
 /// Bounds a small quadrotor certifies.
 pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
@@ -43,8 +44,18 @@ fn hover(heading: Heading) -> Reference {
     Reference { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading }
 }
 
-fn governor() -> Governor {
-    Governor::new(TYPICAL, GovernorLimits::default(), PERIOD, &hover(Heading::FORWARD)).unwrap()
+/// Memory for one test.
+fn memory() -> &'static mut Memory {
+    Box::leak(Box::new(Memory::EMPTY))
+}
+
+fn governor() -> &'static mut Governor {
+    Governor::new(&TYPICAL, &GovernorLimits::default(), PERIOD, memory()).unwrap()
+}
+
+/// The same, ready to take over.
+fn take_over() -> TakeOver<'static> {
+    TakeOver::new(&TYPICAL, &GovernorLimits::default(), PERIOD, memory()).unwrap()
 }
 
 fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
@@ -53,24 +64,27 @@ fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
 
 /// Seconds until at rest, and the last reference.
 fn run(governor: &mut Governor) -> (f32, Reference) {
-    let mut ticks = 0;
-    loop {
-        let reference = governor.tick();
+    until_rest(|| (governor.tick(), governor.at_rest()))
+}
+
+/// The same of whatever gives a reference, and whether it is at rest, at each tick.
+fn until_rest(mut tick: impl FnMut() -> (Reference, bool)) -> (f32, Reference) {
+    for ticks in 1..20_000 {
+        let (reference, at_rest) = tick();
         assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
-        ticks += 1;
-        if governor.at_rest() {
+        if at_rest {
             return (ticks as f32 * PERIOD, reference);
         }
-        assert!(ticks < 20_000, "no rest: {reference:?}");
     }
+    panic!("no rest")
 }
 
 #[test]
 fn ten_metres_take_less_than_six_and_a_half_seconds() {
     for (target, most) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
-        let mut governor = governor();
+        let governor = governor();
         governor.accept(&go_to(target, 0.0, 0.0)).unwrap();
-        let (time, last) = run(&mut governor);
+        let (time, last) = run(governor);
         assert_eq!(last.position, Vector3::new(target, 0.0, 0.0));
         assert!(time < most, "{target} m took {time} s");
     }
@@ -79,11 +93,11 @@ fn ten_metres_take_less_than_six_and_a_half_seconds() {
 #[test]
 fn a_half_turn_takes_less_than_four_seconds_and_stays_on_its_shorter_side() {
     for (angle, side) in [(3.1, 1.0), (-3.1, -1.0), (3.3, -1.0), (-40.0 * core::f32::consts::TAU + 2.0, 1.0)] {
-        let mut governor = governor();
+        let governor = governor();
         let setpoint = Setpoint { turn: Turn::Angle { angle, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) };
         governor.accept(&setpoint).unwrap();
         assert!((0..30).map(|_| governor.tick().heading.rate() * side).last().unwrap() > 0.1);
-        let (time, last) = run(&mut governor);
+        let (time, last) = run(governor);
         let (sin, cos) = f64::from(angle).sin_cos();
         let miss = last.heading.direction() - Vector2::new(cos as f32, sin as f32);
         // Rounding of the components and of an angle of 250 rad (the target's own, in f32, is exact).
@@ -93,7 +107,7 @@ fn a_half_turn_takes_less_than_four_seconds_and_stays_on_its_shorter_side() {
 
 #[test]
 fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
-    let mut governor = governor();
+    let governor = governor();
     let setpoint = Setpoint { motion: Motion::Velocity(Vector3::new(1.0, -2.0, 0.3)), turn: Turn::Rate(0.4) };
     for _ in 0..600 {
         governor.accept(&setpoint).unwrap();
@@ -103,13 +117,13 @@ fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
     // One unit of length a tick is the resolution of a velocity.
     assert!((reference.velocity - Vector3::new(1.0, -2.0, 0.3)).norm() < 1e-6);
     assert!((reference.heading.rate() - 0.4).abs() < 1e-6);
-    let (time, last) = run(&mut governor);
+    let (time, last) = run(governor);
     assert!(time < 0.5 + 2.0 + 2.5 && last.velocity == Vector3::zeros(), "stopped after {time} s");
 }
 
 #[test]
 fn a_moving_point_is_followed_without_lag() {
-    let mut governor = governor();
+    let governor = governor();
     let (velocity, acceleration) = (Vector3::new(0.5, -0.2, 0.1), Vector3::new(0.1, -0.04, 0.0));
     let mut worst: f32 = 0.0;
     for tick in 0..1_500 {
@@ -136,7 +150,7 @@ fn a_moving_point_is_followed_without_lag() {
 fn a_point_on_a_circle_is_followed_in_phase() {
     // The last needs a command of 1.27 m radius, beyond the bound: it comes out at 0.9 x 0.79 of its size.
     for (rate, most) in [(0.4, 0.001), (0.8, 0.005), (0.5 * core::f32::consts::PI, 0.3)] {
-        let mut governor = governor();
+        let governor = governor();
         let mut worst: f32 = 0.0;
         for tick in 0..3_000 {
             let (sin, cos) = (rate * PERIOD * tick as f32).sin_cos();
@@ -158,7 +172,7 @@ fn a_point_on_a_circle_is_followed_in_phase() {
 
 #[test]
 fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
-    let mut governor = governor();
+    let governor = governor();
     governor.accept(&go_to(1.0, 2.0, 3.0)).unwrap();
     governor.tick();
     let before = governor.clone();
@@ -173,7 +187,51 @@ fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
     }
     let far = Err(InputError::OutOfRange { field: "setpoint.position" });
     assert_eq!(governor.accept(&go_to(2e7, 0.0, 0.0)), far);
-    assert_eq!(governor, before);
+    assert_eq!(*governor, before);
+}
+
+#[test]
+fn a_flight_starts_anew_where_it_is_told_and_leaves_nothing_of_the_last() {
+    let start = Vector3::new(3.0, -2.0, 7.0);
+    for turn in 0..48 {
+        let (sin, cos) = (core::f32::consts::TAU * turn as f32 / 48.0).sin_cos();
+        let heading = Heading::new(Vector2::new(cos, sin), 0.3, -0.2).unwrap();
+        let (governor, fresh) = (governor(), governor());
+        governor.accept(&Setpoint { turn: Turn::Angle { angle: 1.0, rate: 0.0 }, ..go_to(9.0, 0.0, 0.0) }).unwrap();
+        (0..100).for_each(|_| _ = governor.tick());
+        governor.start(&start, &Vector3::zeros(), &heading).unwrap();
+        fresh.start(&start, &Vector3::zeros(), &heading).unwrap();
+        for _ in 0..600 {
+            let reference = governor.tick();
+            assert_eq!(reference, fresh.tick());
+            assert!(reference.position == start && reference.velocity == Vector3::zeros() && governor.at_rest());
+            // What single precision makes of a direction and back.
+            let miss = reference.heading.direction() - heading.direction();
+            assert!(miss.norm() < 3e-7 && reference.heading.rate() == 0.0, "turn {turn}: {miss}");
+        }
+    }
+}
+
+#[test]
+fn a_steady_velocity_is_carried_on_and_stopped() {
+    let governor = governor();
+    let velocity = Vector3::new(1.5, -0.5, 0.25);
+    governor.start(&Vector3::zeros(), &velocity, &Heading::FORWARD).unwrap();
+    let first = governor.tick();
+    assert!((first.velocity - velocity).norm() < 1e-4 && (first.position - velocity * PERIOD).norm() < 1e-5);
+    let (time, last) = run(governor);
+    assert!(time < 4.0 && last.position.xy().dot(&velocity.xy()) > 0.0);
+}
+
+#[test]
+fn a_start_out_of_range_is_refused_by_name_and_the_governor_goes_on() {
+    let (governor, untouched) = (governor(), governor());
+    let zero = Vector3::zeros();
+    let far = governor.start(&Vector3::repeat(1e8), &zero, &Heading::FORWARD);
+    assert_eq!(far, Err(InputError::OutOfRange { field: "initial.position" }));
+    let unknown = governor.start(&zero, &Vector3::repeat(f32::NAN), &Heading::FORWARD);
+    assert_eq!(unknown, Err(InputError::NotFinite { field: "initial.velocity" }));
+    assert_eq!(governor, untouched);
 }
 
 #[test]
@@ -184,26 +242,44 @@ fn a_reference_in_motion_is_taken_over_where_it_is_and_stopped() {
     start.acceleration = Vector3::new(-1.0, 1.0, 0.2);
     start.jerk = Vector3::new(0.5, 1.0, -0.1);
     start.snap = Vector3::new(1.0, -2.0, 0.3);
-    let mut governor = Governor::new(TYPICAL, GovernorLimits::default(), PERIOD, &start).unwrap();
+    let mut governor = take_over();
+    governor.restart(&start).unwrap();
     let first = governor.tick();
     assert!((first.position - start.position - start.velocity * PERIOD).norm() < 1e-3);
     assert!((first.acceleration - start.acceleration).norm() < 0.02 && (first.snap - start.snap).norm() < 1.0);
     assert!((first.heading.acceleration() + 0.5).abs() < 0.05);
-    let (time, _) = run(&mut governor);
+    let (time, _) = until_rest(|| (governor.tick(), governor.at_rest()));
     assert!(time < 12.0);
 }
 
 #[test]
 fn a_reference_about_to_leave_its_bounds_is_refused_and_the_governor_goes_on() {
-    let mut governor = governor();
-    governor.accept(&go_to(1.0, 0.0, 0.0)).unwrap();
-    let before = governor.clone();
+    let (mut governor, mut untouched) = (take_over(), take_over());
+    for governor in [&mut governor, &mut untouched] {
+        governor.accept(&go_to(1.0, 0.0, 0.0)).unwrap();
+    }
     let mut outward = hover(Heading::FORWARD);
     outward.acceleration.x = 2.5;
     outward.jerk.x = 1.0;
-    assert!(matches!(governor.restart(&outward), Err(GovernorError::NoWayOn { .. })));
+    assert!(matches!(governor.restart(&outward), Err(TakeOverError::NoWayOn { .. })));
     let turning = hover(Heading::new(Vector2::new(1.0, 0.0), 1.3, 0.6).unwrap());
-    let refused = Err(GovernorError::NoWayOn { field: "initial.heading.acceleration" });
+    let refused = Err(TakeOverError::NoWayOn { field: "initial.heading.acceleration" });
     assert_eq!(governor.restart(&turning), refused);
-    assert_eq!(governor, before);
+    assert_eq!(governor, untouched);
+}
+
+#[test]
+fn a_bound_or_a_limit_of_zero_is_refused_by_name() {
+    let refused = |bounds: ReferenceBounds, limits: GovernorLimits, period: f32| {
+        Governor::new(&bounds, &limits, period, memory()).unwrap_err().field
+    };
+    let limits = GovernorLimits::default();
+    let zero = ReferenceBounds { vertical_acceleration: 0.0, ..TYPICAL };
+    assert_eq!(refused(zero, limits, PERIOD), "reference_bounds.vertical_acceleration");
+    let zero = ReferenceBounds { heading_second_derivative: 0.0, ..TYPICAL };
+    assert_eq!(refused(zero, limits, PERIOD), "reference_bounds.heading_second_derivative");
+    let unknown = ReferenceBounds { snap: f32::NAN, ..TYPICAL };
+    assert_eq!(refused(unknown, limits, PERIOD), "reference_bounds.snap");
+    assert_eq!(refused(TYPICAL, GovernorLimits { timeout: 61.0, ..limits }, PERIOD), "governor.timeout");
+    assert_eq!(refused(TYPICAL, limits, 0.2), "governor.period");
 }

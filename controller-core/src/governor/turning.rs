@@ -13,22 +13,22 @@
 //! A turn is 2^44 integer units: phases wrap where the circle does, sums are exact, and the way to an angle is the
 //! shorter one.
 
+use super::GovernorLimits;
 use super::braking::{BRAKING_SHARE, approach_speed};
-use super::bridge::TurnBridge;
+use super::smoother::divided;
 use super::windows::{ROUNDING_ROOM, ticks};
-use super::{GovernorError, GovernorLimits};
-use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::ReferenceBounds;
-use crate::reference::phase::turns;
+use nalgebra::Vector2;
 
 /// log2 of the units in a turn, and what is left of a 64-bit phase.
 const TURN_BITS: u32 = 44;
-const SPARE_BITS: u32 = 64 - TURN_BITS;
+pub(super) const SPARE_BITS: u32 = 64 - TURN_BITS;
 
 /// Units in a radian.
-const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
+pub(super) const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
 
 /// Longest average, ticks.
 const TURN_HISTORY: usize = 64;
@@ -36,15 +36,17 @@ const TURN_HISTORY: usize = 64;
 /// The share of sqrt(K_nu'') that makes the shortest half turn: the minimum of pi/r + r/sqrt(1-r^4).
 const RATE_SHARE: f32 = 0.857;
 
-/// What the heading is to do.
+/// What the heading is to do: be at a phase (units) that moves, or, without one, keep turning.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum TurnGoal {
+pub(super) struct TurnGoal {
+    pub phase: Option<i64>,
+    /// Units a tick.
+    pub rate: i64,
+}
+
+impl TurnGoal {
     /// Come to rest.
-    Stop,
-    /// Turn to a phase (units) that moves at a rate (units a tick).
-    Angle { phase: i64, rate: i64 },
-    /// Keep turning, units a tick.
-    Rate { rate: i64 },
+    pub const STOP: Self = Self { phase: None, rate: 0 };
 }
 
 /// Command, average and spline of the heading.
@@ -53,6 +55,8 @@ pub(super) struct Turning {
     history: [i64; TURN_HISTORY],
     newest: usize,
     length: usize,
+    /// By how many ticks a steady turn comes out late.
+    delay: f32,
     period: f32,
     /// R and B in units a tick (squared), and the B in force while above R.
     fastest: i64,
@@ -64,124 +68,94 @@ pub(super) struct Turning {
     trail: i64,
     first: i64,
     second: i64,
-    bounds: ReferenceBounds,
-    bridge: Option<(TurnBridge, u32)>,
-    /// psi at the start of a bridge, units.
-    bridged_from: i64,
 }
 
 impl Turning {
+    /// Not designed yet.
+    pub const NONE: Self = Self {
+        history: [0; TURN_HISTORY],
+        newest: 0,
+        length: 0,
+        delay: 0.0,
+        period: 0.0,
+        fastest: 0,
+        strongest: 0,
+        strongest_above: 0,
+        commanded: 0,
+        rate: 0,
+        trail: 0,
+        first: 0,
+        second: 0,
+    };
+
+    /// Prepares for `bounds` that are positive; [`Self::start`] is next.
     #[inline]
-    pub fn new(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
-        require_positive(bounds.heading_rate, "reference_bounds.heading_rate")?;
-        require_positive(bounds.heading_second_derivative, "reference_bounds.heading_second_derivative")?;
+    pub fn design(
+        &mut self,
+        bounds: &ReferenceBounds,
+        limits: &GovernorLimits,
+        period: f32,
+    ) -> Result<(), ParameterError> {
         let length = ticks(limits.heading_ramp, period);
         require(length <= TURN_HISTORY, "governor.heading_ramp", Reason::NotAbove(TURN_HISTORY as f32 * period))?;
         let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
         let rate = (bounds.heading_rate * (1.0 - ROUNDING_ROOM)).min(RATE_SHARE * math::sqrt(second));
-        let mut turning = Self {
-            history: [0; TURN_HISTORY],
-            newest: 0,
-            length,
-            period,
-            fastest: (rate * period * PER_RADIAN) as i64,
-            strongest: 0,
-            strongest_above: 0,
-            commanded: 0,
-            rate: 0,
-            trail: 0,
-            first: 0,
-            second: 0,
-            bounds: *bounds,
-            bridge: None,
-            bridged_from: 0,
-        };
-        turning.strongest = turning.strongest_at(rate);
-        require(turning.strongest > 0, "reference_bounds.heading_second_derivative", Reason::NotPositive)?;
-        Ok(turning)
-    }
-
-    /// The B that a rate (rad/s) leaves, units per tick squared.
-    #[inline]
-    fn strongest_at(&self, rate: f32) -> i64 {
-        let second = self.bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
-        let left = (second * second - rate * rate * rate * rate).max(0.0);
-        (math::sqrt(left) * self.period * self.period * PER_RADIAN) as i64
-    }
-
-    /// Starts from `heading`.
-    #[inline]
-    pub fn start(&mut self, heading: &Heading) -> Result<(), GovernorError> {
-        let direction = heading.direction();
-        let phase = (turns(math::atan2(f64::from(direction.y), f64::from(direction.x))) >> SPARE_BITS) as i64;
-        let bridge = if heading.acceleration() == 0.0 {
-            None
-        } else {
-            let longest = self.length as u32;
-            let bridge = TurnBridge::search(heading.rate(), heading.acceleration(), &self.bounds, self.period, longest);
-            Some(bridge.ok_or(GovernorError::NoWayOn { field: "initial.heading.acceleration" })?)
-        };
-        let steady = bridge.map_or(heading.rate(), |bridge| bridge.at(bridge.duration).1);
-        let within = steady.abs() <= self.bounds.heading_rate;
-        let (above, strongest) =
-            ((steady.abs() * self.period * PER_RADIAN) as i64 > self.fastest, self.strongest_at(steady));
-        // Slowing down must end within a minute or so, or the rate cannot be said to be brought to rest.
-        if !within || (above && strongest < self.strongest / 64) {
-            return Err(GovernorError::NoWayOn { field: "initial.heading.rate" });
-        }
-        self.strongest_above = strongest;
-        self.bridged_from = phase;
-        self.bridge = bridge.map(|bridge| (bridge, 0));
-        if bridge.is_none() {
-            self.settle(phase, steady);
-        }
+        let strongest = strongest_at(rate, bounds, period);
+        require(strongest > 0, "reference_bounds.heading_second_derivative", Reason::NotPositive)?;
+        self.length = length;
+        self.delay = (length as f32 - 1.0) * 0.5 + 1.0;
+        self.period = period;
+        self.fastest = units(rate, period);
+        self.strongest = strongest;
         Ok(())
     }
 
-    /// Starts the average as if it had always turned at `rate` (rad/s) and is at `phase` now.
+    /// Lets the next start turn at `rate` (units a tick), be it faster than R: then it slows down by `strongest`, units per
+    /// tick squared. Not if that took longer than a minute or so, since it then cannot be said to be brought to rest.
     #[inline]
-    fn settle(&mut self, phase: i64, rate: f32) {
-        // A rate exactly at its bound could be rounded across it, seven times by 6e-8 until it is emitted.
-        let most = self.bounds.heading_rate * (1.0 - 4.5e-7);
-        let rate = rate.min(most).max(-most);
+    pub fn allow(&mut self, rate: i64, strongest: i64) -> bool {
+        let allowed = rate.abs() <= self.fastest || strongest >= self.strongest / 64;
+        if allowed {
+            self.strongest_above = strongest;
+        }
+        allowed
+    }
+
+    /// The average's length, ticks.
+    #[inline]
+    pub fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Starts as if it had always turned at `rate` (units a tick, even) and is at `phase` (units) now.
+    #[inline]
+    pub fn start(&mut self, phase: i64, rate: i64) {
         let length = self.length as i64;
-        self.history = [0; TURN_HISTORY];
-        self.rate = (rate * self.period * PER_RADIAN) as i64;
-        // Even, so that the halving below is exact.
-        self.rate -= self.rate % 2;
-        self.trail = self.rate / 2 * length * (length - 1);
-        self.first = self.rate * length;
+        // What a turn that always was steady trails behind. Halving is exact: the rate is even.
+        let behind = (rate >> 1) * (length - 1);
+        self.history.fill(0);
+        self.rate = rate;
+        self.trail = behind * length;
+        self.first = rate * length;
         self.second = 0;
-        self.commanded = phase.wrapping_add(self.rate).wrapping_add(self.rate / 2 * (length - 1));
+        self.commanded = phase.wrapping_add(rate).wrapping_add(behind);
     }
 
     /// Advances by one tick towards `goal`.
     #[inline]
     pub fn tick(&mut self, goal: &TurnGoal) {
-        if let Some((bridge, elapsed)) = self.bridge {
-            let elapsed = elapsed + 1;
-            self.bridge = (elapsed < bridge.duration).then_some((bridge, elapsed));
-            if self.bridge.is_none() {
-                let (angle, rate, _) = bridge.at(elapsed);
-                self.settle(self.bridged_from.wrapping_add((angle * PER_RADIAN) as i64), rate);
-            }
-            return;
-        }
         self.push(self.command(goal));
     }
 
     /// The commanded acceleration towards `goal`, units per tick squared.
     #[inline]
     fn command(&self, goal: &TurnGoal) -> i64 {
-        let wanted = match *goal {
-            TurnGoal::Stop => 0,
-            TurnGoal::Rate { rate } => rate,
-            TurnGoal::Angle { phase, rate } => rate.saturating_add(self.approach(phase)),
-        };
+        // Far from 64 bits: a rate is below 2^58 for every setpoint, and half a turn is 2^43.
+        let wanted = goal.rate + goal.phase.map_or(0, |phase| self.approach(phase));
         let strongest = if self.rate.abs() > self.fastest { self.strongest_above } else { self.strongest };
-        let wanted = wanted.min(self.fastest).max(-self.fastest);
         // Not `clamp`, which may panic.
-        wanted.saturating_sub(self.rate).min(strongest).max(-strongest)
+        let wanted = wanted.min(self.fastest).max(-self.fastest);
+        (wanted - self.rate).min(strongest).max(-strongest)
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
@@ -193,7 +167,7 @@ impl Turning {
         if distance.abs() <= 1.0 {
             return error;
         }
-        (strongest * approach_speed(distance.abs()).copysign(distance)) as i64
+        math::whole(strongest * approach_speed(distance.abs()).copysign(distance))
     }
 
     #[inline]
@@ -216,40 +190,91 @@ impl Turning {
     #[inline]
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
         let still = self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0;
-        self.bridge.is_none() && still && self.command(goal) == 0
+        still && self.command(goal) == 0
     }
 
     /// By how many ticks a steady turn comes out late.
     #[inline]
     pub fn delay(&self) -> f32 {
-        (self.length as f32 - 1.0) * 0.5 + 1.0
+        self.delay
     }
 
     /// The heading at hand.
     #[inline]
     pub fn heading(&self) -> Heading {
-        if let Some((bridge, elapsed)) = self.bridge {
-            let (angle, rate, acceleration) = bridge.at(elapsed);
-            let phase = self.bridged_from.wrapping_add((angle * PER_RADIAN) as i64);
-            return Heading::from_phase((phase as u64) << SPARE_BITS, rate, acceleration);
-        }
-        let length = self.length as i64;
-        let behind = self.trail + self.first - self.second / 6;
-        let phase = self.commanded.wrapping_sub(behind.checked_div_euclid(length).unwrap_or(0));
+        let behind = divided(6 * (self.trail + self.first) - self.second, 6 * self.length as i64);
+        let phase = self.commanded.wrapping_sub(behind);
         let unit = 1.0 / (PER_RADIAN * self.length as f32 * self.period);
         let rate = (2 * self.first - self.second) as f32 * (0.5 * unit);
         Heading::from_phase((phase as u64) << SPARE_BITS, rate, self.second as f32 * (unit / self.period))
     }
 }
 
-/// An angle (rad) as a phase in units.
+/// The B that a rate (rad/s) leaves, units per tick squared.
+#[inline]
+pub(super) fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
+    let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
+    let left = (second * second - rate * rate * rate * rate).max(0.0);
+    math::whole(math::sqrt(left) * period * period * PER_RADIAN)
+}
+
+/// An angle (rad) as a phase in units, to 2^-34 turns for any angle that a setpoint may have.
+///
+/// In fixed point: the angle in 2^-32 rad is exact (or smaller than that), and so is, on the circle, its product with the
+/// whole part of the 2^64-ths of a turn in it.
 #[inline]
 pub(super) fn phase(angle: f32) -> i64 {
-    (turns(f64::from(angle)) >> SPARE_BITS) as i64
+    /// 2^32 / (2 pi): its whole part, and 2^22 times the rest.
+    const WHOLE: i64 = 683_565_275;
+    const REST: i64 = 2_417_729;
+    let fine = math::whole(angle * 4_294_967_296.0);
+    fine.wrapping_mul(WHOLE).wrapping_add((fine >> 22).wrapping_mul(REST)) >> SPARE_BITS
+}
+
+/// Where a heading points, in units, to single precision.
+///
+/// From the middle of its quadrant, each step takes delta to delta - sin delta: 0.79, 0.078, 8e-5 rad, nothing.
+#[inline]
+pub(super) fn phase_of(heading: &Heading) -> i64 {
+    let target = heading.direction();
+    let eighths = if target.x >= 0.0 { 1 } else { 3 };
+    let mut phase = eighths << (TURN_BITS - 3);
+    if target.y < 0.0 {
+        phase = -phase;
+    }
+    for _ in 0..3 {
+        let here = direction(phase);
+        phase += math::whole((here.x * target.y - here.y * target.x) * PER_RADIAN);
+    }
+    phase
+}
+
+/// The unit vector that a phase in units points along.
+#[inline]
+fn direction(phase: i64) -> Vector2<f32> {
+    let (sin, cos) = math::sin_cos_turns((phase as u64) << SPARE_BITS);
+    Vector2::new(cos, sin)
 }
 
 /// A rate (rad/s) in units a tick; an angle with `period` one.
 #[inline]
 pub(super) fn units(rate: f32, period: f32) -> i64 {
-    (rate * period * PER_RADIAN) as i64
+    math::whole(rate * period * PER_RADIAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::Random;
+    use super::*;
+    use crate::reference::phase::turns;
+
+    #[test]
+    fn an_angle_is_a_phase_however_often_it_goes_round() {
+        let mut random = Random::new(8);
+        for _ in 0..100_000 {
+            let angle = random.signed() * 10.0_f32.powf(9.0 * random.unit() - 3.0);
+            let miss = (phase(angle) << SPARE_BITS).wrapping_sub(turns(f64::from(angle)) as i64);
+            assert!(miss.abs() <= 1 << 30, "{angle} rad: off by {miss}");
+        }
+    }
 }

@@ -10,7 +10,7 @@ pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};
 use controller_core::certificate::configuration::{Certified, Configuration};
 use controller_core::flight::{ImuSample, Inputs, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped};
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
 use std::sync::LazyLock;
@@ -55,10 +55,15 @@ pub fn certified() -> Certified {
     Certified::new(configuration().with_rotors(rotors()).unwrap()).unwrap()
 }
 
-/// A new pilot; made once and copied, since certifying takes longer than most flights here.
-pub fn pilot() -> Pilot {
-    static PILOT: LazyLock<Pilot> = LazyLock::new(|| Pilot::new(Ok(&certified()), GovernorLimits::default()));
-    PILOT.clone()
+/// Memory for one pilot.
+pub fn memory() -> &'static mut Memory {
+    Box::leak(Box::new(Memory::EMPTY))
+}
+
+/// A new pilot; certified once for all, since that takes longer than most flights here.
+pub fn pilot() -> Pilot<'static> {
+    static CERTIFIED: LazyLock<Certified> = LazyLock::new(certified);
+    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), memory())
 }
 
 /// Everything as it should be for a vehicle at rest and level at the origin.
@@ -89,7 +94,7 @@ pub struct Present {
 
 /// A flight in the making.
 pub struct Flight {
-    pub pilot: Pilot,
+    pub pilot: Pilot<'static>,
     pub body: Body,
     pub present: Present,
     /// The next tick's requests; handed over once.

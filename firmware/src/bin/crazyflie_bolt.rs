@@ -45,8 +45,8 @@ mod target {
         let parameters = Storage::new(board.storage, 0..storage::SIZE);
         let mut parameters = defmt::unwrap!(parameters.map_err(|_| "the parameters' sectors are no storage"));
         block_on(parameters.load(&SystemClock, shared));
-        static PILOT: StaticCell<Pilot> = StaticCell::new();
-        let (pilot, outputs) = defmt::unwrap!(boot::start(&PILOT, &shared.parameters));
+        static PLACE: boot::Place = boot::Place::new();
+        let (pilot, outputs) = defmt::unwrap!(boot::start(&PLACE, &shared.parameters));
 
         // The controllers have power for as long as these are held: for ever.
         let _power = board.power;
@@ -74,7 +74,7 @@ mod target {
     async fn control(
         shared: &'static Shared,
         hil: &'static Hil,
-        pilot: &'static mut Pilot,
+        pilot: &'static mut Pilot<'static>,
         outputs: Outputs,
         pins: BoardMotors,
         mut watchdog: BoardWatchdog,

@@ -32,8 +32,8 @@ mod target {
         let Some(core) = cortex_m::Peripherals::take() else { exit::fail("started twice") };
         mps2::init(core);
         defmt::info!("{} emulated", firmware::configuration::NAME);
-        static PILOT: StaticCell<Pilot> = StaticCell::new();
-        let Ok((pilot, outputs)) = boot::start(&PILOT, &SHARED.parameters) else {
+        static PLACE: boot::Place = boot::Place::new();
+        let Ok((pilot, outputs)) = boot::start(&PLACE, &SHARED.parameters) else {
             exit::fail("the embedded scenario has not four rotors")
         };
         SHARED.hil.raise();
@@ -50,7 +50,7 @@ mod target {
     }
 
     #[embassy_executor::task]
-    async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
+    async fn control(pilot: &'static mut Pilot<'static>, outputs: Outputs) {
         let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: &SHARED.hil, clock: BoardClock };
         let mut watchdog = BoardWatchdog::start(WATCHDOG);
         Control::new(&SHARED, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;

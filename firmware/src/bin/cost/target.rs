@@ -3,11 +3,12 @@
 use crate::body;
 use crate::counter::Counter;
 use crate::stack;
-use controller_core::allocation::{Allocation, Mixer};
+use controller_core::allocation::MinimumNorm;
+use controller_core::allocation::minimum_norm::Delivered;
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
-use controller_core::governor::{Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
@@ -19,6 +20,7 @@ use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
 use firmware::configuration;
 use nalgebra::{Quaternion, Vector3};
+use static_cell::ConstStaticCell;
 
 /// Steps of a measured flight.
 const STEPS: u64 = 1000;
@@ -52,7 +54,7 @@ impl Cost {
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
 
-type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
+type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -92,11 +94,11 @@ fn measure() -> bool {
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
     let plain = embedded.with_gains(*embedded.gains()).ok().and_then(|plain| Certified::new(plain).ok());
     let Some(plain) = plain.and_then(|plain| Controller::new(&plain, PERIOD).ok()) else { return false };
-    let mixer = Mixer::new(rotors);
+    let minimum_norm = MinimumNorm::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@400MHz");
-    let mut flight = Flight { controller, mixer: &mixer, certified: &certified, counter: &counter };
+    let mut flight = Flight { controller, minimum_norm: &minimum_norm, certified: &certified, counter: &counter };
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
@@ -134,16 +136,16 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certifi
 /// A flight under the law, with what it needs.
 struct Flight<'a> {
     controller: Controller,
-    mixer: &'a Mixer,
+    minimum_norm: &'a MinimumNorm,
     certified: &'a Certified,
     counter: &'a Counter,
 }
 
 impl Flight<'_> {
-    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the mixer refuses an input.
+    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the allocation refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
         let step: Step = black_box(Controller::command);
-        let allocate: Allocate = black_box(Mixer::allocate);
+        let allocate: Allocate = black_box(MinimumNorm::allocate);
         let mut cost = Cost::default();
         self.controller.reset();
         for tick in 0..STEPS {
@@ -151,7 +153,7 @@ impl Flight<'_> {
             let (instructions, command) = self.counter.short(|| step(&mut self.controller, &state, &reference));
             cost.add(instructions);
             let wrench = command.ok()?.wrench;
-            let (instructions, allocated) = self.counter.short(|| allocate(self.mixer, &wrench));
+            let (instructions, allocated) = self.counter.short(|| allocate(self.minimum_norm, &wrench));
             allocation.add(instructions);
             let achieved = allocated.ok()?.achieved;
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
@@ -190,15 +192,9 @@ const TUMBLING: State = State {
 
 /// A minute of the governor under steps of position: there and back every ten seconds.
 fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
-    let start = Reference {
-        position: Vector3::zeros(),
-        velocity: Vector3::zeros(),
-        acceleration: Vector3::zeros(),
-        jerk: Vector3::zeros(),
-        snap: Vector3::zeros(),
-        heading: Heading::FORWARD,
-    };
-    let Ok(mut governor) = Governor::new(*configuration.bounds(), GovernorLimits::default(), PERIOD, &start) else {
+    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
+    let (bounds, limits) = (configuration.bounds(), GovernorLimits::default());
+    let Ok(governor) = Governor::new(bounds, &limits, PERIOD, MEMORY.take()) else {
         return false;
     };
     let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
@@ -211,7 +207,7 @@ fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
                 return false;
             }
         }
-        let (instructions, reference) = counter.short(|| tick(&mut governor));
+        let (instructions, reference) = counter.short(|| tick(governor));
         black_box(reference);
         cost.add(instructions);
     }

@@ -1,0 +1,132 @@
+//! Wrench to rotor thrusts in a certified flight: f = B+ w, the thrusts of least sum of squares.
+//!
+//! This is all that flies. The certificate bounds every rotor's b . w, row b of B+, for every state and every reference inside
+//! Omega_r, from a reset on ([`crate::certificate::rotors`]); the governor's references are inside, and levelling is a reset
+//! onto a hover ([`crate::flight`]). So in flight B+ w never leaves the rotors' ranges, not even by the rounding of this
+//! module: its f32 arithmetic is in the bound ([`super::support::ROUNDING`]), as the law's is. What to give up where rotors
+//! do not have what is asked of them is a question no proven flight asks; [`Mixer`](super::Mixer) answers it for those that
+//! are simulated without a proof, and starts from here.
+//!
+//! Each thrust is clipped to its rotor's range nevertheless: nothing beyond leaves this module, whatever it is given.
+
+use super::collected;
+use super::geometry::{ROTORS_MAX, Rotor, Rotors};
+use crate::error::InputError;
+use crate::state::{STATE_RANGE, Wrench, check_vectors};
+use heapless::Vec;
+use nalgebra::{Vector3, Vector4};
+
+/// Rotor thrusts, N, in the rotors' order.
+pub type Thrusts = Vec<f32, ROTORS_MAX>;
+
+/// A rotor as the tick needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Actuator {
+    /// Its column of B.
+    pub(super) column: Vector4<f32>,
+    /// Its row of B+.
+    share: Vector4<f32>,
+    least: f32,
+    greatest: f32,
+}
+
+impl Actuator {
+    #[inline]
+    fn new(rotor: &Rotor, column: &Vector4<f64>, share: &Vector4<f64>) -> Self {
+        let single = |v: &Vector4<f64>| v.map(|x| x as f32);
+        Self { column: single(column), share: single(share), least: rotor.thrust_min, greatest: rotor.thrust_max }
+    }
+
+    /// `thrust` moved into the rotor's range.
+    #[inline]
+    pub(super) fn clip(&self, thrust: f32) -> f32 {
+        thrust.max(self.least).min(self.greatest)
+    }
+}
+
+/// What the rotors are asked to do, and what comes of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Delivered {
+    /// Thrust of each rotor, N, within its range.
+    pub thrusts: Thrusts,
+    /// B times the thrusts: the wrench they deliver, body frame.
+    pub achieved: Wrench,
+    /// Whether a thrust of B+ w was outside its rotor's range. Never in a certified flight.
+    pub clipped: bool,
+}
+
+/// The rows of B+, the columns of B and the rotors' ranges, in single precision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MinimumNorm {
+    actuators: Vec<Actuator, ROTORS_MAX>,
+}
+
+impl MinimumNorm {
+    /// For `rotors`; configuration time.
+    #[must_use]
+    #[inline]
+    pub fn new(rotors: &Rotors) -> Self {
+        let all = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse());
+        Self { actuators: collected(all.map(|((rotor, column), share)| Actuator::new(rotor, column, share))) }
+    }
+
+    /// Thrusts for `wrench`, N and N m, body frame.
+    ///
+    /// # Errors
+    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
+    #[inline]
+    pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
+        let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
+        check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
+        let mut thrusts = self.preferred(&components(wrench));
+        let clipped = self.clip(&mut thrusts);
+        Ok(Delivered { achieved: self.wrench(&thrusts), thrusts, clipped })
+    }
+
+    /// The wrench that thrusts, N, in the rotors' order, act on the body with.
+    #[must_use]
+    #[inline]
+    pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
+        let sum = self.sum(thrusts);
+        Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
+    }
+
+    /// The rotors, in their order.
+    #[inline]
+    pub(super) fn actuators(&self) -> &[Actuator] {
+        &self.actuators
+    }
+
+    /// B+ w.
+    #[inline]
+    pub(super) fn preferred(&self, wrench: &Vector4<f32>) -> Thrusts {
+        collected(self.actuators.iter().map(|actuator| actuator.share.dot(wrench)))
+    }
+
+    /// B f.
+    #[inline]
+    pub(super) fn sum(&self, thrusts: &[f32]) -> Vector4<f32> {
+        self.actuators.iter().zip(thrusts).map(|(actuator, thrust)| actuator.column * *thrust).sum()
+    }
+
+    /// Moves thrusts into their rotors' ranges; whether one was outside.
+    #[inline]
+    pub(super) fn clip(&self, thrusts: &mut Thrusts) -> bool {
+        let mut clipped = false;
+        for (thrust, actuator) in thrusts.iter_mut().zip(&self.actuators) {
+            let allowed = actuator.clip(*thrust);
+            // Also true for a NaN.
+            if allowed != *thrust {
+                *thrust = allowed;
+                clipped = true;
+            }
+        }
+        clipped
+    }
+}
+
+/// (T, tau) as one vector.
+#[inline]
+pub(super) fn components(wrench: &Wrench) -> Vector4<f32> {
+    Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z)
+}
