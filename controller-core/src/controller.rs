@@ -145,6 +145,7 @@ impl Controller {
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
+    #[inline]
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         Self::build(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
@@ -165,6 +166,7 @@ impl Controller {
         Self::build(vehicle, gains, thrust_floor, period)
     }
 
+    #[inline]
     fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(&gains, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);

@@ -66,6 +66,7 @@ impl FilterTransition {
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
+    #[inline]
     pub fn new(gains: &Gains, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
         let longest = Self::LONGEST_PERIOD;
@@ -149,6 +150,7 @@ pub struct CommandRates {
 
 impl PositionLaw {
     /// For `gains` under `gravity`, m/s^2.
+    #[inline]
     #[must_use]
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;

@@ -19,6 +19,7 @@ pub mod waypoints;
 
 use crate::error::{InputError, ParameterError, Reason, require, require_finite};
 use crate::heading::Heading;
+use crate::math;
 use crate::state::{STATE_RANGE, check_vectors, sum_of_squares};
 use nalgebra::Vector3;
 
@@ -123,14 +124,17 @@ impl ReferenceBounds {
     #[must_use]
     #[inline]
     pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
-        let a = &reference.acceleration;
-        let within = |value: f32, bound: f32| value <= bound * (1.0 + allowance) + allowance;
-        within(a.xy().norm(), self.horizontal_acceleration)
-            && within(a.z.abs(), self.vertical_acceleration)
-            && within(reference.jerk.norm(), self.jerk)
-            && within(reference.snap.norm(), self.snap)
-            && within(reference.heading.rate().abs(), self.heading_rate)
-            && within(reference.heading.second_derivative().norm(), self.heading_second_derivative)
+        let Reference { acceleration: a, jerk, snap, heading, .. } = reference;
+        [
+            (a.xy().norm_squared(), self.horizontal_acceleration),
+            (a.z * a.z, self.vertical_acceleration),
+            (jerk.norm_squared(), self.jerk),
+            (snap.norm_squared(), self.snap),
+            (heading.rate() * heading.rate(), self.heading_rate),
+            (heading.second_derivative().norm_squared(), self.heading_second_derivative),
+        ]
+        .iter()
+        .all(|(square, bound)| math::sqrt(*square) <= bound * (1.0 + allowance) + allowance)
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) struct Generator {
 pub(super) fn generators<'a>(rotors: &Rotors, chosen: impl Iterator<Item = &'a usize>) -> Vec<Generator, ROTORS_MAX> {
     let one = |index: &usize| {
         let rotor = rotors.get(*index)?;
-        let column = component_product(rotors.effectiveness().get(*index)?, rotors.scale());
+        let column = component_product(rotors.effectiveness().get(*index)?, &rotors.scale());
         Some(Generator { column, low: f64::from(rotor.thrust_min), high: f64::from(rotor.thrust_max) })
     };
     collected(chosen.filter_map(one))
@@ -89,7 +89,7 @@ impl Slab {
             let normal = normal / along;
             let (low, high) = extent(generators, &normal);
             let slack = if cosine < STEEP { ROUNDING * magnitude(generators, &normal) } else { 0.0 };
-            let normal = component_product(&normal, rotors.scale()).map(|x| x as f32);
+            let normal = component_product(&normal, &rotors.scale()).map(|x| x as f32);
             Some((cosine, Self { normal, low: (low - slack) as f32, high: (high + slack) as f32 }))
         } else {
             None
@@ -110,7 +110,7 @@ impl<const N: usize> Slabs<N> {
         open: Option<Vector4<f64>>,
         direction: Vector4<f64>,
     ) -> Self {
-        let direction = component_product(&direction, rotors.scale());
+        let direction = component_product(&direction, &rotors.scale());
         let mut slabs: Vec<(f64, Slab), N> = Vec::new();
         for (i, a) in generators.iter().enumerate() {
             for (j, b) in generators.iter().enumerate().skip(i + 1) {

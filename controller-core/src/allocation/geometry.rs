@@ -40,6 +40,12 @@ const THRUST_MAX: f32 = 1e6;
 /// Below it, one wrench component can only be had with rotor thrusts 100 times those it would need alone.
 pub const INDEPENDENCE: f64 = 0.01;
 
+/// How far B B+ may be from the unit matrix, m and 1/m included: well above the rounding of any rotors this module takes.
+const INVERSE_TOLERANCE: f64 = 1e-9;
+
+/// What is said of rotors that do not make every wrench.
+const DOES_NOT_SPAN: ParameterError = ParameterError { field: "rotors", reason: Reason::DoesNotSpan };
+
 /// The eight names of a field that every rotor has.
 macro_rules! of_each_rotor {
     ($name:literal) => {
@@ -144,7 +150,6 @@ pub struct QuadX {
 pub struct Rotors {
     rotors: Vec<Rotor, ROTORS_MAX>,
     columns: Vec<Vector4<f64>, ROTORS_MAX>,
-    scale: Vector4<f64>,
     inverse: Vec<Vector4<f64>, ROTORS_MAX>,
 }
 
@@ -182,7 +187,24 @@ impl Rotors {
             require(rotor.thrust_min >= 0.0, field, Reason::Negative)?;
             require(rotor.thrust_min < rotor.thrust_max, field, Reason::NotBelow(rotor.thrust_max))?;
         }
-        Self::spanning(list).ok_or(ParameterError { field: "rotors", reason: Reason::DoesNotSpan })
+        Self::spanning(list).ok_or(DOES_NOT_SPAN)
+    }
+
+    /// The same rotors on a machine that is handed B+ and need not work it out.
+    ///
+    /// What it takes on trust is checked: each rotor has a range, and the rows given are a right inverse of B. Then they
+    /// deliver every wrench, and whoever bounds the thrusts bounds those of these very rows.
+    ///
+    /// # Errors
+    /// Names `rotors`.
+    #[inline]
+    pub fn with_inverse(rotors: &[Rotor], inverse: &[Vector4<f64>]) -> Result<Self, ParameterError> {
+        let (Ok(list), Ok(inverse)) = (Vec::from_slice(rotors), Vec::from_slice(inverse)) else {
+            return Err(ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) });
+        };
+        let known = Self { columns: columns(rotors), rotors: list, inverse };
+        let ranges = rotors.iter().all(|rotor| rotor.thrust_min >= 0.0 && rotor.thrust_min < rotor.thrust_max);
+        if ranges && known.is_inverse() { Ok(known) } else { Err(DOES_NOT_SPAN) }
     }
 
     /// Four equal rotors: 0 front left and 2 rear right turn clockwise, 1 rear left and 3 front right counter-clockwise.
@@ -228,15 +250,27 @@ impl Rotors {
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
     #[inline]
-    pub(super) fn scale(&self) -> &Vector4<f64> {
-        &self.scale
+    pub(super) fn scale(&self) -> Vector4<f64> {
+        squares(&self.columns).map(|square| 1.0 / math::sqrt_f64(square))
+    }
+
+    /// Whether B B+ is the unit matrix.
+    #[inline]
+    fn is_inverse(&self) -> bool {
+        (0..16).all(|place| {
+            let (row, column) = (place / 4, place % 4);
+            let pairs = self.columns.iter().zip(&self.inverse);
+            let product: f64 = pairs.filter_map(|(b, inverse)| Some(b.get(row)? * inverse.get(column)?)).sum();
+            let unit = if row == column { 1.0 } else { 0.0 };
+            (product - unit).abs() < INVERSE_TOLERANCE
+        }) && self.inverse.len() == self.columns.len()
     }
 
     /// Works out B, its scaling and B+, if the rows of B are independent enough.
     #[inline]
     fn spanning(rotors: Vec<Rotor, ROTORS_MAX>) -> Option<Self> {
-        let columns: Vec<Vector4<f64>, ROTORS_MAX> = collected(rotors.iter().map(Rotor::column));
-        let squares: Vector4<f64> = columns.iter().map(|column| math::component_product(column, column)).sum();
+        let columns = columns(&rotors);
+        let squares = squares(&columns);
         if !squares.iter().all(|square| *square > 0.0) {
             return None;
         }
@@ -257,8 +291,20 @@ impl Rotors {
         }
         let solved = |column: Vector4<f64>| Vector4::from(inverted.map(|row| math::dot(&row, &column)));
         let inverse = collected(scaled().map(|column| math::component_product(&solved(column), &scale)));
-        Some(Self { rotors, columns, scale, inverse })
+        Some(Self { rotors, columns, inverse })
     }
+}
+
+/// The columns of B.
+#[inline]
+fn columns(rotors: &[Rotor]) -> Vec<Vector4<f64>, ROTORS_MAX> {
+    collected(rotors.iter().map(Rotor::column))
+}
+
+/// The squared lengths of the rows of B.
+#[inline]
+fn squares(columns: &[Vector4<f64>]) -> Vector4<f64> {
+    columns.iter().map(|column| math::component_product(column, column)).sum()
 }
 
 impl Deref for Rotors {
@@ -313,6 +359,37 @@ mod tests {
         let product: Matrix4<f64> =
             rotors.effectiveness().iter().zip(rotors.pseudo_inverse()).map(|(b, row)| b * row.transpose()).sum();
         assert!((product - Matrix4::identity()).amax() < 1e-12, "{product}");
+    }
+
+    #[test]
+    fn rotors_with_their_inverse_are_those_that_worked_it_out_and_others_are_refused() {
+        let rotors = Rotors::quad_x(hummingbird()).unwrap();
+        let again = |change: fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>)| {
+            let mut list = Vec::from_slice(&rotors).unwrap();
+            let mut inverse = Vec::from_slice(rotors.pseudo_inverse()).unwrap();
+            change(&mut list, &mut inverse);
+            Rotors::with_inverse(&list, &inverse)
+        };
+        assert_eq!(again(|_, _| {}), Ok(rotors.clone()));
+        let refused: [fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>); 9] = [
+            |_, inverse| inverse[2].w *= 1.0 + 1e-8,
+            |_, inverse| inverse.swap(0, 1),
+            |_, inverse| inverse[1].x = f64::NAN,
+            |_, inverse| inverse.push(Vector4::zeros()).unwrap(),
+            |list, _| list[3].position.x *= 1.001,
+            |list, _| list[3].thrust_coefficient = 0.0,
+            |list, _| list[0].thrust_min = -0.1,
+            |list, _| list[0].thrust_max = f32::NAN,
+            |list, inverse| (list.truncate(3), inverse.truncate(3)).0,
+        ];
+        for change in refused {
+            assert_eq!(again(change), Err(DOES_NOT_SPAN));
+        }
+        let too_many = |list: &mut Vec<Rotor, 9>, _: &mut Vec<Vector4<f64>, 9>| {
+            let first = list[0];
+            list.resize(9, first).unwrap();
+        };
+        assert_eq!(again(too_many).unwrap_err().reason, Reason::TooMany(8));
     }
 
     #[test]

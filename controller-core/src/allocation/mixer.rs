@@ -203,14 +203,14 @@ fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
         let chosen = |index: &usize| choice >> index & 1 == 1;
         let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| chosen(index));
         let columns: Vec<Vector4<f64>, ROTORS_MAX> =
-            collected(columns.map(|(_, column)| component_product(column, rotors.scale())));
+            collected(columns.map(|(_, column)| component_product(column, &rotors.scale())));
         if let [a, b, c, d] = columns.as_slice() {
             let volume = dot(&normal(b, c, d), a).abs();
             if volume > largest {
                 // The inverse's row for one column is normal to the other three.
                 let rows = [(a, normal(b, c, d)), (b, normal(a, c, d)), (c, normal(a, b, d)), (d, normal(a, b, c))];
                 let row = |(column, normal): &(&Vector4<f64>, Vector4<f64>)| {
-                    component_product(&(normal / dot(normal, column)), rotors.scale()).map(|x| x as f32)
+                    component_product(&(normal / dot(normal, column)), &rotors.scale()).map(|x| x as f32)
                 };
                 let indices = (0..rotors.len()).filter(chosen);
                 best = collected(indices.zip(rows.iter().map(row)).map(|(rotor, row)| Carrier { rotor, row }));

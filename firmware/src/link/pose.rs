@@ -17,6 +17,7 @@ use super::frame::Frame;
 use crate::frames;
 use controller_core::flight::Pose;
 use controller_core::governor::SPEED_RANGE;
+use controller_core::math;
 use core::fmt;
 use mavlink::MessageData;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
@@ -206,7 +207,7 @@ fn attitude([w, x, y, z]: [f32; 4]) -> Result<Quaternion<f32>, PoseRefusal> {
     if !q.coords.iter().all(|component| component.is_finite()) {
         return Err(PoseRefusal::NotFinite);
     }
-    let length = q.norm();
+    let length = math::sqrt(q.norm_squared());
     if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
         return Err(PoseRefusal::NotARotation);
     }
