@@ -98,19 +98,19 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.shared.answer(Answer { origin, result });
         }
         if let Some(transition) = outcome.transition {
-            self.shared.announce(severity(transition.reason), transition.reason);
+            self.shared.announce(severity(transition.reason), &[transition.reason.text()]);
         }
         if let Some(setpoint) = outcome.setpoint {
             let refusal = setpoint.err();
             if refusal != self.complaint.setpoint {
                 self.complaint.setpoint = refusal;
-                refusal.inspect(|refusal| self.shared.announce(Severity::Warning, refusal));
+                refusal.inspect(|refusal| self.shared.announce(Severity::Warning, &refusal.words()));
             }
         }
         let refused = outcome.flown.and_then(Result::err);
         if refused != self.complaint.law {
             self.complaint.law = refused;
-            refused.inspect(|error| self.shared.announce(Severity::Critical, error));
+            refused.inspect(|error| self.shared.announce(Severity::Critical, &error.words()));
         }
     }
 
@@ -130,8 +130,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if fault != self.complaint.writing {
             self.complaint.writing = fault;
             match fault {
-                Some(Fault) => self.shared.announce(Severity::Critical, "motors: a frame did not go out"),
-                None => self.shared.announce(Severity::Information, "motors: frames go out again"),
+                Some(Fault) => self.shared.announce(Severity::Critical, &["motors: a frame did not go out"]),
+                None => self.shared.announce(Severity::Information, &["motors: frames go out again"]),
             }
         }
     }

@@ -8,7 +8,7 @@
 pub mod storage;
 pub mod table;
 
-use crate::shared::Decimal;
+use crate::shared::Text;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -43,11 +43,13 @@ pub struct OutOfRange(
     pub Name,
 );
 
-impl core::fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+impl OutOfRange {
+    /// What is allowed, in words.
+    #[must_use]
+    pub fn text(self) -> Text {
         let row = self.0.row();
-        let (least, most) = (Decimal(row.least), Decimal(row.most));
-        write!(f, "{}: allowed are {least} to {most} {}", row.name, row.unit)
+        let (least, most) = (Text::decimal(row.least), Text::decimal(row.most));
+        Text::new(&[row.name, ": allowed are ", least.as_str(), " to ", most.as_str(), " ", row.unit])
     }
 }
 

@@ -24,7 +24,7 @@ mod flag;
 mod latest;
 mod report;
 
-pub use event::{Decimal, Event, Severity, TEXT_MAX, Text};
+pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use report::{Report, Timing, Traffic};
@@ -33,7 +33,6 @@ use crate::link::Reply;
 use crate::parameters::Parameters;
 use controller_core::flight::{ImuSample, Pose, Refusal, Request};
 use controller_core::governor::Setpoint;
-use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::channel::Channel;
@@ -156,14 +155,14 @@ impl<M: RawMutex> Shared<M> {
     /// for want of one.
     pub fn answer(&self, answer: Answer) {
         if let Err(refusal) = answer.result {
-            self.announce(Severity::Warning, refusal);
+            self.announce(Severity::Warning, &refusal.words());
         }
         let _ = self.answers.try_send(answer);
     }
 
-    /// Tells people: the ground station and the log. Where a queue is full the event is dropped and counted: what came
+    /// Tells people, by a line of these pieces: the ground station and the log. Where a queue is full the event is dropped and counted: what came
     /// first is the cause, what follows is mostly its consequence.
-    pub fn announce(&self, severity: Severity, words: impl fmt::Display) {
+    pub fn announce(&self, severity: Severity, words: &[&str]) {
         let event = Event { severity, text: Text::new(words) };
         if self.events.try_send(event.clone()).is_err() | self.log.try_send(event).is_err() {
             self.lost.fetch_add(1, Ordering::Relaxed);

@@ -14,7 +14,7 @@ mod log;
 
 use crate::hardware::{Battery, Clock, Light};
 use crate::parameters::table::Name;
-use crate::shared::{Decimal, Severity, Shared};
+use crate::shared::{Severity, Shared, Text};
 use controller_core::flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -93,6 +93,6 @@ async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, sh
     shared.voltage.put(voltage, now);
     if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
         *warning = now.saturating_add(WARNING_INTERVAL);
-        shared.announce(Severity::Warning, format_args!("Battery low: {} V", Decimal(voltage)));
+        shared.announce(Severity::Warning, &["Battery low: ", Text::decimal(voltage).as_str(), " V"]);
     }
 }
