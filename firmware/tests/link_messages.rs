@@ -224,7 +224,7 @@ proptest! {
             frames.iter().for_each(|bytes| fed.bytes(bytes, 0));
             prop_assert_eq!(shared.parameters.get(Name::TelemetryRate), f32::from(value));
             for reply in expected {
-                prop_assert_eq!(shared.replies.try_receive().unwrap(), reply);
+                prop_assert_eq!(shared.replies.take().unwrap(), reply);
             }
         }
     }

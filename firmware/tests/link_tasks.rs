@@ -13,7 +13,7 @@ use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::link::{CommandResult, Reply};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Answer, Event, Origin, Report, Severity, Text, Timing, Traffic};
+use firmware::shared::{Event, Origin, Report, Severity, Text, Timing, Traffic};
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
     MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, PING_DATA,
@@ -183,10 +183,10 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_result_and_addressee() {
     let shared = Local::new();
     let origin = Origin { system: 255, component: 190, command: 400 };
-    shared.answer(Answer { origin, result: Ok(()) });
-    shared.answer(Answer { origin, result: Err(Refusal::PoseStale) });
+    shared.answer(origin, Ok(()));
+    shared.answer(origin, Err(Refusal::PoseStale));
     let unknown = Origin { command: 65_000, ..origin };
-    shared.replies.try_send(Reply::Command { origin: unknown, result: CommandResult::Unsupported }).unwrap();
+    shared.replies.put(Reply::Command { origin: unknown, result: CommandResult::Unsupported }).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
     let mut parser = Parser::new();
     let mut payloads = Vec::new();
@@ -208,10 +208,34 @@ fn commands_are_answered_with_number_result_and_addressee() {
 }
 
 #[test]
+fn what_is_said_to_an_idle_line_goes_out_at_once() {
+    let origin = Origin { system: 255, component: 190, command: 400 };
+    let say: [(fn(&Local, Origin), u32); 3] = [
+        (|shared, origin| shared.answer(origin, Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared, _| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
+        (|shared, _| shared.announce(Severity::Information, &["now"]), STATUSTEXT_DATA::ID),
+    ];
+    for (say, message) in say {
+        let shared = Local::new();
+        // The next heartbeat is due at a second; telemetry has nothing to tell.
+        shared.parameters.set(Name::TelemetryRate, 10.0).unwrap();
+        let written = transmitted(&shared, 460_000, |now| {
+            if now == 455_000 {
+                say(&shared, origin);
+            }
+        });
+        let mut parser = Parser::new();
+        let mut sent = Vec::new();
+        parser.feed(&written.borrow(), 0, &mut |frame| sent.push(frame.message));
+        assert_eq!(sent.last(), Some(&message), "{sent:?}");
+    }
+}
+
+#[test]
 fn a_ping_goes_back_to_its_sender_as_it_came() {
     let shared = Local::new();
     let (time, sequence, system, component) = (0x0102_0304_0506_0708, 0x090A_0B0C, 255, 190);
-    shared.replies.try_send(Reply::Ping { time, sequence, system, component }).unwrap();
+    shared.replies.put(Reply::Ping { time, sequence, system, component }).unwrap();
     let pings: Vec<PING_DATA> = sent(&transmitted(&shared, 100_000, |_| ()));
     let expected = PING_DATA { time_usec: time, seq: sequence, target_system: system, target_component: component };
     assert_eq!(pings, [expected]);
@@ -220,7 +244,7 @@ fn a_ping_goes_back_to_its_sender_as_it_came() {
 #[test]
 fn every_parameter_is_listed_with_its_place() {
     let shared = Local::new();
-    shared.replies.try_send(Reply::AllParameters).unwrap();
+    shared.replies.put(Reply::AllParameters).unwrap();
     let values: Vec<PARAM_VALUE_DATA> = sent(&transmitted(&shared, 1_000_000, |_| ()));
     assert_eq!(values.len(), PARAMETERS.len());
     for (index, (value, row)) in values.iter().zip(&PARAMETERS).enumerate() {
@@ -251,7 +275,7 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, &shared), |now| {
         flying(&shared, now);
         let text = Text::new(&["one of many"]);
-        if shared.events.try_send(Event { severity: Severity::Warning, text }).is_ok() {
+        if shared.events.put(Event { severity: Severity::Warning, text }).is_ok() {
             waiting.push(now);
         }
     });

@@ -67,7 +67,7 @@ fn the_battery_is_read_and_warned_of_when_low() {
     assert!(voltage.value == 10.4 && voltage.time > 14_500_000);
     assert_eq!(texts(&shared), ["Battery low: 10.4 V"; 2]);
     // The log has been emptied of them.
-    assert!(shared.log.is_empty());
+    assert!(shared.log.take().is_none());
 }
 
 #[test]

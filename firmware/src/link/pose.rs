@@ -58,17 +58,17 @@ pub enum PoseRefusal {
 }
 
 impl PoseRefusal {
-    /// The reason in words.
+    /// The reason in words, to follow "Pose refused: ".
     #[must_use]
     pub fn text(self) -> &'static str {
         match self {
-            Self::NotFinite => "Pose refused: a field is not finite",
-            Self::OutOfRange => "Pose refused: too far away or too fast",
-            Self::NotARotation => "Pose refused: quaternion not of unit length",
-            Self::Frame => "Pose refused: use LOCAL_NED and BODY_FRD",
-            Self::Repeated => "Pose refused: its time does not advance",
-            Self::SecondSource => "Pose refused: another source is in use",
-            Self::NoTime => "Pose refused: ATT_POS_MOCAP without a time",
+            Self::NotFinite => "a field is not finite",
+            Self::OutOfRange => "too far away or too fast",
+            Self::NotARotation => "quaternion not of unit length",
+            Self::Frame => "use LOCAL_NED and BODY_FRD",
+            Self::Repeated => "its time does not advance",
+            Self::SecondSource => "another source is in use",
+            Self::NoTime => "ATT_POS_MOCAP without a time",
         }
     }
 }

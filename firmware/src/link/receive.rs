@@ -57,10 +57,10 @@ struct Occasionally {
 }
 
 impl Occasionally {
-    fn announce<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: &str) {
+    fn announce<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: &[&str]) {
         if now >= self.not_before {
             self.not_before = now.saturating_add(TEXT_INTERVAL);
-            shared.announce(Severity::Warning, &[words]);
+            shared.announce(Severity::Warning, words);
         }
     }
 }
@@ -112,7 +112,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             message::SET_POSITION_TARGET_LOCAL_NED if is_addressed(50) => self.setpoint(frame),
             message::COMMAND_LONG if is_addressed(30) => self.command(frame),
             message::PING => self.ping(frame),
-            message::PARAM_REQUEST_LIST if is_addressed(0) => self.reply(Reply::AllParameters),
+            message::PARAM_REQUEST_LIST if is_addressed(0) => self.shared.reply(Reply::AllParameters),
             message::PARAM_REQUEST_READ if is_addressed(2) => self.read_parameter(frame),
             message::PARAM_SET if is_addressed(4) => self.set_parameter(frame),
             _ => {}
@@ -134,11 +134,6 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    fn reply(&self, reply: Reply) {
-        // Without room the sender gets no answer, and asks again.
-        let _ = self.shared.replies.try_send(reply);
-    }
-
     /// Any ground station's will do. Its type is the fifth byte; the other fields are of no interest, known or not.
     fn heartbeat(&mut self, frame: &Frame<'_>) {
         if frame.byte(4) == GROUND_STATION {
@@ -152,7 +147,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             Ok(None) => {}
             Err(refusal) => {
                 self.refused();
-                self.pose_refused.announce(self.shared, frame.time, refusal.text());
+                self.pose_refused.announce(self.shared, frame.time, &["Pose refused: ", refusal.text()]);
             }
         }
     }
@@ -162,7 +157,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
             Err(refusal) => {
                 self.refused();
-                self.setpoint_refused.announce(self.shared, frame.time, refusal.text());
+                self.setpoint_refused.announce(self.shared, frame.time, &["Setpoint refused: ", refusal.text()]);
             }
         }
     }
@@ -190,7 +185,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             }
             Action::Answer(result) => result,
         };
-        self.reply(Reply::Command { origin, result });
+        self.shared.reply(Reply::Command { origin, result });
     }
 
     /// PING is deprecated in favour of TIMESYNC, but clients still send it and wait for the answer. One that is addressed to
@@ -199,7 +194,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if frame.u16(12) == 0 {
             let (time, sequence) = (frame.u64(0), frame.u32(8));
             let (system, component) = (frame.header.system, frame.header.component);
-            self.reply(Reply::Ping { time, sequence, system, component });
+            self.shared.reply(Reply::Ping { time, sequence, system, component });
         }
     }
 
@@ -223,7 +218,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Its value, as it is now, answers every question about a parameter.
     fn reply_with_parameter(&mut self, name: Option<Name>) {
         match name {
-            Some(name) => self.reply(Reply::Parameter(name)),
+            Some(name) => self.shared.reply(Reply::Parameter(name)),
             None => self.refused(),
         }
     }

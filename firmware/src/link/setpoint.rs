@@ -28,29 +28,23 @@ pub enum SetpointRefusal {
 }
 
 impl SetpointRefusal {
-    /// The reason in words.
+    /// The reason in words, to follow "Setpoint refused: ".
     #[must_use]
     pub fn text(self) -> &'static str {
         match self {
-            Self::NotFinite => "Setpoint refused: a field is not finite",
-            Self::Mask => "Setpoint refused: type mask not supported",
-            Self::Frame => "Setpoint refused: use LOCAL_NED",
+            Self::NotFinite => "a field is not finite",
+            Self::Mask => "type mask not supported",
+            Self::Frame => "use LOCAL_NED",
         }
     }
 }
 
-/// The type mask's bits: these fields are not to be looked at.
-mod ignored {
-    /// All three axes.
-    pub const POSITION: u16 = 0b111;
-    pub const VELOCITY: u16 = POSITION << 3;
-    pub const ACCELERATION: u16 = POSITION << 6;
-    pub const HEADING: u16 = 1 << 10;
-    pub const HEADING_RATE: u16 = 1 << 11;
-}
-
 /// The type mask's bit that makes the acceleration a force.
 const FORCE: u16 = 1 << 9;
+/// Its bit for a heading that is not to be looked at.
+const NO_HEADING: u16 = 1 << 10;
+/// And for the heading's rate.
+const NO_HEADING_RATE: u16 = 1 << 11;
 
 /// What a SET_POSITION_TARGET_LOCAL_NED asks for.
 ///
@@ -62,9 +56,8 @@ pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
     if frame != LOCAL_NED {
         return Err(SetpointRefusal::Frame);
     }
-    let position = used(mask, ignored::POSITION, message.vector(4))?;
-    let velocity = used(mask, ignored::VELOCITY, message.vector(16))?;
-    let acceleration = used(mask, ignored::ACCELERATION, message.vector(28))?;
+    let [position, velocity, acceleration] =
+        [used(message, mask, 0)?, used(message, mask, 1)?, used(message, mask, 2)?];
     let motion = match (position, velocity, acceleration) {
         (_, _, Some(_)) if mask & FORCE != 0 => return Err(SetpointRefusal::Mask),
         (Some(position), None, None) => Motion::Position(position),
@@ -78,28 +71,30 @@ pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
     Ok(Setpoint { motion, turn: turn(mask, message.f32(40), message.f32(44))? })
 }
 
-/// The world vector of one quantity, if the mask has it used. All three axes are, or none.
-fn used(mask: u16, ignored: u16, vector: Vector3<f32>) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
-    if mask & ignored == ignored {
-        return Ok(None);
+/// The world vector of position, velocity or acceleration, if the mask has it used. All three axes are, or none.
+fn used(message: &Frame<'_>, mask: u16, quantity: usize) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
+    match mask >> (3 * quantity) & 0b111 {
+        0b000 => {
+            let vector = message.vector(4 + 12 * quantity);
+            vector.iter().try_for_each(|&component| finite(component).map(|_| ()))?;
+            Ok(Some(frames::world(&vector)))
+        }
+        0b111 => Ok(None),
+        _ => Err(SetpointRefusal::Mask),
     }
-    if mask & ignored != 0 {
-        return Err(SetpointRefusal::Mask);
-    }
-    if !vector.iter().all(|component| component.is_finite()) {
-        return Err(SetpointRefusal::NotFinite);
-    }
-    Ok(Some(frames::world(&vector)))
 }
 
 fn turn(mask: u16, angle: f32, rate: f32) -> Result<Turn, SetpointRefusal> {
-    let finite = |value: f32| if value.is_finite() { Ok(value) } else { Err(SetpointRefusal::NotFinite) };
-    let angle = (mask & ignored::HEADING == 0).then_some(angle).map(finite).transpose()?;
-    let rate = (mask & ignored::HEADING_RATE == 0).then_some(rate).map(finite).transpose()?;
+    let angle = (mask & NO_HEADING == 0).then_some(angle).map(finite).transpose()?;
+    let rate = (mask & NO_HEADING_RATE == 0).then_some(rate).map(finite).transpose()?;
     let rate = rate.map(frames::heading_rate);
     Ok(match (angle.map(frames::heading), rate) {
         (None, None) => Turn::Keep,
         (None, Some(rate)) => Turn::Rate(rate),
         (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
     })
+}
+
+fn finite(value: f32) -> Result<f32, SetpointRefusal> {
+    if value.is_finite() { Ok(value) } else { Err(SetpointRefusal::NotFinite) }
 }

@@ -4,14 +4,14 @@
 
 use super::draft::Draft;
 use super::frame::Header;
-use super::reply::{CommandResult, Reply};
+use super::reply::Reply;
 use super::{COMPONENT, telemetry};
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Answer, Event, Report, Severity, Shared, Text};
+use crate::shared::{Event, Report, Severity, Shared, Text};
 use controller_core::flight::Stamped;
-use embassy_futures::select::select4;
+use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 
@@ -41,8 +41,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
         }
         if silent {
             let due = clock.until(speaker.schedule.next());
-            let (answers, events, replies) = (&shared.answers, &shared.events, &shared.replies);
-            select4(due, answers.ready_to_receive(), events.ready_to_receive(), replies.ready_to_receive()).await;
+            select(due, shared.outgoing.wait()).await;
         }
     }
 }
@@ -65,6 +64,7 @@ impl Schedule {
 }
 
 /// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
+#[inline(never)]
 fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     let has_come = now >= *due;
     if has_come {
@@ -132,27 +132,32 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Drafts the next thing that was asked for, what the vehicle decided first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
-        if let Ok(Answer { origin, result }) = shared.answers.try_receive() {
-            let result = if result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
-            telemetry::acknowledgement(&mut self.draft, &origin, result);
-        } else if let Ok(event) = shared.events.try_receive() {
+        if let Some(answer) = shared.answers.take() {
+            return self.reply(&answer, now);
+        }
+        if let Some(event) = shared.events.take() {
             telemetry::text(&mut self.draft, &event);
-        } else if shared.lost_events() != self.told {
+            return true;
+        }
+        if shared.lost_events() != self.told {
             self.lost(shared.lost_events());
-        } else if let Ok(reply) = shared.replies.try_receive() {
-            match reply {
-                Reply::Command { origin, result } => telemetry::acknowledgement(&mut self.draft, &origin, result),
-                Reply::Ping { time, sequence, system, component } => {
-                    telemetry::ping(&mut self.draft, time, sequence, system, component);
-                }
-                Reply::Parameter(name) => self.parameter(name),
-                Reply::AllParameters => {
-                    self.schedule.list = Some((0, now));
-                    return false;
-                }
+            return true;
+        }
+        shared.replies.take().is_some_and(|reply| self.reply(&reply, now))
+    }
+
+    /// Drafts a reply; a list of parameters is put on the schedule.
+    fn reply(&mut self, reply: &Reply, now: u64) -> bool {
+        match reply {
+            Reply::Command { origin, result } => telemetry::acknowledgement(&mut self.draft, origin, *result),
+            Reply::Ping { time, sequence, system, component } => {
+                telemetry::ping(&mut self.draft, *time, *sequence, *system, *component);
             }
-        } else {
-            return false;
+            Reply::Parameter(name) => self.parameter(*name),
+            Reply::AllParameters => {
+                self.schedule.list = Some((0, now));
+                return false;
+            }
         }
         true
     }
