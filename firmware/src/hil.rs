@@ -32,7 +32,6 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
-use nalgebra::Vector3;
 
 /// Longest that a message may take to go out, us: then the next tick's is due.
 const SENDING_MAX: u64 = 8_000;
@@ -209,10 +208,6 @@ fn controls(draft: &mut Draft, command: &Stamped<MotorCommand>) {
 fn sample(message: &Frame<'_>) -> Option<ImuSample> {
     // Time, accelerometer, gyro, seven numbers of other sensors, which of all these are known.
     let (accelerometer, gyro, known) = (message.vector(8), message.vector(20), message.u32(60));
-    let whole = known & INERTIAL == INERTIAL && finite(&gyro) && finite(&accelerometer);
+    let whole = known & INERTIAL == INERTIAL && message.are_finite(8, 6);
     whole.then(|| ImuSample { angular_velocity: frames::body(&gyro), specific_force: frames::body(&accelerometer) })
-}
-
-fn finite(vector: &Vector3<f32>) -> bool {
-    vector.iter().all(|component| component.is_finite())
 }

@@ -124,6 +124,12 @@ impl Frame<'_> {
         f32::from_bits(self.u32(offset))
     }
 
+    /// Whether `count` of them are neither NaN nor infinite.
+    #[must_use]
+    pub fn are_finite(&self, offset: usize, count: usize) -> bool {
+        (0..count).all(|index| self.f32(offset + 4 * index).is_finite())
+    }
+
     /// Three of them.
     #[must_use]
     #[inline(never)]

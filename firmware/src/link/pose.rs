@@ -178,15 +178,15 @@ const LOCAL_FRD: u8 = 20;
 /// The pose in an ODOMETRY message. Its body rates are checked but not used: the gyro is nearer.
 pub(crate) fn odometry(message: &Frame<'_>) -> Result<Pose, PoseRefusal> {
     // Time, position, attitude, velocity, body rates, two covariances, the frames of position and velocity.
-    let (velocity, rates, frame, child) =
-        (message.vector(36), message.vector(48), message.byte(228), message.byte(229));
+    let (velocity, frame, child) = (message.vector(36), message.byte(228), message.byte(229));
     if frame != LOCAL_NED && frame != LOCAL_FRD {
         return Err(PoseRefusal::Frame);
     }
+    if !message.are_finite(36, 6) {
+        return Err(PoseRefusal::NotFinite);
+    }
     check(&velocity, SPEED_RANGE)?;
-    check(&rates, f32::MAX)?;
-    let position = position(message, 8)?;
-    let attitude = attitude(message, 20)?;
+    let (position, attitude) = (position(message, 8)?, attitude(message, 20)?);
     let velocity = match child {
         BODY_FRD => UnitQuaternion::new_unchecked(attitude) * frames::body(&velocity),
         child if child == frame => frames::world(&velocity),
@@ -204,10 +204,10 @@ fn position(message: &Frame<'_>, offset: usize) -> Result<Vector3<f32>, PoseRefu
 
 /// An attitude, FRD to NED, scalar first.
 fn attitude(message: &Frame<'_>, offset: usize) -> Result<Quaternion<f32>, PoseRefusal> {
-    let q = Quaternion::from_parts(message.f32(offset), message.vector(offset + 4));
-    if !q.coords.iter().all(|component| component.is_finite()) {
+    if !message.are_finite(offset, 4) {
         return Err(PoseRefusal::NotFinite);
     }
+    let q = Quaternion::from_parts(message.f32(offset), message.vector(offset + 4));
     let length = q.norm();
     if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
         return Err(PoseRefusal::NotARotation);
@@ -217,11 +217,11 @@ fn attitude(message: &Frame<'_>, offset: usize) -> Result<Quaternion<f32>, PoseR
 
 /// Refuses components that are not finite or greater than `range`.
 fn check(vector: &Vector3<f32>, range: f32) -> Result<(), PoseRefusal> {
-    if !vector.iter().all(|component| component.is_finite()) {
-        Err(PoseRefusal::NotFinite)
-    } else if vector.iter().any(|component| component.abs() > range) {
-        Err(PoseRefusal::OutOfRange)
-    } else {
-        Ok(())
+    if vector.iter().any(|component| !component.is_finite()) {
+        return Err(PoseRefusal::NotFinite);
     }
+    if vector.iter().any(|component| component.abs() > range) {
+        return Err(PoseRefusal::OutOfRange);
+    }
+    Ok(())
 }

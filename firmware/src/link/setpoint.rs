@@ -75,9 +75,11 @@ pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
 fn used(message: &Frame<'_>, mask: u16, quantity: usize) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
     match mask >> (3 * quantity) & 0b111 {
         0b000 => {
-            let vector = message.vector(4 + 12 * quantity);
-            vector.iter().try_for_each(|&component| finite(component).map(|_| ()))?;
-            Ok(Some(frames::world(&vector)))
+            let offset = 4 + 12 * quantity;
+            if !message.are_finite(offset, 3) {
+                return Err(SetpointRefusal::NotFinite);
+            }
+            Ok(Some(frames::world(&message.vector(offset))))
         }
         0b111 => Ok(None),
         _ => Err(SetpointRefusal::Mask),
