@@ -25,7 +25,7 @@ use crate::link::frame::{Frame, Header, Parser};
 use crate::link::message::{self, mode};
 use crate::link::pose::odometry;
 use crate::parameters::table::Name;
-use crate::shared::{Flag, Shared};
+use crate::shared::{Flag, Latest, Shared};
 use controller_core::flight::{ImuSample, PERIOD, Stamped};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
@@ -54,7 +54,9 @@ const INERTIAL: u32 = 0b11_1111;
 /// The exchange with the simulator: whether there is one, and how far it is.
 pub struct Hil<M: RawMutex> {
     state: Mutex<M, Cell<State>>,
-    outgoing: Signal<M, Stamped<MotorCommand>>,
+    command: Latest<M, MotorCommand>,
+    /// There is a new command.
+    outgoing: Signal<M, ()>,
 }
 
 #[derive(Clone, Copy)]
@@ -71,7 +73,7 @@ impl<M: RawMutex> Hil<M> {
     #[must_use]
     pub const fn new() -> Self {
         let state = State { active: false, commanded: 0, awaiting: false };
-        Self { state: Mutex::new(Cell::new(state)), outgoing: Signal::new() }
+        Self { state: Mutex::new(Cell::new(state)), command: Latest::new(), outgoing: Signal::new() }
     }
 
     /// Whether the simulator has sensors and motors.
@@ -88,7 +90,8 @@ impl<M: RawMutex> Hil<M> {
 
     fn command(&self, command: MotorCommand, now: u64) {
         self.state.lock(|state| state.set(State { active: true, commanded: now, awaiting: true }));
-        self.outgoing.signal(Stamped { value: command, time: now });
+        self.command.put(command, now);
+        self.outgoing.signal(());
     }
 
     /// When what an answer with this time says is true, us; none for one that nothing was asked for.
@@ -138,7 +141,8 @@ pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &i
     let mut draft = Draft::new();
     let mut sequence: u8 = 0;
     loop {
-        let command = hil.outgoing.wait().await;
+        hil.outgoing.wait().await;
+        let Some(command) = hil.command.take() else { continue };
         let system = shared.parameters.get(Name::SystemId) as u8;
         let header = Header { system, component: COMPONENT, sequence };
         sequence = sequence.wrapping_add(1);

@@ -28,7 +28,7 @@ mod report;
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
-pub use queue::Queue;
+pub use queue::{Full, Queue};
 pub use report::{Report, Timing, Traffic};
 
 use crate::link::{CommandResult, Reply};
@@ -134,8 +134,8 @@ impl<M: RawMutex> Shared<M> {
     /// Asks control for something.
     ///
     /// # Errors
-    /// Gives the request back if too many wait already; the sender is to be told to try again.
-    pub fn request(&self, asked: Asked) -> Result<(), Asked> {
+    /// [`Full`] if too many wait already; the sender is to be told to try again.
+    pub fn request(&self, asked: Asked) -> Result<(), Full> {
         self.requests.put(asked)
     }
 

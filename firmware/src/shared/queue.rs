@@ -8,6 +8,10 @@ use heapless::Deque;
 /// At most `ROOM` values, taken in the order in which they were put in. Nobody waits for it: neither for room nor for a value.
 pub struct Queue<M: RawMutex, T, const ROOM: usize>(Mutex<M, RefCell<Deque<T, ROOM>>>);
 
+/// No room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Full;
+
 impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
     /// Nothing waits.
     #[must_use]
@@ -18,14 +22,11 @@ impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
     /// Puts a value behind the others.
     ///
     /// # Errors
-    /// Gives it back where there is no room.
+    /// [`Full`] where there is no room; the value is lost.
     #[inline(never)]
-    pub fn put(&self, value: T) -> Result<(), T> {
+    pub fn put(&self, value: T) -> Result<(), Full> {
         // The mutex lets one in at a time, so the queue is never borrowed.
-        self.0.lock(|queue| match queue.try_borrow_mut() {
-            Ok(mut queue) => queue.push_back(value),
-            Err(_) => Err(value),
-        })
+        self.0.lock(|queue| queue.try_borrow_mut().ok().and_then(|mut queue| queue.push_back(value).ok()).ok_or(Full))
     }
 
     /// Takes the first one.
