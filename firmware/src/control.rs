@@ -13,7 +13,8 @@
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::Outputs;
-use crate::shared::{Answer, Asked, Report, Severity, Shared, Timing};
+use crate::shared::{Asked, Report, Severity, Shared, Timing};
+use crate::time::beyond;
 use controller_core::error::InputError;
 use controller_core::flight::rules::{IMU_AGE_MAX, POSE_AGE_MAX};
 use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Reason, Refusal};
@@ -70,7 +71,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// One tick, from what the other tasks have put down to what the motors are told.
     #[inline(never)]
     pub fn tick(&mut self, now: u64) -> MotorCommand {
-        let asked = self.shared.requests.try_receive().ok();
+        let asked = self.shared.requests.take();
         let inputs = self.inputs(now, asked);
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
@@ -95,22 +96,22 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// Answers, transitions and refusals, in words.
     fn tell(&mut self, outcome: &Outcome, asked: Option<Asked>) {
         if let (Some(Asked { origin, .. }), Some(result)) = (asked, outcome.answer) {
-            self.shared.answer(Answer { origin, result });
+            self.shared.answer(origin, result);
         }
         if let Some(transition) = outcome.transition {
-            self.shared.announce(severity(transition.reason), transition.reason);
+            self.shared.announce(severity(transition.reason), &[transition.reason.text()]);
         }
         if let Some(setpoint) = outcome.setpoint {
             let refusal = setpoint.err();
             if refusal != self.complaint.setpoint {
                 self.complaint.setpoint = refusal;
-                refusal.inspect(|refusal| self.shared.announce(Severity::Warning, refusal));
+                refusal.inspect(|refusal| self.shared.announce(Severity::Warning, &refusal.words()));
             }
         }
         let refused = outcome.flown.as_ref().and_then(|flown| flown.as_ref().err().copied());
         if refused != self.complaint.law {
             self.complaint.law = refused;
-            refused.inspect(|error| self.shared.announce(Severity::Critical, error));
+            refused.inspect(|error| self.shared.announce(Severity::Critical, &error.words()));
         }
     }
 
@@ -130,8 +131,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if fault != self.complaint.writing {
             self.complaint.writing = fault;
             match fault {
-                Some(Fault) => self.shared.announce(Severity::Critical, "motors: a frame did not go out"),
-                None => self.shared.announce(Severity::Information, "motors: frames go out again"),
+                Some(Fault) => self.shared.announce(Severity::Critical, &["motors: a frame did not go out"]),
+                None => self.shared.announce(Severity::Information, &["motors: frames go out again"]),
             }
         }
     }
@@ -156,7 +157,8 @@ fn measured(inputs: &Inputs) -> Option<State> {
 
 /// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it overran.
 fn next_due(due: u64, end: u64) -> u64 {
-    due + PERIOD * (1 + end.saturating_sub(due) / PERIOD)
+    let overrun = end.saturating_sub(due);
+    due + overrun - beyond(overrun, PERIOD as u16) + PERIOD
 }
 
 impl Timing {

@@ -20,21 +20,18 @@ use crate::deadline::{send, within};
 use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors};
 use crate::link::COMPONENT;
-use crate::link::frame::{FRAME_MAX, Frame, Header, Parser, encode};
+use crate::link::draft::Draft;
+use crate::link::frame::{Frame, Header, Parser};
+use crate::link::message::{self, mode};
 use crate::link::pose::odometry;
 use crate::parameters::table::Name;
-use crate::shared::{Flag, Shared};
+use crate::shared::{Flag, Latest, Shared};
 use controller_core::flight::{ImuSample, PERIOD, Stamped};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
-use mavlink::dialects::common::{
-    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
-    ODOMETRY_DATA,
-};
-use nalgebra::Vector3;
 
 /// Longest that a message may take to go out, us: then the next tick's is due.
 const SENDING_MAX: u64 = 8_000;
@@ -48,10 +45,18 @@ const SILENCE: u64 = 100_000;
 /// Pause before the line is asked again, us.
 const RETRY: u64 = 1_000;
 
+/// HIL_ACTUATOR_CONTROLS_FLAGS_LOCKSTEP.
+const LOCKSTEP: u64 = 1;
+
+/// HIL_SENSOR: accelerometer and gyro are known, all axes.
+const INERTIAL: u32 = 0b11_1111;
+
 /// The exchange with the simulator: whether there is one, and how far it is.
 pub struct Hil<M: RawMutex> {
     state: Mutex<M, Cell<State>>,
-    outgoing: Signal<M, Stamped<MotorCommand>>,
+    command: Latest<M, MotorCommand>,
+    /// There is a new command.
+    outgoing: Signal<M, ()>,
 }
 
 #[derive(Clone, Copy)]
@@ -68,7 +73,7 @@ impl<M: RawMutex> Hil<M> {
     #[must_use]
     pub const fn new() -> Self {
         let state = State { active: false, commanded: 0, awaiting: false };
-        Self { state: Mutex::new(Cell::new(state)), outgoing: Signal::new() }
+        Self { state: Mutex::new(Cell::new(state)), command: Latest::new(), outgoing: Signal::new() }
     }
 
     /// Whether the simulator has sensors and motors.
@@ -85,7 +90,8 @@ impl<M: RawMutex> Hil<M> {
 
     fn command(&self, command: MotorCommand, now: u64) {
         self.state.lock(|state| state.set(State { active: true, commanded: now, awaiting: true }));
-        self.outgoing.signal(Stamped { value: command, time: now });
+        self.command.put(command, now);
+        self.outgoing.signal(());
     }
 
     /// When what an answer with this time says is true, us; none for one that nothing was asked for.
@@ -132,15 +138,17 @@ impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
 
 /// Sends the simulator each command that [`SelectedMotors`] was given, for ever.
 pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &impl Clock, shared: &Shared<M>) -> ! {
-    let mut buffer = [0; FRAME_MAX];
+    let mut draft = Draft::new();
     let mut sequence: u8 = 0;
     loop {
-        let command = hil.outgoing.wait().await;
+        hil.outgoing.wait().await;
+        let Some(command) = hil.command.take() else { continue };
         let system = shared.parameters.get(Name::SystemId) as u8;
         let header = Header { system, component: COMPONENT, sequence };
         sequence = sequence.wrapping_add(1);
+        controls(&mut draft, &command);
         // What does not go out is not answered, and shows as sensors that grow old.
-        send(&mut line, clock, SENDING_MAX, encode(header, &controls(&command), &mut buffer)).await;
+        send(&mut line, clock, SENDING_MAX, draft.finish(header)).await;
     }
 }
 
@@ -154,32 +162,33 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
             continue;
         };
         let now = clock.now();
-        for byte in chunk.iter().take(count) {
-            let mut next = parser.push(*byte, now);
-            while let Some(frame) = next {
-                take(hil, &frame, shared);
-                next = parser.next_frame();
-            }
-        }
+        parser.feed(chunk.get(..count).unwrap_or(&chunk), now, &mut |frame| take(hil, frame, shared));
     }
 }
 
 /// Acts on one frame, if it is one of the two and answers a command.
 fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, shared: &Shared<M>) {
-    if let Some(message) = frame.decode::<HIL_SENSOR_DATA>() {
-        if let (Some(sample), Some(time)) = (sample(&message), hil.stamp(message.time_usec)) {
-            shared.imu.put(sample, time);
-            hil.answered(message.time_usec);
+    // Both begin with the time.
+    let asked = frame.u64(0);
+    let Some(time) = hil.stamp(asked) else { return };
+    match frame.message {
+        message::HIL_SENSOR if frame.is_whole() => {
+            if let Some(sample) = sample(frame) {
+                shared.imu.put(sample, time);
+                hil.answered(asked);
+            }
         }
-    } else if let Some(message) = frame.decode::<ODOMETRY_DATA>()
-        && let (Ok(pose), Some(time)) = (odometry(&message), hil.stamp(message.time_usec))
-    {
-        shared.pose.put(pose, time);
+        message::ODOMETRY => {
+            if let Ok(pose) = odometry(frame) {
+                shared.pose.put(pose, time);
+            }
+        }
+        _ => {}
     }
 }
 
-/// The message that tells the simulator a command.
-fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
+/// Drafts the message that tells the simulator a command.
+fn controls(draft: &mut Draft, command: &Stamped<MotorCommand>) {
     let mut controls = [0.0; 16];
     match command.value {
         MotorCommand::Stop => {}
@@ -194,27 +203,15 @@ fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
             }
         }
     }
-    let mut mode = MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED;
-    mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, command.value != MotorCommand::Stop);
-    let flags = HilActuatorControlsFlags::HIL_ACTUATOR_CONTROLS_FLAGS_LOCKSTEP;
-    HIL_ACTUATOR_CONTROLS_DATA { time_usec: command.time, flags, controls, mode }
+    let armed = if command.value == MotorCommand::Stop { 0 } else { mode::ARMED };
+    let draft = draft.begin(message::HIL_ACTUATOR_CONTROLS).bytes(&command.time.to_le_bytes());
+    draft.bytes(&LOCKSTEP.to_le_bytes()).floats(&controls).bytes(&[mode::HIL | armed]);
 }
 
 /// What the sensors say, if the simulator knows all of it.
-fn sample(message: &HIL_SENSOR_DATA) -> Option<ImuSample> {
-    use HilSensorUpdatedFlags as Field;
-    let inertial = Field::HIL_SENSOR_UPDATED_XACC
-        | Field::HIL_SENSOR_UPDATED_YACC
-        | Field::HIL_SENSOR_UPDATED_ZACC
-        | Field::HIL_SENSOR_UPDATED_XGYRO
-        | Field::HIL_SENSOR_UPDATED_YGYRO
-        | Field::HIL_SENSOR_UPDATED_ZGYRO;
-    let gyro = Vector3::new(message.xgyro, message.ygyro, message.zgyro);
-    let accelerometer = Vector3::new(message.xacc, message.yacc, message.zacc);
-    let whole = message.fields_updated.contains(inertial) && finite(&gyro) && finite(&accelerometer);
+fn sample(message: &Frame<'_>) -> Option<ImuSample> {
+    // Time, accelerometer, gyro, seven numbers of other sensors, which of all these are known.
+    let (accelerometer, gyro, known) = (message.vector(8), message.vector(20), message.u32(60));
+    let whole = known & INERTIAL == INERTIAL && message.are_finite(8, 6);
     whole.then(|| ImuSample { angular_velocity: frames::body(&gyro), specific_force: frames::body(&accelerometer) })
-}
-
-fn finite(vector: &Vector3<f32>) -> bool {
-    vector.iter().all(|component| component.is_finite())
 }

@@ -30,8 +30,8 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
         if sample.is_ok() != healthy {
             healthy = sample.is_ok();
             match sample {
-                Ok(_) => shared.announce(Severity::Information, "IMU answers again"),
-                Err(Fault) => shared.announce(Severity::Critical, "IMU does not answer"),
+                Ok(_) => shared.announce(Severity::Information, &["IMU answers again"]),
+                Err(Fault) => shared.announce(Severity::Critical, &["IMU does not answer"]),
             }
         }
     }

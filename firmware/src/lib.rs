@@ -19,6 +19,7 @@
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
+//! | [`time`] | times divided |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; a board's binary (`src/bin`) lists them by
 //! priority and runs them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
@@ -45,3 +46,4 @@ pub mod parameters;
 pub mod replay;
 pub mod shared;
 pub mod status;
+pub mod time;

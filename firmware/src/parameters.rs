@@ -8,9 +8,8 @@
 pub mod storage;
 pub mod table;
 
-use crate::shared::Decimal;
-use core::cell::Cell;
-use embassy_sync::blocking_mutex::Mutex;
+use crate::shared::Text;
+use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use table::{Name, PARAMETERS};
@@ -31,7 +30,8 @@ const DEFAULTS: Values = {
 
 /// The present values.
 pub struct Parameters<M: RawMutex> {
-    values: Mutex<M, Cell<Values>>,
+    /// The numbers' bits. Each stands alone: nobody needs two that belong together.
+    values: [AtomicU32; PARAMETERS.len()],
     /// Something changed since it was last saved.
     changed: Signal<M, ()>,
 }
@@ -43,11 +43,13 @@ pub struct OutOfRange(
     pub Name,
 );
 
-impl core::fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+impl OutOfRange {
+    /// What is allowed, in words.
+    #[must_use]
+    pub fn text(self) -> Text {
         let row = self.0.row();
-        let (least, most) = (Decimal(row.least), Decimal(row.most));
-        write!(f, "{}: allowed are {least} to {most} {}", row.name, row.unit)
+        let (least, most) = (Text::decimal(row.least), Text::decimal(row.most));
+        Text::new(&[row.name, ": allowed are ", least.as_str(), " to ", most.as_str(), " ", row.unit])
     }
 }
 
@@ -55,18 +57,24 @@ impl<M: RawMutex> Parameters<M> {
     /// The defaults.
     #[must_use]
     pub const fn new() -> Self {
-        Self { values: Mutex::new(Cell::new(DEFAULTS)), changed: Signal::new() }
+        let mut values = [const { AtomicU32::new(0) }; PARAMETERS.len()];
+        let mut index = 0;
+        while index < PARAMETERS.len() {
+            values[index] = AtomicU32::new(DEFAULTS[index].to_bits());
+            index += 1;
+        }
+        Self { values, changed: Signal::new() }
     }
 
     /// The present values, in the table's order.
     fn all(&self) -> Values {
-        self.values.lock(Cell::get)
+        self.values.each_ref().map(|value| f32::from_bits(value.load(Ordering::Relaxed)))
     }
 
     /// The present value.
     #[must_use]
     pub fn get(&self, name: Name) -> f32 {
-        self.all()[name as usize]
+        f32::from_bits(self.values[name as usize].load(Ordering::Relaxed))
     }
 
     /// Changes a value, to be saved when that is possible.
@@ -84,11 +92,7 @@ impl<M: RawMutex> Parameters<M> {
         if !name.row().allows(value) {
             return Err(OutOfRange(name));
         }
-        self.values.lock(|cell| {
-            let mut values = cell.get();
-            values[name as usize] = value;
-            cell.set(values);
-        });
+        self.values[name as usize].store(value.to_bits(), Ordering::Relaxed);
         Ok(())
     }
 }

@@ -22,21 +22,22 @@
 mod event;
 mod flag;
 mod latest;
+mod queue;
 mod report;
 
-pub use event::{Decimal, Event, Severity, TEXT_MAX, Text};
+pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
+pub use queue::{Full, Queue};
 pub use report::{Report, Timing, Traffic};
 
-use crate::link::Reply;
+use crate::link::{CommandResult, Reply};
 use crate::parameters::Parameters;
 use controller_core::flight::{ImuSample, Pose, Refusal, Request};
 use controller_core::governor::Setpoint;
-use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use embassy_sync::channel::Channel;
+use embassy_sync::signal::Signal;
 
 /// Requests that wait for control, which takes one a tick.
 pub const REQUESTS: usize = 4;
@@ -44,7 +45,7 @@ pub const REQUESTS: usize = 4;
 /// Events that wait to be sent or logged.
 pub const EVENTS: usize = 8;
 
-/// Replies that wait to be sent.
+/// Replies that wait to be sent, and as many answers of control: more than there can be requests on their way.
 pub const REPLIES: usize = 8;
 
 /// Who asked for something, and by which command: enough to answer.
@@ -67,15 +68,6 @@ pub struct Asked {
     pub origin: Origin,
 }
 
-/// What control says to a request.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
-    /// Who asked.
-    pub origin: Origin,
-    /// Done, or why not.
-    pub result: Result<(), Refusal>,
-}
-
 /// Everything that passes between tasks.
 pub struct Shared<M: RawMutex> {
     /// The newest inertial sample, with its data-ready time.
@@ -87,11 +79,11 @@ pub struct Shared<M: RawMutex> {
     /// The newest setpoint. An unread one is replaced: only the last counts.
     pub setpoint: Latest<M, Setpoint>,
     /// Requests for control, in the order they came. Put them in with [`Self::request`].
-    pub requests: Channel<M, Asked, REQUESTS>,
+    pub requests: Queue<M, Asked, REQUESTS>,
     /// Raised by a disarm command, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
     pub disarm: Flag,
-    /// Answers to requests: room for one to each request on its way.
-    pub answers: Channel<M, Answer, REQUESTS>,
+    /// Answers to requests. Put them in with [`Self::answer`].
+    pub answers: Queue<M, Reply, REPLIES>,
     /// The battery, V.
     pub voltage: Latest<M, f32>,
     /// What the last control tick did.
@@ -99,13 +91,15 @@ pub struct Shared<M: RawMutex> {
     /// What the link received.
     pub traffic: Latest<M, Traffic>,
     /// Events on their way to the ground station.
-    pub events: Channel<M, Event, EVENTS>,
+    pub events: Queue<M, Event, EVENTS>,
     /// The same events on their way to the log.
-    pub log: Channel<M, Event, EVENTS>,
+    pub log: Queue<M, Event, EVENTS>,
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
     pub hil: Flag,
-    /// What the receiving half of the link gives the sending half to say.
-    pub replies: Channel<M, Reply, REPLIES>,
+    /// What the receiving half of the link gives the sending half to say. Put it in with [`Self::reply`].
+    pub replies: Queue<M, Reply, REPLIES>,
+    /// There is something new among answers, events and replies.
+    pub outgoing: Signal<M, ()>,
     /// What may be set from the ground.
     pub parameters: Parameters<M>,
     /// Events that found one of the queues full.
@@ -121,16 +115,17 @@ impl<M: RawMutex> Shared<M> {
             pose: Latest::new(),
             ground_station: Latest::new(),
             setpoint: Latest::new(),
-            requests: Channel::new(),
+            requests: Queue::new(),
             disarm: Flag::new(),
-            answers: Channel::new(),
+            answers: Queue::new(),
             voltage: Latest::new(),
             report: Latest::new(),
             traffic: Latest::new(),
-            events: Channel::new(),
-            log: Channel::new(),
+            events: Queue::new(),
+            log: Queue::new(),
             hil: Flag::new(),
-            replies: Channel::new(),
+            replies: Queue::new(),
+            outgoing: Signal::new(),
             parameters: Parameters::new(),
             lost: AtomicU32::new(0),
         }
@@ -139,35 +134,44 @@ impl<M: RawMutex> Shared<M> {
     /// Asks control for something.
     ///
     /// # Errors
-    /// Gives the request back if too many wait already; the sender is to be told to try again.
-    pub fn request(&self, asked: Asked) -> Result<(), Asked> {
-        self.requests.try_send(asked).map_err(|embassy_sync::channel::TrySendError::Full(asked)| asked)
+    /// [`Full`] if too many wait already; the sender is to be told to try again.
+    pub fn request(&self, asked: Asked) -> Result<(), Full> {
+        self.requests.put(asked)
     }
 
     /// Disarms within one tick. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
     pub fn request_disarm(&self) {
-        while let Ok(Asked { origin, .. }) = self.requests.try_receive() {
-            self.answer(Answer { origin, result: Err(Refusal::DisarmCommanded) });
+        while let Some(Asked { origin, .. }) = self.requests.take() {
+            self.answer(origin, Err(Refusal::DisarmCommanded));
         }
         self.disarm.raise();
     }
 
     /// Answers a request, and announces a refusal in words. An answer that finds no room is dropped: its sender asks again
     /// for want of one.
-    pub fn answer(&self, answer: Answer) {
-        if let Err(refusal) = answer.result {
-            self.announce(Severity::Warning, refusal);
+    pub fn answer(&self, origin: Origin, result: Result<(), Refusal>) {
+        if let Err(refusal) = result {
+            self.announce(Severity::Warning, &refusal.words());
         }
-        let _ = self.answers.try_send(answer);
+        let result = if result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
+        let _ = self.answers.put(Reply::Command { origin, result });
+        self.outgoing.signal(());
     }
 
-    /// Tells people: the ground station and the log. Where a queue is full the event is dropped and counted: what came
+    /// Replies to somebody on the line. Without room the sender gets no reply, and asks again.
+    pub fn reply(&self, reply: Reply) {
+        let _ = self.replies.put(reply);
+        self.outgoing.signal(());
+    }
+
+    /// Tells people, by a line of these pieces: the ground station and the log. Where a queue is full the event is dropped and counted: what came
     /// first is the cause, what follows is mostly its consequence.
-    pub fn announce(&self, severity: Severity, words: impl fmt::Display) {
+    pub fn announce(&self, severity: Severity, words: &[&str]) {
         let event = Event { severity, text: Text::new(words) };
-        if self.events.try_send(event.clone()).is_err() | self.log.try_send(event).is_err() {
+        if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
+        self.outgoing.signal(());
     }
 
     /// Events that were dropped for want of room.

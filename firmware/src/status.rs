@@ -14,7 +14,8 @@ mod log;
 
 use crate::hardware::{Battery, Clock, Light};
 use crate::parameters::table::Name;
-use crate::shared::{Decimal, Severity, Shared};
+use crate::shared::{Severity, Shared, Text};
+use crate::time::{beyond, milliseconds};
 use controller_core::flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -43,7 +44,7 @@ pub const REPORT_AGE_MAX: u64 = 1_000_000;
 #[must_use]
 pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
     // Steps into the present second, 0 to 19.
-    let step = now / STEP % (1_000_000 / STEP);
+    let step = milliseconds(now) % 1000 / (STEP / 1000) as u32;
     match mode {
         Some(Mode::Disarmed) => step == 0,
         Some(Mode::MotorTest) => step == 0 || step == 4,
@@ -70,7 +71,7 @@ pub async fn run<M: RawMutex>(
             reading = now.saturating_add(BATTERY_INTERVAL);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
-        while let Ok(event) = shared.log.try_receive() {
+        while let Some(event) = shared.log.take() {
             log::event(&event);
         }
         if now >= summary {
@@ -78,7 +79,8 @@ pub async fn run<M: RawMutex>(
             log::summary(report.as_ref(), shared);
         }
         // By whole steps, so that the pattern does not drift through the second.
-        clock.until((clock.now() / STEP + 1) * STEP).await;
+        let now = clock.now();
+        clock.until(now - beyond(now, STEP as u16) + STEP).await;
     }
 }
 
@@ -93,6 +95,6 @@ async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, sh
     shared.voltage.put(voltage, now);
     if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
         *warning = now.saturating_add(WARNING_INTERVAL);
-        shared.announce(Severity::Warning, format_args!("Battery low: {} V", Decimal(voltage)));
+        shared.announce(Severity::Warning, &["Battery low: ", Text::decimal(voltage).as_str(), " V"]);
     }
 }

@@ -14,14 +14,14 @@ use mavlink::dialects::common::{HIL_ACTUATOR_CONTROLS_DATA, MavModeFlag};
 use support::line::{Delivery, Incoming, Line, Outgoing};
 use support::receiver::Local;
 use support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
-use support::{Simulated, v2};
+use support::{Simulated, decode, v2};
 
 /// Every command in what was written.
 fn sent(written: &RefCell<Vec<u8>>) -> Vec<HIL_ACTUATOR_CONTROLS_DATA> {
     let mut parser = Parser::new();
     let mut found = Vec::new();
     for &byte in written.borrow().iter() {
-        found.extend(parser.push(byte, 0).and_then(|frame| frame.decode()));
+        found.extend(parser.push(byte, 0).and_then(|frame| decode(&frame)));
     }
     found
 }

@@ -2,17 +2,18 @@
 
 mod support;
 
-use controller_core::flight::{ImuSample, Mode, MotorTest, Refusal, Request};
+use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, Watchdog};
 use firmware::hil::SelectedMotors;
 use firmware::imu;
+use firmware::link::{CommandResult, Reply};
 use firmware::shared::{Asked, Flag, Origin};
 use mavlink::dialects::common::ATT_POS_MOCAP_DATA;
 use nalgebra::Vector3;
 use static_cell::StaticCell;
-use support::receiver::{Fed, Local};
+use support::receiver::{Fed, Local, texts};
 use support::simulator::{Hil, Pins, now, odometry};
 use support::{Simulated, v2};
 
@@ -78,7 +79,7 @@ impl Watchdog for Bench {
 
 /// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being wanted
 /// from 45 ms on; and the answer.
-fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, Result<(), Refusal>) {
+fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, CommandResult, Vec<String>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
     let place = Box::leak(Box::new(StaticCell::new()));
     let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
@@ -103,22 +104,24 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, Result<(), R
     });
     assert!(hil.active());
     assert_eq!(shared.report.get().unwrap().value.mode, Mode::Disarmed);
-    (pins.0, shared.answers.try_receive().unwrap().result)
+    let Some(Reply::Command { result, .. }) = shared.answers.take() else { panic!("no answer") };
+    (pins.0, result, texts(&shared))
 }
 
 #[test]
 fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
     // Both between the same two ticks: neither finds the other done.
-    let (pins, answer) = handed_over(Request::Arm, 45_000);
+    let (pins, answer, texts) = handed_over(Request::Arm, 45_000);
     assert_eq!(pins, [MotorCommand::Stop; 9]);
-    assert_eq!(answer, Err(Refusal::DisarmCommanded));
+    assert_eq!(answer, CommandResult::Denied);
+    assert_eq!(texts, ["Refused: disarm commanded"]);
 }
 
 #[test]
 fn a_motor_test_ends_where_the_simulator_is_asked_for() {
     let test = MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 };
-    let (pins, answer) = handed_over(Request::MotorTest(test), 15_000);
+    let (pins, answer, _) = handed_over(Request::MotorTest(test), 15_000);
     assert_eq!(pins[1..4], [MotorCommand::One { motor: 1, level: 0.1 }; 3]);
     assert_eq!(pins[4..], [MotorCommand::Stop; 5]);
-    assert_eq!(answer, Ok(()));
+    assert_eq!(answer, CommandResult::Accepted);
 }

@@ -1,5 +1,7 @@
 //! The link's two tasks on lines that deliver in pieces, fail, end or take nothing more.
 
+#![expect(deprecated, reason = "PING is, and is still sent")]
+
 mod support;
 
 use controller_core::flight::{Mode, Refusal};
@@ -11,17 +13,17 @@ use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::link::{CommandResult, Reply};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Answer, Event, Origin, Report, Severity, Text, Timing};
+use firmware::shared::{Event, Origin, Report, Severity, Text, Timing, Traffic};
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA,
-    SYS_STATUS_DATA,
+    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, PING_DATA,
+    STATUSTEXT_DATA, SYS_STATUS_DATA,
 };
 use mavlink::{MavlinkVersion, MessageData};
 use nalgebra::{Quaternion, Vector3};
 use support::line::{Delivery, Incoming, Line, Outgoing};
 use support::receiver::{Local, report};
-use support::{Simulated, v2};
+use support::{Simulated, decode, v2};
 
 fn disarm(sequence: u8) -> Vec<u8> {
     v2(sequence, &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..Default::default() })
@@ -72,7 +74,7 @@ fn sent<D: MessageData>(written: &RefCell<Vec<u8>>) -> Vec<D> {
     let mut found = Vec::new();
     for &byte in written.borrow().iter() {
         let frame = parser.push(byte, 0);
-        found.extend(frame.and_then(|frame| frame.decode()));
+        found.extend(frame.and_then(|frame| decode(&frame)));
     }
     assert_eq!(parser.discarded(), 0);
     found
@@ -157,6 +159,7 @@ fn the_battery_is_told_while_it_is_known() {
     let shared = Local::new();
     let written = transmitted(&shared, 3_000_000, |now| {
         flying(&shared, now);
+        shared.traffic.put(Traffic { refused: 70_000, ..Default::default() }, now);
         if now == 500_000 {
             shared.voltage.put(11.1, now);
         }
@@ -164,17 +167,26 @@ fn the_battery_is_told_while_it_is_known() {
     let statuses: Vec<SYS_STATUS_DATA> = sent(&written);
     let voltages: Vec<_> = statuses.iter().map(|status| status.voltage_battery).collect();
     assert_eq!(voltages, [u16::MAX, 11_100, u16::MAX]);
-    assert_eq!(statuses[2].load, 250);
+    let expected = SYS_STATUS_DATA {
+        load: 250,
+        voltage_battery: u16::MAX,
+        current_battery: -1,
+        errors_comm: u16::MAX,
+        battery_remaining: -1,
+        ..statuses[2].clone()
+    };
+    assert_eq!(statuses[2], expected);
+    assert!(statuses[2].onboard_control_sensors_present.is_empty() && statuses[2].drop_rate_comm == 0);
 }
 
 #[test]
 fn commands_are_answered_with_number_result_and_addressee() {
     let shared = Local::new();
     let origin = Origin { system: 255, component: 190, command: 400 };
-    shared.answer(Answer { origin, result: Ok(()) });
-    shared.answer(Answer { origin, result: Err(Refusal::PoseStale) });
+    shared.answer(origin, Ok(()));
+    shared.answer(origin, Err(Refusal::PoseStale));
     let unknown = Origin { command: 65_000, ..origin };
-    shared.replies.try_send(Reply::Command { origin: unknown, result: CommandResult::Unsupported }).unwrap();
+    shared.replies.put(Reply::Command { origin: unknown, result: CommandResult::Unsupported }).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
     let mut parser = Parser::new();
     let mut payloads = Vec::new();
@@ -196,9 +208,43 @@ fn commands_are_answered_with_number_result_and_addressee() {
 }
 
 #[test]
+fn what_is_said_to_an_idle_line_goes_out_at_once() {
+    let origin = Origin { system: 255, component: 190, command: 400 };
+    let say: [(fn(&Local, Origin), u32); 3] = [
+        (|shared, origin| shared.answer(origin, Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared, _| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
+        (|shared, _| shared.announce(Severity::Information, &["now"]), STATUSTEXT_DATA::ID),
+    ];
+    for (say, message) in say {
+        let shared = Local::new();
+        // The next heartbeat is due at a second; telemetry has nothing to tell.
+        shared.parameters.set(Name::TelemetryRate, 10.0).unwrap();
+        let written = transmitted(&shared, 460_000, |now| {
+            if now == 455_000 {
+                say(&shared, origin);
+            }
+        });
+        let mut parser = Parser::new();
+        let mut sent = Vec::new();
+        parser.feed(&written.borrow(), 0, &mut |frame| sent.push(frame.message));
+        assert_eq!(sent.last(), Some(&message), "{sent:?}");
+    }
+}
+
+#[test]
+fn a_ping_goes_back_to_its_sender_as_it_came() {
+    let shared = Local::new();
+    let (time, sequence, system, component) = (0x0102_0304_0506_0708, 0x090A_0B0C, 255, 190);
+    shared.replies.put(Reply::Ping { time, sequence, system, component }).unwrap();
+    let pings: Vec<PING_DATA> = sent(&transmitted(&shared, 100_000, |_| ()));
+    let expected = PING_DATA { time_usec: time, seq: sequence, target_system: system, target_component: component };
+    assert_eq!(pings, [expected]);
+}
+
+#[test]
 fn every_parameter_is_listed_with_its_place() {
     let shared = Local::new();
-    shared.replies.try_send(Reply::AllParameters).unwrap();
+    shared.replies.put(Reply::AllParameters).unwrap();
     let values: Vec<PARAM_VALUE_DATA> = sent(&transmitted(&shared, 1_000_000, |_| ()));
     assert_eq!(values.len(), PARAMETERS.len());
     for (index, (value, row)) in values.iter().zip(&PARAMETERS).enumerate() {
@@ -211,7 +257,7 @@ fn every_parameter_is_listed_with_its_place() {
 fn too_many_events_lose_the_last_ones_and_say_how_many() {
     let shared = Local::new();
     for number in 0..11 {
-        shared.announce(Severity::Information, number);
+        shared.announce(Severity::Information, &[Text::count(number).as_str()]);
     }
     let texts: Vec<STATUSTEXT_DATA> = sent(&transmitted(&shared, 2_000_000, |_| ()));
     let texts: Vec<_> = texts.iter().map(|text| text.text.to_str().unwrap()).collect();
@@ -228,8 +274,8 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     let mut waiting = Vec::new();
     clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, &shared), |now| {
         flying(&shared, now);
-        let text = Text::new("one of many");
-        if shared.events.try_send(Event { severity: Severity::Warning, text }).is_ok() {
+        let text = Text::new(&["one of many"]);
+        if shared.events.put(Event { severity: Severity::Warning, text }).is_ok() {
             waiting.push(now);
         }
     });

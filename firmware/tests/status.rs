@@ -6,7 +6,7 @@ use controller_core::flight::Mode;
 use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;
-use firmware::shared::{Decimal, Flag, Severity, TEXT_MAX, Text};
+use firmware::shared::{Flag, Severity, TEXT_MAX, Text};
 use firmware::status::{STEP, is_lit, run};
 use std::cell::RefCell;
 use support::Simulated;
@@ -67,7 +67,7 @@ fn the_battery_is_read_and_warned_of_when_low() {
     assert!(voltage.value == 10.4 && voltage.time > 14_500_000);
     assert_eq!(texts(&shared), ["Battery low: 10.4 V"; 2]);
     // The log has been emptied of them.
-    assert!(shared.log.is_empty());
+    assert!(shared.log.take().is_none());
 }
 
 #[test]
@@ -83,14 +83,23 @@ fn a_battery_that_does_not_answer_or_reads_nonsense_stops_nothing() {
 #[test]
 fn texts_are_cut_at_whole_characters() {
     let long = "x".repeat(TEXT_MAX - 1);
-    assert_eq!(Text::new(format_args!("{long}äb")).as_str(), long);
-    assert_eq!(Text::new(format_args!("{long}ab")).as_str(), format!("{long}a"));
+    assert_eq!(Text::new(&[&long, "äb"]).as_str(), long);
+    assert_eq!(Text::new(&[&long, "ab"]).as_str(), format!("{long}a"));
+    // Nothing is said behind a gap.
+    assert_eq!(Text::new(&[&long, "ä", "b"]).as_str(), long);
 }
 
 #[test]
 fn numbers_are_written_with_one_decimal() {
-    let written: Vec<_> = [0.0, 0.04, 0.06, 9.96, -1.25, 250.0].map(|number| Decimal(number).to_string()).into();
-    assert_eq!(written, ["0.0", "0.0", "0.1", "10.0", "-1.3", "250.0"]);
+    let written = [0.0, 0.04, 0.06, 9.96, -1.25, 250.0].map(Text::decimal);
+    assert_eq!(written.each_ref().map(Text::as_str), ["0.0", "0.0", "0.1", "10.0", "-1.3", "250.0"]);
+}
+
+#[test]
+fn counts_are_written_whole() {
+    for number in [0, 7, 10, 305, u32::MAX] {
+        assert_eq!(Text::count(number).as_str(), number.to_string());
+    }
 }
 
 #[test]
@@ -106,7 +115,7 @@ fn a_flag_is_taken_once() {
 fn events_without_room_are_counted() {
     let shared = Local::new();
     for _ in 0..20 {
-        shared.announce(Severity::Critical, "again");
+        shared.announce(Severity::Critical, &["again"]);
     }
     assert_eq!(shared.lost_events(), 20 - firmware::shared::EVENTS as u32);
 }

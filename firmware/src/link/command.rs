@@ -6,22 +6,19 @@
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 176 DO_SET_MODE | guided flight is the only mode there is; with the HIL flag, while disarmed: sensors from a simulator |
 //! | any other | is answered as unsupported |
-//!
-//! Commands are read from the payload itself: the dialect's type holds known commands only, and unknown ones have to be
-//! answered too.
 
 use super::frame::{Frame, Header};
+use super::message::mode;
 use super::reply::CommandResult;
 use crate::hardware::MOTORS;
 use controller_core::flight::{MotorTest, Request};
-use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavModeFlag};
 
 /// MAV_CMD_COMPONENT_ARM_DISARM.
-pub const ARM_DISARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
+pub const ARM_DISARM: u16 = 400;
 /// MAV_CMD_DO_MOTOR_TEST.
-pub const MOTOR_TEST: u16 = MavCmd::MAV_CMD_DO_MOTOR_TEST as u16;
+pub const MOTOR_TEST: u16 = 209;
 /// MAV_CMD_DO_SET_MODE.
-pub const SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+pub const SET_MODE: u16 = 176;
 
 /// MOTOR_TEST_THROTTLE_PERCENT.
 const THROTTLE_PERCENT: f32 = 0.0;
@@ -39,26 +36,13 @@ pub struct Command {
     pub parameters: [f32; 7],
     /// MAV_CMD.
     pub command: u16,
-    /// Whom it is for; 0 is everyone.
-    pub target_system: u8,
-    /// Which component; 0 is all of them.
-    pub target_component: u8,
 }
 
 impl Command {
-    /// The command in `frame`, if it is one.
+    /// The command in a COMMAND_LONG.
     #[must_use]
-    pub fn from_frame(frame: &Frame<'_>) -> Option<Self> {
-        if !frame.holds::<COMMAND_LONG_DATA>() {
-            return None;
-        }
-        let parameter = |index: usize| f32::from_le_bytes(core::array::from_fn(|byte| frame.byte(4 * index + byte)));
-        Some(Self {
-            parameters: core::array::from_fn(parameter),
-            command: u16::from_le_bytes([frame.byte(28), frame.byte(29)]),
-            target_system: frame.byte(30),
-            target_component: frame.byte(31),
-        })
+    pub fn from_frame(frame: &Frame<'_>) -> Self {
+        Self { parameters: core::array::from_fn(|index| frame.f32(4 * index)), command: frame.u16(28) }
     }
 }
 
@@ -91,7 +75,7 @@ pub fn action(command: &Command, armed: bool) -> Action {
                 Some(number) if one && second == THROTTLE_PERCENT && third.is_finite() && fourth.is_finite() => {
                     // What is too much or too long is the flight rules' to refuse; negative ones become zero, which is
                     // refused as well.
-                    let (level, duration) = (third / 100.0, (fourth * 1e6) as u64);
+                    let (level, duration) = (third / 100.0, u64::from((fourth * 1e6) as u32));
                     Action::Ask(Request::MotorTest(MotorTest { rotor: number - 1, level, duration }))
                 }
                 _ => denied,
@@ -107,15 +91,11 @@ fn set_mode(base: f32, custom: f32, armed: bool) -> Action {
     if !(0.0..=255.0).contains(&base) {
         return denied;
     }
-    let base = MavModeFlag::from_bits_retain(base as u8);
-    if base.contains(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED) {
+    let base = base as u8;
+    if base & mode::HIL != 0 {
         return if armed { denied } else { Action::EnterHil };
     }
-    let guided = if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
-        custom == CUSTOM_OFFBOARD
-    } else {
-        base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED)
-    };
+    let guided = if base & mode::CUSTOM != 0 { custom == CUSTOM_OFFBOARD } else { base & mode::GUIDED != 0 };
     if guided { Action::Answer(CommandResult::Accepted) } else { denied }
 }
 

@@ -1,4 +1,4 @@
-//! MAVLink frames: found in a stream of bytes, checked, and written.
+//! MAVLink frames: found in a stream of bytes, and checked.
 //!
 //! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions. Whatever
 //! is not a frame (noise, truncated frames, frames of other dialects) is given up from its first byte only, and the bytes
@@ -14,8 +14,9 @@
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
-use mavlink::dialects::common::MavMessage;
-use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, MessageData, calculate_crc};
+use super::checksum::{checksum, extra};
+use super::message::LENGTHS;
+use nalgebra::Vector3;
 
 /// The longest frame: version 2, 255 bytes of payload, signed.
 pub const FRAME_MAX: usize = 280;
@@ -24,15 +25,29 @@ pub const FRAME_MAX: usize = 280;
 /// refused.
 pub const FRAME_AGE_MAX: u64 = 100_000;
 
+/// First byte of a version 1 frame.
+const START_V1: u8 = 0xFE;
+/// First byte of a version 2 frame.
+pub(super) const START_V2: u8 = 0xFD;
 /// Bytes before the payload: start, length, sequence, system, component, message.
 const HEADER_V1: usize = 6;
 /// Bytes before the payload: start, length, two of flags, sequence, system, component, three of message.
-const HEADER_V2: usize = 10;
-const CHECKSUM: usize = 2;
+pub(super) const HEADER_V2: usize = 10;
+/// Bytes of the checksum behind the payload.
+pub(super) const CHECKSUM: usize = 2;
 const SIGNATURE: usize = 13;
 
 /// The only incompatibility flag that is understood: a signature follows. It is not verified.
 const SIGNED: u8 = 1;
+
+/// The protocol's version of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Version {
+    /// All fields, no extensions.
+    V1,
+    /// Zeros are cut off the end.
+    V2,
+}
 
 /// Who sends, and in which order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +64,7 @@ pub struct Header {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Protocol version.
-    pub version: MavlinkVersion,
+    pub version: Version,
     /// Who sent it.
     pub header: Header,
     /// The message's number.
@@ -63,22 +78,63 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Whether the message is of this type. Version 1 does not cut fields off: there, shorter payloads are something else.
+    /// Whether all fields are there of a message that is read here. Version 1 does not cut fields off: there, a shorter
+    /// payload is something else.
     #[must_use]
-    pub fn holds<D: MessageData>(&self) -> bool {
-        self.message == D::ID && (self.version == MavlinkVersion::V2 || self.payload.len() >= D::ENCODED_LEN)
+    pub fn is_whole(&self) -> bool {
+        let cut = |&(message, length): &(u32, usize)| self.message == message && self.payload.len() < length;
+        self.version == Version::V2 || !LENGTHS.iter().any(cut)
     }
 
-    /// The message, if it is of this type and its enumerations are known ones. Fields cut off are zero.
+    /// Bytes of the payload; zero where version 2 has cut them off.
     #[must_use]
-    pub fn decode<D: MessageData>(&self) -> Option<D> {
-        if self.holds::<D>() { D::deser(self.version, self.payload).ok() } else { None }
+    pub fn bytes<const COUNT: usize>(&self, offset: usize) -> [u8; COUNT] {
+        core::array::from_fn(|index| self.byte(offset + index))
     }
 
-    /// One byte of the payload; zero where version 2 has cut it off.
+    /// One byte of the payload.
     #[must_use]
+    #[inline(never)]
     pub fn byte(&self, offset: usize) -> u8 {
         self.payload.get(offset).copied().unwrap_or(0)
+    }
+
+    /// An unsigned number of two bytes.
+    #[must_use]
+    pub fn u16(&self, offset: usize) -> u16 {
+        u16::from_le_bytes(self.bytes(offset))
+    }
+
+    /// An unsigned number of four bytes.
+    #[must_use]
+    #[inline(never)]
+    pub fn u32(&self, offset: usize) -> u32 {
+        u32::from_le_bytes(self.bytes(offset))
+    }
+
+    /// An unsigned number of eight bytes.
+    #[must_use]
+    pub fn u64(&self, offset: usize) -> u64 {
+        u64::from(self.u32(offset)) | u64::from(self.u32(offset + 4)) << 32
+    }
+
+    /// A number in single precision.
+    #[must_use]
+    pub fn f32(&self, offset: usize) -> f32 {
+        f32::from_bits(self.u32(offset))
+    }
+
+    /// Whether `count` of them are neither NaN nor infinite.
+    #[must_use]
+    pub fn are_finite(&self, offset: usize, count: usize) -> bool {
+        (0..count).all(|index| self.f32(offset + 4 * index).is_finite())
+    }
+
+    /// Three of them.
+    #[must_use]
+    #[inline(never)]
+    pub fn vector(&self, offset: usize) -> Vector3<f32> {
+        Vector3::from_fn(|row, _| self.f32(offset + 4 * row))
     }
 }
 
@@ -129,6 +185,17 @@ impl Parser {
         self.next_frame()
     }
 
+    /// Takes all of `bytes`, which arrived at `now` (us), and hands every frame to `act`.
+    pub fn feed(&mut self, bytes: &[u8], now: u64, act: &mut dyn FnMut(&Frame<'_>)) {
+        for &byte in bytes {
+            let mut next = self.push(byte, now);
+            while let Some(frame) = next {
+                act(&frame);
+                next = self.next_frame();
+            }
+        }
+    }
+
     /// A frame that is complete already, if there is another.
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
         self.remove(self.taken);
@@ -170,36 +237,33 @@ impl Default for Parser {
 
 /// Judges the bytes as far as they are there; an empty buffer waits for more.
 fn candidate(bytes: &[u8]) -> Candidate {
-    let (header, extra) = match *bytes {
+    let (header, signature) = match *bytes {
         [] => return Candidate::Incomplete,
-        [MAV_STX, ..] => (HEADER_V1, 0),
-        [MAV_STX_V2] | [MAV_STX_V2, _] => return Candidate::Incomplete,
-        [MAV_STX_V2, _, 0, ..] => (HEADER_V2, 0),
-        [MAV_STX_V2, _, SIGNED, ..] => (HEADER_V2, SIGNATURE),
+        [START_V1, ..] => (HEADER_V1, 0),
+        [START_V2] | [START_V2, _] => return Candidate::Incomplete,
+        [START_V2, _, 0, ..] => (HEADER_V2, 0),
+        [START_V2, _, SIGNED, ..] => (HEADER_V2, SIGNATURE),
         _ => return Candidate::Noise,
     };
     let (Some(&payload), Some(message)) = (bytes.get(1), message(bytes)) else { return Candidate::Incomplete };
     // Messages without such a number, in the dialect or not, cannot be told from noise.
-    let extra_crc = MavMessage::extra_crc(message);
-    if extra_crc == 0 {
-        return Candidate::Noise;
-    }
+    let Some(extra) = extra(message) else { return Candidate::Noise };
     let end = header + usize::from(payload);
     let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
         return Candidate::Incomplete;
     };
-    if calculate_crc(checked, extra_crc) != u16::from_le_bytes([low, high]) {
+    if checksum(checked, extra) != u16::from_le_bytes([low, high]) {
         return Candidate::Noise;
     }
-    let length = end + CHECKSUM + extra;
+    let length = end + CHECKSUM + signature;
     if bytes.len() < length { Candidate::Incomplete } else { Candidate::Frame(length) }
 }
 
 /// The message's number, if the header is there.
 fn message(bytes: &[u8]) -> Option<u32> {
     match *bytes {
-        [MAV_STX, _, _, _, _, message, ..] => Some(message.into()),
-        [MAV_STX_V2, _, _, _, _, _, _, low, middle, high, ..] => Some(u32::from_le_bytes([low, middle, high, 0])),
+        [START_V1, _, _, _, _, message, ..] => Some(message.into()),
+        [START_V2, _, _, _, _, _, _, low, middle, high, ..] => Some(u32::from_le_bytes([low, middle, high, 0])),
         _ => None,
     }
 }
@@ -207,8 +271,8 @@ fn message(bytes: &[u8]) -> Option<u32> {
 /// The parts of a complete frame.
 fn frame(bytes: &[u8], time: u64) -> Option<Frame<'_>> {
     let (version, header, [sequence, system, component]) = match *bytes {
-        [MAV_STX, _, sequence, system, component, ..] => (MavlinkVersion::V1, HEADER_V1, [sequence, system, component]),
-        [_, _, _, _, sequence, system, component, ..] => (MavlinkVersion::V2, HEADER_V2, [sequence, system, component]),
+        [START_V1, _, sequence, system, component, ..] => (Version::V1, HEADER_V1, [sequence, system, component]),
+        [_, _, _, _, sequence, system, component, ..] => (Version::V2, HEADER_V2, [sequence, system, component]),
         _ => return None,
     };
     let end = header + usize::from(*bytes.get(1)?);
@@ -221,43 +285,4 @@ fn frame(bytes: &[u8], time: u64) -> Option<Frame<'_>> {
         checksum: u16::from_le_bytes([low, high]),
         time,
     })
-}
-
-/// Writes `message` as a version 2 frame to `buffer` and returns that part of it.
-pub fn encode<'a, D: MessageData>(header: Header, message: &D, buffer: &'a mut [u8; FRAME_MAX]) -> &'a [u8] {
-    let payload: &mut [u8] = buffer.get_mut(HEADER_V2..).unwrap_or_default();
-    let length = message.ser(MavlinkVersion::V2, payload);
-    finish(header, D::ID, D::EXTRA_CRC, length, buffer)
-}
-
-/// As [`encode`], for the bytes of a payload that the dialect's types cannot express; at most 255 of them are sent.
-pub fn encode_payload<'a>(
-    header: Header,
-    message: u32,
-    extra_crc: u8,
-    payload: &[u8],
-    buffer: &'a mut [u8; FRAME_MAX],
-) -> &'a [u8] {
-    let length = payload.len().min(usize::from(u8::MAX));
-    for (place, byte) in buffer.iter_mut().skip(HEADER_V2).zip(payload) {
-        *place = *byte;
-    }
-    finish(header, message, extra_crc, length, buffer)
-}
-
-/// Puts header and checksum around a payload of `length` bytes.
-fn finish(header: Header, message: u32, extra_crc: u8, length: usize, buffer: &mut [u8; FRAME_MAX]) -> &[u8] {
-    let length = length.min(usize::from(u8::MAX));
-    let [low, middle, high, _] = message.to_le_bytes();
-    let Header { system, component, sequence } = header;
-    let start = [MAV_STX_V2, length as u8, 0, 0, sequence, system, component, low, middle, high];
-    for (place, byte) in buffer.iter_mut().zip(start) {
-        *place = byte;
-    }
-    let end = HEADER_V2 + length;
-    let checksum = calculate_crc(buffer.get(1..end).unwrap_or(&[]), extra_crc).to_le_bytes();
-    for (place, byte) in buffer.iter_mut().skip(end).zip(checksum) {
-        *place = byte;
-    }
-    buffer.get(..end + CHECKSUM).unwrap_or(&[])
 }

@@ -14,13 +14,11 @@
 //! are not looked at (NaN there means unknown).
 
 use super::frame::Frame;
+use super::message::{ATT_POS_MOCAP, LOCAL_NED, ODOMETRY};
 use crate::frames;
 use controller_core::flight::Pose;
 use controller_core::governor::SPEED_RANGE;
 use controller_core::math;
-use core::fmt;
-use mavlink::MessageData;
-use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// How far from the origin a pose is believed, m.
@@ -60,17 +58,19 @@ pub enum PoseRefusal {
     NoTime,
 }
 
-impl fmt::Display for PoseRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "Pose refused: a field is not finite",
-            Self::OutOfRange => "Pose refused: too far away or too fast",
-            Self::NotARotation => "Pose refused: quaternion not of unit length",
-            Self::Frame => "Pose refused: use LOCAL_NED and BODY_FRD",
-            Self::Repeated => "Pose refused: its time does not advance",
-            Self::SecondSource => "Pose refused: another source is in use",
-            Self::NoTime => "Pose refused: ATT_POS_MOCAP without a time",
-        })
+impl PoseRefusal {
+    /// The reason in words, to follow "Pose refused: ".
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::NotFinite => "a field is not finite",
+            Self::OutOfRange => "too far away or too fast",
+            Self::NotARotation => "quaternion not of unit length",
+            Self::Frame => "use LOCAL_NED and BODY_FRD",
+            Self::Repeated => "its time does not advance",
+            Self::SecondSource => "another source is in use",
+            Self::NoTime => "ATT_POS_MOCAP without a time",
+        }
     }
 }
 
@@ -100,22 +100,19 @@ impl Poses {
     /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
     pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Pose>, PoseRefusal> {
         match frame.message {
-            ODOMETRY_DATA::ID => {
-                // The frames are the only fields that can make it undecodable.
-                let message: ODOMETRY_DATA = frame.decode().ok_or(PoseRefusal::Frame)?;
-                let pose = odometry(&message)?;
-                self.listen(frame, message.time_usec)?;
+            ODOMETRY => {
+                let pose = odometry(frame)?;
+                self.listen(frame, frame.u64(0))?;
                 Ok(Some(pose))
             }
-            ATT_POS_MOCAP_DATA::ID => {
-                let Some(message) = frame.decode::<ATT_POS_MOCAP_DATA>() else { return Ok(None) };
-                let attitude = attitude(message.q)?;
-                let position = position(message.x, message.y, message.z)?;
-                if message.time_usec == 0 {
+            ATT_POS_MOCAP => {
+                // Time, attitude, position.
+                let (time, attitude, position) = (frame.u64(0), attitude(frame, 8)?, position(frame, 24)?);
+                if time == 0 {
                     return Err(PoseRefusal::NoTime);
                 }
-                self.listen(frame, message.time_usec)?;
-                let velocity = self.differences.take(position, message.time_usec)?;
+                self.listen(frame, time)?;
+                let velocity = self.differences.take(position, time)?;
                 Ok(velocity.map(|velocity| Pose { position, velocity, attitude }))
             }
             _ => Ok(None),
@@ -162,7 +159,7 @@ impl Differences {
             self.velocity = None;
             return Ok(None);
         };
-        let gap = gap as f32 * 1e-6;
+        let gap = gap as u32 as f32 * 1e-6;
         let difference = (position - last) / gap;
         check(&difference, SPEED_RANGE)?;
         let velocity = match self.velocity {
@@ -174,39 +171,44 @@ impl Differences {
     }
 }
 
+/// MAV_FRAME_BODY_FRD.
+const BODY_FRD: u8 = 12;
+/// MAV_FRAME_LOCAL_FRD.
+const LOCAL_FRD: u8 = 20;
+
 /// The pose in an ODOMETRY message. Its body rates are checked but not used: the gyro is nearer.
-pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
-    let frame = message.frame_id;
-    if !matches!(frame, MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_FRD) {
+pub(crate) fn odometry(message: &Frame<'_>) -> Result<Pose, PoseRefusal> {
+    // Time, position, attitude, velocity, body rates, two covariances, the frames of position and velocity.
+    let (velocity, frame, child) = (message.vector(36), message.byte(228), message.byte(229));
+    if frame != LOCAL_NED && frame != LOCAL_FRD {
         return Err(PoseRefusal::Frame);
     }
-    let velocity = Vector3::new(message.vx, message.vy, message.vz);
-    let rates = Vector3::new(message.rollspeed, message.pitchspeed, message.yawspeed);
+    if !message.are_finite(36, 6) {
+        return Err(PoseRefusal::NotFinite);
+    }
     check(&velocity, SPEED_RANGE)?;
-    check(&rates, f32::MAX)?;
-    let position = position(message.x, message.y, message.z)?;
-    let attitude = attitude(message.q)?;
-    let velocity = match message.child_frame_id {
-        MavFrame::MAV_FRAME_BODY_FRD => UnitQuaternion::new_unchecked(attitude) * frames::body(&velocity),
+    let (position, attitude) = (position(message, 8)?, attitude(message, 20)?);
+    let velocity = match child {
+        BODY_FRD => UnitQuaternion::new_unchecked(attitude) * frames::body(&velocity),
         child if child == frame => frames::world(&velocity),
         _ => return Err(PoseRefusal::Frame),
     };
     Ok(Pose { position, velocity, attitude })
 }
 
-/// A position of NED.
-fn position(x: f32, y: f32, z: f32) -> Result<Vector3<f32>, PoseRefusal> {
-    let position = Vector3::new(x, y, z);
+/// A position of NED, at this place of the message.
+fn position(message: &Frame<'_>, offset: usize) -> Result<Vector3<f32>, PoseRefusal> {
+    let position = message.vector(offset);
     check(&position, POSITION_MAX)?;
     Ok(frames::world(&position))
 }
 
 /// An attitude, FRD to NED, scalar first.
-fn attitude([w, x, y, z]: [f32; 4]) -> Result<Quaternion<f32>, PoseRefusal> {
-    let q = Quaternion::new(w, x, y, z);
-    if !q.coords.iter().all(|component| component.is_finite()) {
+fn attitude(message: &Frame<'_>, offset: usize) -> Result<Quaternion<f32>, PoseRefusal> {
+    if !message.are_finite(offset, 4) {
         return Err(PoseRefusal::NotFinite);
     }
+    let q = Quaternion::from_parts(message.f32(offset), message.vector(offset + 4));
     let length = math::sqrt(q.norm_squared());
     if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
         return Err(PoseRefusal::NotARotation);
@@ -216,11 +218,11 @@ fn attitude([w, x, y, z]: [f32; 4]) -> Result<Quaternion<f32>, PoseRefusal> {
 
 /// Refuses components that are not finite or greater than `range`.
 fn check(vector: &Vector3<f32>, range: f32) -> Result<(), PoseRefusal> {
-    if !vector.iter().all(|component| component.is_finite()) {
-        Err(PoseRefusal::NotFinite)
-    } else if vector.iter().any(|component| component.abs() > range) {
-        Err(PoseRefusal::OutOfRange)
-    } else {
-        Ok(())
+    if vector.iter().any(|component| !component.is_finite()) {
+        return Err(PoseRefusal::NotFinite);
     }
+    if vector.iter().any(|component| component.abs() > range) {
+        return Err(PoseRefusal::OutOfRange);
+    }
+    Ok(())
 }

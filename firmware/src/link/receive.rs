@@ -7,19 +7,13 @@ use super::frame::{Frame, Parser};
 use super::pose::Poses;
 use super::reply::{CommandResult, Reply};
 use super::setpoint::setpoint;
-use super::{COMPONENT, is_addressed, ping};
+use super::{COMPONENT, message};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Origin, Severity, Shared, Traffic};
-use core::fmt;
+use crate::shared::{Asked, Origin, Severity, Shared, Text, Traffic};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
-use mavlink::MessageData;
-use mavlink::dialects::common::{
-    ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavParamType, MavType, ODOMETRY_DATA,
-    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -29,6 +23,9 @@ const RECOVERY: u64 = 10_000;
 
 /// How often a kind of refusal is told in words, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
+
+/// MAV_TYPE_GCS.
+const GROUND_STATION: u8 = 6;
 
 /// Bytes read at once.
 const CHUNK: usize = 64;
@@ -43,13 +40,7 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
                 let now = clock.now();
-                for &byte in chunk.iter().take(count) {
-                    let mut next = parser.push(byte, now);
-                    while let Some(frame) = next {
-                        receiver.take(&frame);
-                        next = parser.next_frame();
-                    }
-                }
+                parser.feed(chunk.get(..count).unwrap_or(&chunk), now, &mut |frame| receiver.take(frame));
                 receiver.count(parser.discarded(), now);
             }
             // A line that ended or failed may come back, but must not take all the time there is.
@@ -66,7 +57,7 @@ struct Occasionally {
 }
 
 impl Occasionally {
-    fn announce<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: impl fmt::Display) {
+    fn announce<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: &[&str]) {
         if now >= self.not_before {
             self.not_before = now.saturating_add(TEXT_INTERVAL);
             shared.announce(Severity::Warning, words);
@@ -106,14 +97,24 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
+        if !frame.is_whole() {
+            return self.refused();
+        }
+        // Whether the addressee at this place of the message is this vehicle or everyone.
+        let is_addressed = |offset| {
+            let (system, component) = (frame.byte(offset), frame.byte(offset + 1));
+            (system == 0 || system == own) && (component == 0 || component == COMPONENT)
+        };
         match frame.message {
-            HEARTBEAT_DATA::ID => self.heartbeat(frame),
+            message::HEARTBEAT => self.heartbeat(frame),
             // In a simulation the simulator says where the vehicle is.
-            ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
-            SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.setpoint(frame),
-            COMMAND_LONG_DATA::ID => self.command(frame),
-            ping::ID => self.ping(frame),
-            PARAM_REQUEST_LIST_DATA::ID | PARAM_REQUEST_READ_DATA::ID | PARAM_SET_DATA::ID => self.parameter(frame),
+            message::ODOMETRY | message::ATT_POS_MOCAP if !self.shared.hil.is_raised() => self.pose(frame),
+            message::SET_POSITION_TARGET_LOCAL_NED if is_addressed(50) => self.setpoint(frame),
+            message::COMMAND_LONG if is_addressed(30) => self.command(frame),
+            message::PING => self.ping(frame),
+            message::PARAM_REQUEST_LIST if is_addressed(0) => self.shared.reply(Reply::AllParameters),
+            message::PARAM_REQUEST_READ if is_addressed(2) => self.read_parameter(frame),
+            message::PARAM_SET if is_addressed(4) => self.set_parameter(frame),
             _ => {}
         }
     }
@@ -133,14 +134,9 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    fn reply(&self, reply: Reply) {
-        // Without room the sender gets no answer, and asks again.
-        let _ = self.shared.replies.try_send(reply);
-    }
-
     /// Any ground station's will do. Its type is the fifth byte; the other fields are of no interest, known or not.
     fn heartbeat(&mut self, frame: &Frame<'_>) {
-        if frame.holds::<HEARTBEAT_DATA>() && frame.byte(4) == MavType::MAV_TYPE_GCS as u8 {
+        if frame.byte(4) == GROUND_STATION {
             self.shared.ground_station.put((), frame.time);
         }
     }
@@ -151,30 +147,23 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             Ok(None) => {}
             Err(refusal) => {
                 self.refused();
-                self.pose_refused.announce(self.shared, frame.time, refusal);
+                self.pose_refused.announce(self.shared, frame.time, &["Pose refused: ", refusal.text()]);
             }
         }
     }
 
     fn setpoint(&mut self, frame: &Frame<'_>) {
-        let Some(message) = frame.decode::<SET_POSITION_TARGET_LOCAL_NED_DATA>() else { return self.refused() };
-        if !is_addressed(message.target_system, message.target_component, self.own_system()) {
-            return;
-        }
-        match setpoint(&message) {
+        match setpoint(frame) {
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
             Err(refusal) => {
                 self.refused();
-                self.setpoint_refused.announce(self.shared, frame.time, refusal);
+                self.setpoint_refused.announce(self.shared, frame.time, &["Setpoint refused: ", refusal.text()]);
             }
         }
     }
 
     fn command(&mut self, frame: &Frame<'_>) {
-        let Some(command) = Command::from_frame(frame) else { return self.refused() };
-        if !is_addressed(command.target_system, command.target_component, self.own_system()) {
-            return;
-        }
+        let command = Command::from_frame(frame);
         if self.repetitions.is_repeated(frame) {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             return;
@@ -196,61 +185,55 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             }
             Action::Answer(result) => result,
         };
-        self.reply(Reply::Command { origin, result });
+        self.shared.reply(Reply::Command { origin, result });
     }
 
+    /// PING is deprecated in favour of TIMESYNC, but clients still send it and wait for the answer. One that is addressed to
+    /// somebody is itself an answer.
     fn ping(&mut self, frame: &Frame<'_>) {
-        match ping::question(frame) {
-            Ok(Some(reply)) => self.reply(reply),
-            Ok(None) => {}
-            Err(()) => self.refused(),
+        if frame.u16(12) == 0 {
+            let (time, sequence) = (frame.u64(0), frame.u32(8));
+            let (system, component) = (frame.header.system, frame.header.component);
+            self.shared.reply(Reply::Ping { time, sequence, system, component });
         }
     }
 
-    fn parameter(&mut self, frame: &Frame<'_>) {
-        let own = self.own_system();
-        if let Some(list) = frame.decode::<PARAM_REQUEST_LIST_DATA>() {
-            if is_addressed(list.target_system, list.target_component, own) {
-                self.reply(Reply::AllParameters);
-            }
-        } else if let Some(read) = frame.decode::<PARAM_REQUEST_READ_DATA>() {
-            // A negative index: by name.
-            let name = match usize::try_from(read.param_index) {
-                Ok(index) => Name::from_index(index),
-                Err(_) => Name::from_bytes(&*read.param_id),
-            };
-            if is_addressed(read.target_system, read.target_component, own) {
-                self.reply_with_parameter(name);
-            }
-        } else if let Some(set) = frame.decode::<PARAM_SET_DATA>() {
-            if is_addressed(set.target_system, set.target_component, own) {
-                let name = Name::from_bytes(&*set.param_id);
-                if let Some(name) = name {
-                    self.set_parameter(name, set.param_value, set.param_type);
-                }
-                self.reply_with_parameter(name);
-            }
-        } else {
-            self.refused();
+    fn read_parameter(&mut self, frame: &Frame<'_>) {
+        // A negative index: by name.
+        let name = match usize::try_from(frame.u16(0) as i16) {
+            Ok(index) => Name::from_index(index),
+            Err(_) => Name::from_bytes(&frame.bytes::<16>(4)),
+        };
+        self.reply_with_parameter(name);
+    }
+
+    fn set_parameter(&mut self, frame: &Frame<'_>) {
+        let (value, name, kind) = (frame.f32(0), Name::from_bytes(&frame.bytes::<16>(6)), frame.byte(22));
+        if let Some(name) = name {
+            self.set(name, value, kind);
         }
+        self.reply_with_parameter(name);
     }
 
     /// Its value, as it is now, answers every question about a parameter.
     fn reply_with_parameter(&mut self, name: Option<Name>) {
         match name {
-            Some(name) => self.reply(Reply::Parameter(name)),
+            Some(name) => self.shared.reply(Reply::Parameter(name)),
             None => self.refused(),
         }
     }
 
-    fn set_parameter(&mut self, name: Name, value: f32, kind: MavParamType) {
+    fn set(&mut self, name: Name, value: f32, kind: u8) {
         let shared = self.shared;
-        if shared.is_armed() {
-            shared.announce(Severity::Warning, "Parameters change only while disarmed");
-        } else if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
-            shared.announce(Severity::Warning, format_args!("{}: is a REAL32", name.row().name));
+        let refusal = if shared.is_armed() {
+            Text::new(&["Parameters change only while disarmed"])
+        } else if kind != message::REAL32 {
+            Text::new(&[name.row().name, ": is a REAL32"])
         } else if let Err(error) = shared.parameters.set(name, value) {
-            shared.announce(Severity::Warning, error);
-        }
+            error.text()
+        } else {
+            return;
+        };
+        shared.announce(Severity::Warning, &[refusal.as_str()]);
     }
 }

@@ -10,10 +10,10 @@
 //! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not looked
 //! at. Only LOCAL_NED is understood. Ranges are the governor's business: everything from here goes through it.
 
+use super::frame::Frame;
+use super::message::LOCAL_NED;
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};
-use core::fmt;
-use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::Vector3;
 
 /// Why a setpoint was not taken.
@@ -27,53 +27,39 @@ pub enum SetpointRefusal {
     Frame,
 }
 
-impl fmt::Display for SetpointRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "Setpoint refused: a field is not finite",
-            Self::Mask => "Setpoint refused: type mask not supported",
-            Self::Frame => "Setpoint refused: use LOCAL_NED",
-        })
+impl SetpointRefusal {
+    /// The reason in words, to follow "Setpoint refused: ".
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::NotFinite => "a field is not finite",
+            Self::Mask => "type mask not supported",
+            Self::Frame => "use LOCAL_NED",
+        }
     }
 }
 
-/// The mask's bits for the three axes of one quantity.
-const fn axes(x: Mask, y: Mask, z: Mask) -> Mask {
-    x.union(y).union(z)
-}
+/// The type mask's bit that makes the acceleration a force.
+const FORCE: u16 = 1 << 9;
+/// Its bit for a heading that is not to be looked at.
+const NO_HEADING: u16 = 1 << 10;
+/// And for the heading's rate.
+const NO_HEADING_RATE: u16 = 1 << 11;
 
-const POSITION: Mask = axes(
-    Mask::POSITION_TARGET_TYPEMASK_X_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_Z_IGNORE,
-);
-const VELOCITY: Mask = axes(
-    Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE,
-);
-const ACCELERATION: Mask = axes(
-    Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE,
-    Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE,
-);
-
-/// What the message asks for.
+/// What a SET_POSITION_TARGET_LOCAL_NED asks for.
 ///
 /// # Errors
 /// [`SetpointRefusal`] for what cannot be done or is not finite.
-pub fn setpoint(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint, SetpointRefusal> {
-    if message.coordinate_frame != MavFrame::MAV_FRAME_LOCAL_NED {
+pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
+    // Time, position, velocity, acceleration, heading, its rate, mask, addressee, frame.
+    let (mask, frame) = (message.u16(48), message.byte(52));
+    if frame != LOCAL_NED {
         return Err(SetpointRefusal::Frame);
     }
-    let mask = message.type_mask;
-    let position = used(mask, POSITION, [message.x, message.y, message.z])?;
-    let velocity = used(mask, VELOCITY, [message.vx, message.vy, message.vz])?;
-    let acceleration = used(mask, ACCELERATION, [message.afx, message.afy, message.afz])?;
+    let [position, velocity, acceleration] =
+        [used(message, mask, 0)?, used(message, mask, 1)?, used(message, mask, 2)?];
     let motion = match (position, velocity, acceleration) {
-        (_, _, Some(_)) if mask.contains(Mask::POSITION_TARGET_TYPEMASK_FORCE_SET) => {
-            return Err(SetpointRefusal::Mask);
-        }
+        (_, _, Some(_)) if mask & FORCE != 0 => return Err(SetpointRefusal::Mask),
         (Some(position), None, None) => Motion::Position(position),
         (None, Some(velocity), None) => Motion::Velocity(velocity),
         (Some(position), Some(velocity), acceleration) => {
@@ -82,25 +68,27 @@ pub fn setpoint(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint
         }
         _ => return Err(SetpointRefusal::Mask),
     };
-    Ok(Setpoint { motion, turn: turn(message)? })
+    Ok(Setpoint { motion, turn: turn(mask, message.f32(40), message.f32(44))? })
 }
 
-/// The world vector of one quantity, if the mask has it used. All three axes are, or none.
-fn used(mask: Mask, axes: Mask, [x, y, z]: [f32; 3]) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
-    if mask.contains(axes) {
-        return Ok(None);
+/// The world vector of position, velocity or acceleration, if the mask has it used. All three axes are, or none.
+fn used(message: &Frame<'_>, mask: u16, quantity: usize) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
+    match mask >> (3 * quantity) & 0b111 {
+        0b000 => {
+            let offset = 4 + 12 * quantity;
+            if !message.are_finite(offset, 3) {
+                return Err(SetpointRefusal::NotFinite);
+            }
+            Ok(Some(frames::world(&message.vector(offset))))
+        }
+        0b111 => Ok(None),
+        _ => Err(SetpointRefusal::Mask),
     }
-    if mask.intersects(axes) {
-        return Err(SetpointRefusal::Mask);
-    }
-    Ok(Some(frames::world(&Vector3::new(finite(x)?, finite(y)?, finite(z)?))))
 }
 
-fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Turn, SetpointRefusal> {
-    let angle = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
-    let rate = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
-    let (angle, rate) = (angle.then_some(message.yaw), rate.then_some(message.yaw_rate));
-    let (angle, rate) = (angle.map(finite).transpose()?, rate.map(finite).transpose()?);
+fn turn(mask: u16, angle: f32, rate: f32) -> Result<Turn, SetpointRefusal> {
+    let angle = (mask & NO_HEADING == 0).then_some(angle).map(finite).transpose()?;
+    let rate = (mask & NO_HEADING_RATE == 0).then_some(rate).map(finite).transpose()?;
     let rate = rate.map(frames::heading_rate);
     Ok(match (angle.map(frames::heading), rate) {
         (None, None) => Turn::Keep,

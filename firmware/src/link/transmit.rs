@@ -2,18 +2,18 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::frame::{FRAME_MAX, Header, encode, encode_payload};
-use super::reply::{CommandResult, Reply};
-use super::{COMPONENT, ping, telemetry};
+use super::draft::Draft;
+use super::frame::Header;
+use super::reply::Reply;
+use super::{COMPONENT, telemetry};
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Answer, Event, Origin, Report, Severity, Shared, Text};
+use crate::shared::{Event, Report, Severity, Shared, Text};
 use controller_core::flight::Stamped;
-use embassy_futures::select::select4;
+use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
-use mavlink::MessageData;
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIME_MAX: u64 = 100_000;
@@ -36,13 +36,12 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
         for turn in [Speaker::scheduled, Speaker::queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
-                send(&mut line, clock, WRITE_TIME_MAX, speaker.frame()).await;
+                send(&mut line, clock, WRITE_TIME_MAX, speaker.finish()).await;
             }
         }
         if silent {
             let due = clock.until(speaker.schedule.next());
-            let (answers, events, replies) = (&shared.answers, &shared.events, &shared.replies);
-            select4(due, answers.ready_to_receive(), events.ready_to_receive(), replies.ready_to_receive()).await;
+            select(due, shared.outgoing.wait()).await;
         }
     }
 }
@@ -65,6 +64,7 @@ impl Schedule {
 }
 
 /// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
+#[inline(never)]
 fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     let has_come = now >= *due;
     if has_come {
@@ -74,13 +74,11 @@ fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     has_come
 }
 
-/// Finds what to say next and puts it into a frame. Nothing here waits, so there is one future for all messages.
+/// Finds what to say next and drafts it. Nothing here waits, so there is one future for all messages.
 struct Speaker<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     schedule: Schedule,
-    /// The frame to write.
-    buffer: [u8; FRAME_MAX],
-    length: usize,
+    draft: Draft,
     sequence: u8,
     /// Lost events that were told of.
     told: u32,
@@ -89,29 +87,34 @@ struct Speaker<'a, M: RawMutex> {
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
         let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, list: None };
-        Self { shared, schedule, buffer: [0; FRAME_MAX], length: 0, sequence: 0, told: 0 }
+        Self { shared, schedule, draft: Draft::new(), sequence: 0, told: 0 }
     }
 
-    fn frame(&self) -> &[u8] {
-        self.buffer.get(..self.length).unwrap_or(&[])
+    /// The drafted message as the next frame.
+    fn finish(&mut self) -> &[u8] {
+        let sequence = self.sequence;
+        self.sequence = sequence.wrapping_add(1);
+        let system = self.shared.parameters.get(Name::SystemId) as u8;
+        self.draft.finish(Header { system, component: COMPONENT, sequence })
     }
 
-    /// Puts the first message that is due into the frame; whether there is one.
+    /// Drafts the first message that is due; whether there is one.
     fn scheduled(&mut self, now: u64) -> bool {
         // Within 10 and 50 Hz, as the table has it.
-        let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
+        let interval = u64::from((1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u32);
         let report = self.shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
+        let state = report.as_ref().and_then(|report| Some((report.time, report.value.state.as_ref()?)));
         if comes(&mut self.schedule.attitude, interval, now)
-            && let Some(attitude) = report.as_ref().and_then(telemetry::attitude)
+            && let Some((time, state)) = state
         {
-            self.put(&attitude);
+            telemetry::attitude(&mut self.draft, time, state);
         } else if comes(&mut self.schedule.position, interval, now)
-            && let Some(position) = report.as_ref().and_then(telemetry::position)
+            && let Some((time, state)) = state
         {
-            self.put(&position);
+            telemetry::position(&mut self.draft, time, state);
         } else if comes(&mut self.schedule.heartbeat, HEARTBEAT_INTERVAL, now) {
             let mode = report.map(|report| report.value.mode);
-            self.put(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
+            telemetry::heartbeat(&mut self.draft, mode, self.shared.hil.is_raised());
         } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
             self.status(report.as_ref(), now);
         } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
@@ -126,30 +129,35 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    /// Puts the next thing that was asked for into the frame, what the vehicle decided first; whether there is one.
+    /// Drafts the next thing that was asked for, what the vehicle decided first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
-        if let Ok(Answer { origin, result }) = shared.answers.try_receive() {
-            let result = if result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
-            self.acknowledge(&origin, result);
-        } else if let Ok(event) = shared.events.try_receive() {
-            self.put(&telemetry::text(&event));
-        } else if shared.lost_events() != self.told {
+        if let Some(answer) = shared.answers.take() {
+            return self.reply(&answer, now);
+        }
+        if let Some(event) = shared.events.take() {
+            telemetry::text(&mut self.draft, &event);
+            return true;
+        }
+        if shared.lost_events() != self.told {
             self.lost(shared.lost_events());
-        } else if let Ok(reply) = shared.replies.try_receive() {
-            match reply {
-                Reply::Command { origin, result } => self.acknowledge(&origin, result),
-                Reply::Ping { time, sequence, system, component } => {
-                    self.put(&ping::answer(time, sequence, system, component));
-                }
-                Reply::Parameter(name) => self.parameter(name),
-                Reply::AllParameters => {
-                    self.schedule.list = Some((0, now));
-                    return false;
-                }
+            return true;
+        }
+        shared.replies.take().is_some_and(|reply| self.reply(&reply, now))
+    }
+
+    /// Drafts a reply; a list of parameters is put on the schedule.
+    fn reply(&mut self, reply: &Reply, now: u64) -> bool {
+        match reply {
+            Reply::Command { origin, result } => telemetry::acknowledgement(&mut self.draft, origin, *result),
+            Reply::Ping { time, sequence, system, component } => {
+                telemetry::ping(&mut self.draft, *time, *sequence, *system, *component);
             }
-        } else {
-            return false;
+            Reply::Parameter(name) => self.parameter(*name),
+            Reply::AllParameters => {
+                self.schedule.list = Some((0, now));
+                return false;
+            }
         }
         true
     }
@@ -158,35 +166,17 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         let voltage = self.shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
         let traffic = self.shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
         let report = report.map(|report| &report.value);
-        self.put(&telemetry::status(voltage.map(|voltage| voltage.value), report, traffic));
+        telemetry::status(&mut self.draft, voltage.map(|voltage| voltage.value), report, traffic);
     }
 
     fn lost(&mut self, lost: u32) {
-        let text = Text::new(format_args!("{} events lost", lost.wrapping_sub(self.told)));
+        let text = Text::new(&[Text::count(lost.wrapping_sub(self.told)).as_str(), " events lost"]);
         self.told = lost;
-        self.put(&telemetry::text(&Event { severity: Severity::Warning, text }));
+        telemetry::text(&mut self.draft, &Event { severity: Severity::Warning, text });
     }
 
     fn parameter(&mut self, name: Name) {
         let value = self.shared.parameters.get(name);
-        self.put(&telemetry::parameter(name, value));
-    }
-
-    fn acknowledge(&mut self, origin: &Origin, result: CommandResult) {
-        let (message, extra_crc) = telemetry::ACKNOWLEDGEMENT;
-        let payload = telemetry::acknowledgement(origin, result);
-        let header = self.header();
-        self.length = encode_payload(header, message, extra_crc, &payload, &mut self.buffer).len();
-    }
-
-    fn put<D: MessageData>(&mut self, message: &D) {
-        let header = self.header();
-        self.length = encode(header, message, &mut self.buffer).len();
-    }
-
-    fn header(&mut self) -> Header {
-        let sequence = self.sequence;
-        self.sequence = sequence.wrapping_add(1);
-        Header { system: self.shared.parameters.get(Name::SystemId) as u8, component: COMPONENT, sequence }
+        telemetry::parameter(&mut self.draft, name, value);
     }
 }

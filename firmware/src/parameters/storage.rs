@@ -51,7 +51,7 @@ impl<F: NorFlash> Storage<F> {
     pub async fn load<M: RawMutex>(&mut self, clock: &impl Clock, shared: &Shared<M>) {
         let end = clock.now().saturating_add(READ_TIME_MAX);
         if let Either::Second(()) = select(self.read(shared), clock.until(end)).await {
-            shared.announce(Severity::Warning, "Parameters: storage does not answer");
+            shared.announce(Severity::Warning, &["Parameters: storage does not answer"]);
         }
         self.saved = shared.parameters.all();
     }
@@ -66,7 +66,7 @@ impl<F: NorFlash> Storage<F> {
             };
             if !good {
                 let name = row.name;
-                shared.announce(Severity::Warning, format_args!("{name}: stored value unusable, default taken"));
+                shared.announce(Severity::Warning, &[name, ": stored value unusable, default taken"]);
             }
         }
     }
@@ -99,7 +99,7 @@ impl<F: NorFlash> Storage<F> {
             *saved = value;
             if !matches!(written, Either::First(Ok(()))) {
                 let name = row.name;
-                shared.announce(Severity::Warning, format_args!("{name}: set, but could not be saved"));
+                shared.announce(Severity::Warning, &[name, ": set, but could not be saved"]);
             }
         }
     }

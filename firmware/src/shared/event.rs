@@ -1,6 +1,6 @@
 //! Something to tell people: one line of text.
-
-use core::fmt::{self, Write};
+//!
+//! Lines are put together from pieces here, not by the formatting of `core`, which would take 5 KB of flash.
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -10,41 +10,49 @@ pub const TEXT_MAX: usize = 50;
 pub struct Text(heapless::String<TEXT_MAX>);
 
 impl Text {
-    /// `words` written out; what does not fit is cut off, and so is the rest of a character that fits in part.
+    /// The pieces one after the other; what does not fit is cut off, and so is the rest of a character that fits in part.
     #[must_use]
-    pub fn new(words: impl fmt::Display) -> Self {
+    pub fn new(pieces: &[&str]) -> Self {
         let mut text = Self::default();
-        // The only error is a full line.
-        let _ = write!(text, "{words}");
+        for piece in pieces {
+            let part = piece.get(..piece.floor_char_boundary(TEXT_MAX - text.0.len())).unwrap_or("");
+            // It has room for as much.
+            let _ = text.0.push_str(part);
+            if part.len() < piece.len() {
+                break;
+            }
+        }
         text
+    }
+
+    /// A count as people write it.
+    #[must_use]
+    pub fn count(number: u32) -> Self {
+        // At most ten digits, found from the last one on.
+        let (mut digits, mut rest) = ([""; 10], number);
+        for place in digits.iter_mut().rev() {
+            let digit = (rest % 10) as usize;
+            *place = "0123456789".get(digit..=digit).unwrap_or("");
+            rest /= 10;
+            if rest == 0 {
+                break;
+            }
+        }
+        Self::new(&digits)
+    }
+
+    /// A number as people write it, with one decimal; at most 2e8 in size.
+    #[must_use]
+    pub fn decimal(number: f32) -> Self {
+        let tenths = (number.abs() * 10.0 + 0.5) as u32;
+        let sign = if number < 0.0 { "-" } else { "" };
+        Self::new(&[sign, Self::count(tenths / 10).as_str(), ".", Self::count(tenths % 10).as_str()])
     }
 
     /// The line.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
-    }
-}
-
-impl fmt::Write for Text {
-    fn write_str(&mut self, words: &str) -> fmt::Result {
-        words.chars().try_for_each(|character| self.0.push(character).map_err(|_| fmt::Error))
-    }
-}
-
-/// A number as people write it, with one decimal; at most 2e8 in size. (The formatting of floats in `core` takes 11 KB of
-/// flash.)
-#[derive(Debug, Clone, Copy)]
-pub struct Decimal(
-    /// The number.
-    pub f32,
-);
-
-impl fmt::Display for Decimal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let tenths = (self.0.abs() * 10.0 + 0.5) as u32;
-        let sign = if self.0 < 0.0 { "-" } else { "" };
-        write!(f, "{sign}{}.{}", tenths / 10, tenths % 10)
     }
 }
 

@@ -19,14 +19,15 @@ pub fn event(event: &Event) {
 /// Logs how the vehicle does.
 #[cfg(target_os = "none")]
 pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>) {
+    use crate::time::milliseconds;
     let Some(Stamped { value: report, time }) = report else {
         defmt::warn!("no report from control");
         return;
     };
     let timing = report.timing;
     defmt::info!(
-        "{=u64} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
-        *time / 1000,
+        "{=u32} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
+        milliseconds(*time),
         report.mode,
         timing.worst_duration,
         timing.worst_jitter,
@@ -40,14 +41,14 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
     if let Some(sample) = shared.imu.get() {
         let (rate, force) = (sample.value.angular_velocity, sample.value.specific_force);
         defmt::info!(
-            "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u64} ms old",
+            "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u32} ms old",
             rate.x,
             rate.y,
             rate.z,
             force.x,
             force.y,
             force.z,
-            time.saturating_sub(sample.time) / 1000
+            milliseconds(time.saturating_sub(sample.time))
         );
     }
     if let Some(voltage) = shared.voltage.get() {

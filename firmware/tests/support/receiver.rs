@@ -43,7 +43,7 @@ impl<'a> Fed<'a> {
 
 /// Events announced so far, taken away.
 pub fn texts(shared: &Local) -> Vec<String> {
-    std::iter::from_fn(|| shared.events.try_receive().ok()).map(|event| event.text.as_str().to_owned()).collect()
+    std::iter::from_fn(|| shared.events.take()).map(|event| event.text.as_str().to_owned()).collect()
 }
 
 /// Control's report, in this mode.

@@ -1,11 +1,11 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
 use firmware::frames;
-use firmware::link::frame::{FRAME_MAX, Frame, Header, encode};
-use mavlink::MessageData;
+use firmware::link::frame::{Frame, Version};
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
 };
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::body::BodyState;
 
@@ -30,11 +30,17 @@ impl Controls {
     /// The commands in a frame, if it holds any.
     #[must_use]
     pub fn from_frame(frame: &Frame<'_>) -> Option<Self> {
-        let message: HIL_ACTUATOR_CONTROLS_DATA = frame.decode()?;
+        let message: HIL_ACTUATOR_CONTROLS_DATA = decode(frame)?;
         let armed = message.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
         let [a, b, c, d, ..] = message.controls;
         Some(Self { time: message.time_usec, armed, commands: [a, b, c, d] })
     }
+}
+
+/// The message in a frame, if it is of this type and its enumerations are known ones. Version 1 does not cut fields off.
+pub(super) fn decode<D: MessageData>(frame: &Frame<'_>) -> Option<D> {
+    let whole = frame.version == Version::V2 || frame.payload.len() >= D::ENCODED_LEN;
+    if frame.message == D::ID && whole { D::deser(MavlinkVersion::V2, frame.payload).ok() } else { None }
 }
 
 /// Puts the session's answers into bytes, counting them.
@@ -101,9 +107,10 @@ impl Encoder {
     }
 
     fn append(&mut self, message: &impl MessageData, bytes: &mut Vec<u8>) {
-        let header = Header { system: SYSTEM, component: 1, sequence: self.sequence };
+        let header = MavHeader { system_id: SYSTEM, component_id: 1, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        let mut buffer = [0; FRAME_MAX];
-        bytes.extend_from_slice(encode(header, message, &mut buffer));
+        let mut frame = MAVLinkV2MessageRaw::new();
+        frame.serialize_message_data(header, message);
+        bytes.extend_from_slice(frame.raw_bytes());
     }
 }

@@ -1,9 +1,9 @@
 use super::*;
+use crate::hil::messages::decode;
 use crate::hil::{HilError, Session, serve};
 use firmware::frames;
-use firmware::link::frame::{FRAME_MAX, Header, encode};
-use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use scenario::Scenario;
 use std::io::Read;
 use std::path::Path;
@@ -25,7 +25,9 @@ fn connected(patience: Duration) -> (Port, TcpStream) {
 }
 
 fn bytes(message: &impl MessageData) -> Vec<u8> {
-    encode(Header { system: 1, component: 1, sequence: 0 }, message, &mut [0; FRAME_MAX]).to_vec()
+    let mut frame = MAVLinkV2MessageRaw::new();
+    frame.serialize_message_data(MavHeader { system_id: 1, component_id: 1, sequence: 0 }, message);
+    frame.raw_bytes().to_vec()
 }
 
 fn command(time_usec: u64, level: f32) -> Vec<u8> {
@@ -40,7 +42,7 @@ fn heard<D: MessageData>(board: &mut TcpStream) -> Option<D> {
     loop {
         board.read_exact(&mut byte).unwrap();
         if let Some(frame) = parser.push(byte[0], 0) {
-            return frame.decode();
+            return decode(&frame);
         }
     }
 }
