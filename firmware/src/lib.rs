@@ -13,6 +13,7 @@
 //! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
+//! | [`memory`] | copying and filling it, for boards |
 //! | [`outputs`] | thrusts to motor commands |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
@@ -37,6 +38,7 @@ pub mod hardware;
 pub mod hil;
 pub mod imu;
 pub mod link;
+pub mod memory;
 pub mod outputs;
 pub mod parameters;
 pub mod replay;
