@@ -14,12 +14,12 @@
 //! read as a vehicle that does not turn. Every wait is bounded; what does not come in time is a [`Fault`]. After
 //! [`RESTART_AFTER`] faults in a row the next call powers the sensor up anew, which takes a tenth of a second.
 
-use crate::deadline;
+use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu};
 use controller_core::flight::ImuSample;
-use core::future::Future;
+use embedded_hal::digital::OutputPin;
 use embedded_hal_async::digital::Wait;
-use embedded_hal_async::spi::SpiDevice;
+use embedded_hal_async::spi::SpiBus;
 use nalgebra::Vector3;
 
 #[cfg(test)]
@@ -46,13 +46,20 @@ const READ: u8 = 0x80;
 /// Both devices hold their identity here.
 const CHIP_ID: u8 = 0x00;
 
-/// What the accelerometer calls itself, and where its data start (x, y, z, low byte first).
-const ACCELEROMETER_ID: u8 = 0x1E;
-const ACCELEROMETER_DATA: u8 = 0x12;
+/// One of the two devices.
+struct Device {
+    /// Which chip select is its own.
+    select: usize,
+    /// What it calls itself.
+    id: u8,
+    /// Where its data start (x, y, z, low byte first).
+    data: u8,
+    /// Bytes of a read before the answer: the address, and for the accelerometer one that means nothing.
+    lead: usize,
+}
 
-/// What the gyroscope calls itself, and where its data start (x, y, z, low byte first).
-const GYROSCOPE_ID: u8 = 0x0F;
-const GYROSCOPE_DATA: u8 = 0x02;
+const ACCELEROMETER: Device = Device { select: 0, id: 0x1E, data: 0x12, lead: 2 };
+const GYROSCOPE: Device = Device { select: 1, id: 0x0F, data: 0x02, lead: 1 };
 
 /// Written to a device's reset register, it restarts the device.
 const SOFT_RESET: u8 = 0xB6;
@@ -62,33 +69,44 @@ const GYROSCOPE_RESET: u8 = 0x14;
 /// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
 const POWER_TAKES: u64 = 1_000;
 
-/// After a reset: 1 ms for the accelerometer, 30 ms for the gyroscope, and a little more, us.
-const ACCELEROMETER_RESET_TAKES: u64 = 2_000;
-const GYROSCOPE_RESET_TAKES: u64 = 35_000;
-
-/// A register, what it is set to, and how long the device then needs, us.
-struct Setting {
-    register: u8,
-    value: u8,
-    settles: u64,
+/// What a step of the power-up does with its register and value.
+#[derive(Clone, Copy, PartialEq)]
+enum Action {
+    /// Reads what means nothing.
+    Wake,
+    /// Reads, and expects the value.
+    Expect,
+    /// Writes, and waits for as many microseconds.
+    Write(u16),
+    /// Writes, waits, reads back.
+    Set(u16),
 }
 
-const fn setting(register: u8, value: u8, settles: u64) -> Setting {
-    Setting { register, value, settles }
-}
+use Action::{Expect, Set, Wake, Write};
 
-/// From suspended to measuring: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it measures), ACC_CONF, ACC_RANGE.
-const ACCELEROMETER_SETTINGS: [Setting; 4] =
-    [setting(0x7C, 0x00, 5_000), setting(0x7D, 0x04, 50_000), setting(0x40, 0x8C, 1_000), setting(0x41, 0x03, 1_000)];
-
-/// GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and active high (INT4 left as it was), data-ready to INT3, data-ready on.
-/// The top bit of GYRO_BANDWIDTH always reads as one, so it is written as one.
-const GYROSCOPE_SETTINGS: [Setting; 5] = [
-    setting(0x0F, 0x00, 1_000),
-    setting(0x10, 0x82, 1_000),
-    setting(0x16, 0x0D, 1_000),
-    setting(0x18, 0x01, 1_000),
-    setting(0x15, 0x80, 1_000),
+/// From power to measuring. The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its
+/// chip select turns it to SPI. A reset takes it 1 ms and the gyroscope 30 ms, and is given a little more.
+///
+/// Settings of the accelerometer: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it measures), ACC_CONF, ACC_RANGE. Of the
+/// gyroscope: GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and active high (INT4 left as it was), data-ready to INT3,
+/// data-ready on. The top bit of GYRO_BANDWIDTH always reads as one, so it is written as one.
+#[rustfmt::skip]
+const POWER_UP: [(&Device, u8, u8, Action); 15] = [
+    (&ACCELEROMETER, CHIP_ID,             0,                Wake),
+    (&ACCELEROMETER, ACCELEROMETER_RESET, SOFT_RESET,       Write(2_000)),
+    (&ACCELEROMETER, CHIP_ID,             0,                Wake),
+    (&ACCELEROMETER, CHIP_ID,             ACCELEROMETER.id, Expect),
+    (&ACCELEROMETER, 0x7C,                0x00,             Set(5_000)),
+    (&ACCELEROMETER, 0x7D,                0x04,             Set(50_000)),
+    (&ACCELEROMETER, 0x40,                0x8C,             Set(1_000)),
+    (&ACCELEROMETER, 0x41,                0x03,             Set(1_000)),
+    (&GYROSCOPE,     CHIP_ID,             GYROSCOPE.id,     Expect),
+    (&GYROSCOPE,     GYROSCOPE_RESET,     SOFT_RESET,       Write(35_000)),
+    (&GYROSCOPE,     0x0F,                0x00,             Set(1_000)),
+    (&GYROSCOPE,     0x10,                0x82,             Set(1_000)),
+    (&GYROSCOPE,     0x16,                0x0D,             Set(1_000)),
+    (&GYROSCOPE,     0x18,                0x01,             Set(1_000)),
+    (&GYROSCOPE,     0x15,                0x80,             Set(1_000)),
 ];
 
 /// How the sensor sits in the vehicle.
@@ -111,10 +129,11 @@ impl Mounting {
     }
 }
 
-/// The two devices, the pin that says when, and the clock that bounds every wait.
-pub struct Bmi088<A, G, P, C> {
-    accelerometer: A,
-    gyroscope: G,
+/// The two devices on their bus, the pin that says when, and the clock that bounds every wait.
+pub struct Bmi088<B, S, P, C> {
+    bus: B,
+    /// Chip selects of accelerometer and gyroscope.
+    selects: [S; 2],
     data_ready: P,
     clock: C,
     mounting: Mounting,
@@ -122,84 +141,89 @@ pub struct Bmi088<A, G, P, C> {
     faults: u8,
 }
 
-impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Bmi088<A, G, P, C> {
-    /// Touches nothing yet: the first sample powers the sensor up.
-    pub fn new(accelerometer: A, gyroscope: G, data_ready: P, clock: C, mounting: Mounting) -> Self {
-        Self { accelerometer, gyroscope, data_ready, clock, mounting, faults: RESTART_AFTER }
+impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
+    /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope, high.
+    pub fn new(bus: B, selects: [S; 2], data_ready: P, clock: C, mounting: Mounting) -> Self {
+        Self { bus, selects, data_ready, clock, mounting, faults: RESTART_AFTER }
     }
 
     async fn power_up(&mut self) -> Result<(), Fault> {
-        self.wait(POWER_TAKES).await;
-        // The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns
-        // it to SPI. What that access reads means nothing.
-        self.accelerometer_register(CHIP_ID).await?;
-        self.accelerometer_write(ACCELEROMETER_RESET, SOFT_RESET).await?;
-        self.wait(ACCELEROMETER_RESET_TAKES).await;
-        self.accelerometer_register(CHIP_ID).await?;
-        expect(self.accelerometer_register(CHIP_ID).await?, ACCELEROMETER_ID)?;
-        for Setting { register, value, settles } in ACCELEROMETER_SETTINGS {
-            self.accelerometer_write(register, value).await?;
-            self.wait(settles).await;
-            expect(self.accelerometer_register(register).await?, value)?;
-        }
-
-        expect(self.gyroscope_register(CHIP_ID).await?, GYROSCOPE_ID)?;
-        self.gyroscope_write(GYROSCOPE_RESET, SOFT_RESET).await?;
-        self.wait(GYROSCOPE_RESET_TAKES).await;
-        for Setting { register, value, settles } in GYROSCOPE_SETTINGS {
-            self.gyroscope_write(register, value).await?;
-            self.wait(settles).await;
-            expect(self.gyroscope_register(register).await?, value)?;
+        self.clock.until(self.clock.now() + POWER_TAKES).await;
+        for (device, register, value, action) in POWER_UP {
+            if let Write(settles) | Set(settles) = action {
+                self.access(device, &mut [register, value]).await?;
+                self.clock.until(self.clock.now() + u64::from(settles)).await;
+            }
+            if let Wake | Expect | Set(_) = action {
+                let [found, ..] = self.read(device, register, 1).await?;
+                if found != value && action != Wake {
+                    return Err(Fault);
+                }
+            }
         }
         Ok(())
     }
 
     async fn measure(&mut self) -> Result<ImuSample, Fault> {
-        within(&self.clock, DATA_READY_WITHIN, self.data_ready.wait_for_rising_edge()).await?;
-        expect(self.gyroscope_register(CHIP_ID).await?, GYROSCOPE_ID)?;
-        // Address, then six bytes.
-        let mut rates = [READ | GYROSCOPE_DATA, 0, 0, 0, 0, 0, 0];
-        within(&self.clock, ACCESS_WITHIN, self.gyroscope.transfer_in_place(&mut rates)).await?;
-        expect(self.accelerometer_register(CHIP_ID).await?, ACCELEROMETER_ID)?;
-        // Address, a byte that means nothing, then six bytes.
-        let mut accelerations = [READ | ACCELEROMETER_DATA, 0, 0, 0, 0, 0, 0, 0];
-        within(&self.clock, ACCESS_WITHIN, self.accelerometer.transfer_in_place(&mut accelerations)).await?;
-        let [_, rates @ ..] = rates;
-        let [_, _, accelerations @ ..] = accelerations;
+        let rising = within(&self.clock, DATA_READY_WITHIN, self.data_ready.wait_for_rising_edge());
+        rising.await?.map_err(|_| Fault)?;
+        let mut counted = [Vector3::zeros(); 2];
+        for (device, counted) in [GYROSCOPE, ACCELEROMETER].iter().zip(&mut counted) {
+            let [id, ..] = self.read(device, CHIP_ID, 1).await?;
+            if id != device.id {
+                return Err(Fault);
+            }
+            *counted = self.mounting.to_body(counts(self.read(device, device.data, 6).await?));
+        }
+        let [rates, accelerations] = counted;
         Ok(ImuSample {
-            angular_velocity: self.mounting.to_body(counts(rates) * RATE_PER_COUNT),
-            specific_force: self.mounting.to_body(counts(accelerations) * ACCELERATION_PER_COUNT),
+            angular_velocity: rates * RATE_PER_COUNT,
+            specific_force: accelerations * ACCELERATION_PER_COUNT,
         })
     }
 
-    async fn accelerometer_register(&mut self, register: u8) -> Result<u8, Fault> {
-        let mut bytes = [READ | register, 0, 0];
-        within(&self.clock, ACCESS_WITHIN, self.accelerometer.transfer_in_place(&mut bytes)).await?;
-        let [_, _, value] = bytes;
-        Ok(value)
+    /// Reads `count` registers, at most six, from `register` on.
+    async fn read(&mut self, device: &Device, register: u8, count: usize) -> Result<[u8; 6], Fault> {
+        let mut bytes = [READ | register, 0, 0, 0, 0, 0, 0, 0];
+        self.access(device, bytes.get_mut(..device.lead + count).ok_or(Fault)?).await?;
+        let [_, early @ .., _] = bytes;
+        let [_, _, late @ ..] = bytes;
+        Ok(if device.lead == 1 { early } else { late })
     }
 
-    async fn accelerometer_write(&mut self, register: u8, value: u8) -> Result<(), Fault> {
-        within(&self.clock, ACCESS_WITHIN, self.accelerometer.write(&[register, value])).await
-    }
-
-    async fn gyroscope_register(&mut self, register: u8) -> Result<u8, Fault> {
-        let mut bytes = [READ | register, 0];
-        within(&self.clock, ACCESS_WITHIN, self.gyroscope.transfer_in_place(&mut bytes)).await?;
-        let [_, value] = bytes;
-        Ok(value)
-    }
-
-    async fn gyroscope_write(&mut self, register: u8, value: u8) -> Result<(), Fault> {
-        within(&self.clock, ACCESS_WITHIN, self.gyroscope.write(&[register, value])).await
-    }
-
-    async fn wait(&self, duration: u64) {
-        self.clock.until(self.clock.now() + duration).await;
+    /// Exchanges `bytes` with a device, the first of them being an address.
+    async fn access(&mut self, device: &Device, bytes: &mut [u8]) -> Result<(), Fault> {
+        let [accelerometer, gyroscope] = &mut self.selects;
+        let select = if device.select == 0 { accelerometer } else { gyroscope };
+        let _selected = Selected::new(select)?;
+        let exchange = async {
+            self.bus.transfer_in_place(bytes).await?;
+            self.bus.flush().await
+        };
+        within(&self.clock, ACCESS_WITHIN, exchange).await?.map_err(|_| Fault)
     }
 }
 
-impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Imu for Bmi088<A, G, P, C> {
+/// A device's chip select, low until this goes, however an access ends.
+struct Selected<'a, S: OutputPin>(&'a mut S);
+
+impl<'a, S: OutputPin> Selected<'a, S> {
+    fn new(select: &'a mut S) -> Result<Self, Fault> {
+        match select.set_low() {
+            Ok(()) => Ok(Self(select)),
+            Err(_) => Err(Fault),
+        }
+    }
+}
+
+impl<S: OutputPin> Drop for Selected<'_, S> {
+    fn drop(&mut self) {
+        // A pin that cannot rise shows at the next access: its device does not say who it is.
+        let _ = self.0.set_high();
+    }
+}
+
+impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Imu for Bmi088<B, S, P, C> {
     async fn sample(&mut self) -> Result<ImuSample, Fault> {
         if self.faults >= RESTART_AFTER {
             self.power_up().await?;
@@ -209,15 +233,6 @@ impl<A: SpiDevice, G: SpiDevice, P: Wait, C: Clock> Imu for Bmi088<A, G, P, C> {
         self.faults = if sample.is_ok() { 0 } else { self.faults + 1 };
         sample
     }
-}
-
-/// What an access comes to within `limit` us, all errors being alike.
-async fn within<T, E>(clock: &impl Clock, limit: u64, access: impl Future<Output = Result<T, E>>) -> Result<T, Fault> {
-    deadline::within(clock, limit, access).await?.map_err(|_| Fault)
-}
-
-fn expect(found: u8, wanted: u8) -> Result<(), Fault> {
-    if found == wanted { Ok(()) } else { Err(Fault) }
 }
 
 /// Three signed 16-bit numbers, low byte first.

@@ -74,3 +74,31 @@ pub trait Light {
     /// On or off.
     fn set(&mut self, on: bool);
 }
+
+/// What flash is read and written by: 64 bytes, whole words of any flash there is.
+pub type Record = [u32; 16];
+
+/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done, and
+/// never without end: while it programs or erases itself, the code in it may not run anyway.
+pub trait Flash {
+    /// Places in a sector.
+    const RECORDS: usize;
+
+    /// What is in a place; every bit of a blank one is set.
+    ///
+    /// # Errors
+    /// [`Fault`] if it cannot be read, as where power failed while it was written.
+    fn read(&mut self, place: usize) -> Result<Record, Fault>;
+
+    /// Fills a place, which must be blank.
+    ///
+    /// # Errors
+    /// [`Fault`] if the flash says that it failed.
+    fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault>;
+
+    /// Blanks a sector, 0 or 1.
+    ///
+    /// # Errors
+    /// [`Fault`] if the flash says that it failed.
+    fn erase(&mut self, sector: usize) -> Result<(), Fault>;
+}

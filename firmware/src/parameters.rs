@@ -3,8 +3,9 @@
 //! Nothing the certificate depends on is here: vehicle, gains, rotors and reference bounds are built in and certified at
 //! boot. A parameter can make the vehicle slower or quieter, never less safe, and changes only while disarmed.
 //!
-//! [`table`] says what there is, [`storage`] keeps it over a reboot.
+//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`].
 
+pub mod journal;
 pub mod storage;
 pub mod table;
 

@@ -7,7 +7,6 @@ mod target {
     use controller_core::flight::Pilot;
     use defmt_rtt as _;
     use embassy_executor::{Executor, InterruptExecutor};
-    use embassy_futures::block_on;
     use embassy_stm32::interrupt;
     use embassy_stm32::interrupt::{InterruptExt, Priority};
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -16,7 +15,7 @@ mod target {
     use firmware::boards::stm32::imu::BoardImu;
     use firmware::boards::stm32::light::Lamp;
     use firmware::boards::stm32::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-    use firmware::boards::stm32::storage::{self, ParameterFlash};
+    use firmware::boards::stm32::storage::ParameterFlash;
     use firmware::control::Control;
     use firmware::hil::{self, SelectedMotors};
     use firmware::outputs::Outputs;
@@ -42,9 +41,7 @@ mod target {
         let shared = SHARED.init_with(Shared::new);
         static HIL: StaticCell<Hil> = StaticCell::new();
         let hil = HIL.init_with(Hil::new);
-        let parameters = Storage::new(board.storage, 0..storage::SIZE);
-        let mut parameters = defmt::unwrap!(parameters.map_err(|_| "the parameters' sectors are no storage"));
-        block_on(parameters.load(&SystemClock, shared));
+        let parameters = Storage::load(board.storage, shared);
         static PLACE: boot::Place = boot::Place::new();
         let (pilot, outputs) = defmt::unwrap!(boot::start(&PLACE, &shared.parameters));
 

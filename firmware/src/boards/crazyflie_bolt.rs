@@ -14,7 +14,7 @@ use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart::{self, Cause};
 use super::stm32::storage::ParameterFlash;
 use super::stm32::watchdog::ChipWatchdog;
-use crate::bmi088::Mounting;
+use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::exti::ExtiInput;
@@ -119,7 +119,7 @@ impl Board {
         let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
         let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
         let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
-        let imu = imu::bmi088(bus, accelerometer, gyroscope, data_ready, MOUNTING);
+        let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
         let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
         let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));

@@ -14,7 +14,7 @@ use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart::{self, Cause};
 use super::stm32::storage::ParameterFlash;
 use super::stm32::watchdog::ChipWatchdog;
-use crate::bmi088::Mounting;
+use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
@@ -112,7 +112,7 @@ impl Board {
         let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
         let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
         let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
-        let imu = imu::bmi088(bus, accelerometer, gyroscope, data_ready, MOUNTING);
+        let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
         let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
         let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));

@@ -1,7 +1,9 @@
-//! An encoder and a decoder that are not ours (the `mavlink` crate's own), and a clock that goes as fast as the tests do.
+//! An encoder and a decoder that are not ours (the `mavlink` crate's own), flash that fails, and a clock that goes as fast
+//! as the tests do.
 
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub mod chip;
 pub mod line;
 pub mod receiver;
 pub mod simulator;

@@ -1,86 +1,114 @@
-//! Where parameters live: the last two sectors of the flash, 128 KB each, as an `embedded-storage-async` flash of its own.
+//! Where parameters live: the last two sectors of the flash, 128 KB each.
 //!
-//! Addresses start at zero here, and nothing outside the two sectors can be reached. Work on the flash blocks its task. On
-//! the F405 it also stalls the core, up to two seconds for an erase, because code runs from the same flash: the watchdog is
-//! given patience meanwhile, no control tick happens, and the clock, which counts overflows, falls behind. So nothing may be
-//! saved unless disarmed. The H743 erases its second bank while code runs from the first.
+//! Nothing outside the two sectors can be reached. Work on the flash blocks its task. On the F405 it also stalls the core, up
+//! to two seconds for an erase, because code runs from the same flash: the watchdog is given patience meanwhile, no control
+//! tick happens, and the clock, which counts overflows, falls behind. So nothing may be saved unless disarmed. The H743
+//! erases its second bank while code runs from the first.
+//!
+//! The registers are driven here and not by Embassy: its driver waits for the flash without end, and on the H743 leaves the
+//! flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part says what
+//! is its own: addresses, registers, and how a record that may be torn is read.
 
+use super::clock::SystemClock;
 use super::watchdog::Patience;
+use crate::hardware::{Clock, Fault, Flash, Record};
+use core::ptr;
 use embassy_stm32::Peri;
-use embassy_stm32::flash::{Blocking, Error, FLASH_SIZE, Flash, MAX_ERASE_SIZE, WRITE_SIZE};
 use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::peripherals::FLASH;
-use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 
-/// Bytes of the two sectors.
-pub const SIZE: u32 = 2 * MAX_ERASE_SIZE as u32;
+#[cfg(feature = "crazyflie-bolt")]
+#[path = "storage/f405.rs"]
+mod chip;
+#[cfg(feature = "micoair-h743")]
+#[path = "storage/h743.rs"]
+mod chip;
 
-/// Where they start, from the start of the flash.
-const START: u32 = FLASH_SIZE as u32 - SIZE;
+/// Bytes of a sector.
+const SECTOR: usize = 128 * 1024;
+
+/// The longest the flash may be at work, us: an erase takes up to four seconds.
+const DONE_WITHIN: u64 = 10_000_000;
+
+/// What opens the control register.
+const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 
 /// The two sectors.
 pub struct ParameterFlash {
-    flash: Flash<'static, Blocking>,
+    /// Nobody else erases or programs.
+    _flash: Peri<'static, FLASH>,
     watchdog: Iwdg,
 }
 
 impl ParameterFlash {
-    /// `watchdog` is the one that must be patient while the flash is at work.
+    /// `watchdog` is the one that must be patient while the flash is erased.
     pub fn new(flash: Peri<'static, FLASH>, watchdog: Iwdg) -> Self {
-        Self { flash: Flash::new_blocking(flash), watchdog }
+        Self { _flash: flash, watchdog }
     }
 }
 
-/// Where `length` bytes from `offset` on lie in the whole flash.
-fn place(offset: u32, length: usize) -> Result<u32, Error> {
-    let inside = usize::try_from(SIZE.saturating_sub(offset)).is_ok_and(|left| length <= left);
-    if inside { Ok(START + offset) } else { Err(Error::Size) }
+/// The first word of a place.
+fn words(place: usize) -> Result<*mut u32, Fault> {
+    let inside = place < 2 * ParameterFlash::RECORDS;
+    if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
-/// Empties the flash's data cache, which an erase leaves as it was. It may only be emptied while it is off.
-#[cfg(feature = "crazyflie-bolt")]
-fn forget_cached() {
-    let control = embassy_stm32::pac::FLASH.acr();
-    control.modify(|w| w.set_dcen(false));
-    control.modify(|w| w.set_dcrst(true));
-    control.modify(|w| w.set_dcrst(false));
-    control.modify(|w| w.set_dcen(true));
+/// Waits for the flash, and asks whether it did as it was told.
+fn done() -> Result<(), Fault> {
+    let end = SystemClock.now() + DONE_WITHIN;
+    while chip::is_busy() {
+        if SystemClock.now() > end {
+            return Err(Fault);
+        }
+    }
+    if chip::has_failed() { Err(Fault) } else { Ok(()) }
 }
 
-/// The core's data cache is off: nothing is held.
-#[cfg(feature = "micoair-h743")]
-fn forget_cached() {}
-
-impl ErrorType for ParameterFlash {
-    type Error = Error;
+/// Does `work` on the opened flash, and closes it again.
+fn opened(work: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
+    chip::open();
+    let worked = work();
+    chip::close();
+    worked
 }
 
-impl ReadNorFlash for ParameterFlash {
-    const READ_SIZE: usize = 1;
+impl Flash for ParameterFlash {
+    const RECORDS: usize = SECTOR / size_of::<Record>();
 
-    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
-        self.flash.blocking_read(place(offset, bytes.len())?, bytes)
+    fn read(&mut self, place: usize) -> Result<Record, Fault> {
+        let mut word = words(place)?;
+        let mut record = [0; _];
+        chip::read(|| {
+            for copy in &mut record {
+                // SAFETY: an aligned word of the two sectors, which hold plain numbers.
+                (*copy, word) = unsafe { (ptr::read_volatile(word), word.add(1)) };
+            }
+        })?;
+        Ok(record)
     }
 
-    fn capacity(&self) -> usize {
-        SIZE as usize
+    fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault> {
+        let mut word = words(place)?;
+        opened(|| {
+            chip::program();
+            for value in record {
+                // SAFETY: an aligned word of the two sectors, in which no code and no other data are.
+                word = unsafe {
+                    ptr::write_volatile(word, *value);
+                    word.add(1)
+                };
+                done()?;
+            }
+            Ok(())
+        })
     }
-}
 
-impl NorFlash for ParameterFlash {
-    const WRITE_SIZE: usize = WRITE_SIZE;
-    const ERASE_SIZE: usize = MAX_ERASE_SIZE;
-
-    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
-        let length = to.checked_sub(from).ok_or(Error::Size)?;
-        let start = place(from, length as usize)?;
+    fn erase(&mut self, sector: usize) -> Result<(), Fault> {
+        words(sector * Self::RECORDS)?;
         let _patience = Patience::new(self.watchdog);
-        let erased = self.flash.blocking_erase(start, start + length);
-        forget_cached();
-        erased
-    }
-
-    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
-        self.flash.blocking_write(place(offset, bytes.len())?, bytes)
+        opened(|| {
+            chip::erase(sector as u8);
+            done()
+        })
     }
 }

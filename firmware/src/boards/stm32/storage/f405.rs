@@ -1,0 +1,67 @@
+//! The F405's flash: one bank, programmed by words of four bytes.
+
+use super::KEYS;
+use crate::hardware::Fault;
+use embassy_stm32::pac::FLASH;
+use embassy_stm32::pac::flash::vals::Psize;
+
+/// Where the two sectors start: the tenth and eleventh, counted from 0.
+pub const START: usize = 0x080C_0000;
+const FIRST_SECTOR: u8 = 10;
+
+/// The flags of the status register that say what went wrong; writing them clears them.
+const FAILURES: u32 = 0b1111_0010;
+
+/// Forgets what failed before, and opens the control register.
+pub fn open() {
+    FLASH.sr().write(|w| w.0 = FAILURES);
+    // A second key would close it until the next reset.
+    if FLASH.cr().read().lock() {
+        KEYS.iter().for_each(|key| FLASH.keyr().write_value(*key));
+    }
+}
+
+/// From now on, what is written to a blank word stays there.
+pub fn program() {
+    FLASH.cr().write(|w| {
+        w.set_pg(true);
+        w.set_psize(Psize::PSIZE32);
+    });
+}
+
+/// Begins to erase a sector of the two, by words like programming: that needs the 2.7 V that both boards exceed.
+pub fn erase(sector: u8) {
+    FLASH.cr().write(|w| {
+        w.set_ser(true);
+        w.set_snb(FIRST_SECTOR + sector);
+        w.set_psize(Psize::PSIZE32);
+    });
+    FLASH.cr().modify(|w| w.set_strt(true));
+}
+
+/// Whether it is at work.
+pub fn is_busy() -> bool {
+    FLASH.sr().read().bsy()
+}
+
+/// Whether it refused what it was told.
+pub fn has_failed() -> bool {
+    FLASH.sr().read().0 & FAILURES != 0
+}
+
+/// Closes the control register, and empties the data cache, which an erase leaves as it was. It may only be emptied while
+/// it is off.
+pub fn close() {
+    FLASH.cr().write(|w| w.set_lock(true));
+    let control = FLASH.acr();
+    control.modify(|w| w.set_dcen(false));
+    control.modify(|w| w.set_dcrst(true));
+    control.modify(|w| w.set_dcrst(false));
+    control.modify(|w| w.set_dcen(true));
+}
+
+/// Reading takes no care: what is torn has the wrong checksum and no other effect.
+pub fn read(words: impl FnOnce()) -> Result<(), Fault> {
+    words();
+    Ok(())
+}

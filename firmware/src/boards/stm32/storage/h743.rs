@@ -1,0 +1,95 @@
+//! The H743's flash: two banks, programmed by words of 32 bytes that each have an error-correcting code.
+//!
+//! A word that power failed on while it was programmed or erased has the wrong code. Reading it raises a bus fault, which
+//! would restart the chip at every boot: so records are read with faults masked, and the flash's own flag says whether to
+//! believe them.
+
+use super::KEYS;
+use crate::hardware::Fault;
+use core::arch::asm;
+use cortex_m::peripheral::SCB;
+use embassy_stm32::pac::FLASH;
+use embassy_stm32::pac::flash::Bank;
+use embassy_stm32::pac::flash::regs::Ccr;
+
+/// Where the two sectors start: the sixth and seventh of the second bank, counted from 0.
+pub const START: usize = 0x081C_0000;
+const FIRST_SECTOR: u8 = 6;
+
+/// The flags of the status register that say what went wrong, and the same bits of the register that clears them.
+const FAILURES: u32 = 0x17EE_0000;
+
+/// A core that runs at the priority of a fault takes no notice of bus faults of data (bit BFHFNMIGN).
+const IGNORE_BUS_FAULTS: u32 = 1 << 8;
+
+/// The registers of the second bank.
+fn bank() -> Bank {
+    FLASH.bank(1)
+}
+
+/// Forgets what failed before, and opens the bank's control register.
+pub fn open() {
+    bank().ccr().write_value(Ccr(FAILURES));
+    // A second key would close it until the next reset.
+    if bank().cr().read().lock() {
+        KEYS.iter().for_each(|key| bank().keyr().write_value(*key));
+    }
+}
+
+/// From now on, what is written to a blank word stays there, once the word is full.
+pub fn program() {
+    bank().cr().write(|w| {
+        w.set_pg(true);
+        w.set_psize(2); // 32 bits at once
+    });
+    cortex_m::asm::dsb();
+}
+
+/// Begins to erase a sector of the two.
+pub fn erase(sector: u8) {
+    bank().cr().write(|w| {
+        w.set_ser(true);
+        w.set_snb(FIRST_SECTOR + sector);
+        w.set_psize(2);
+    });
+    bank().cr().modify(|w| w.set_start(true));
+}
+
+/// Whether it is at work.
+pub fn is_busy() -> bool {
+    cortex_m::asm::dsb();
+    let status = bank().sr().read();
+    status.bsy() || status.qw()
+}
+
+/// Whether it refused what it was told.
+pub fn has_failed() -> bool {
+    bank().sr().read().0 & FAILURES != 0
+}
+
+/// Closes the control register, which keeps what it holds when it closes: emptied first, with it whatever a word lacked.
+pub fn close() {
+    bank().cr().write(|_| ());
+    bank().cr().modify(|w| w.set_lock(true));
+}
+
+/// Reads, and says whether what was read can be believed. Nothing but a non-maskable interrupt comes between.
+pub fn read(words: impl FnOnce()) -> Result<(), Fault> {
+    bank().ccr().write_value(Ccr(FAILURES));
+    // SAFETY: the only access to this register while nothing else runs, undone below.
+    let control = unsafe { &(*SCB::PTR).ccr };
+    // SAFETY: masks all faults and interrupts for a few microseconds; the barrier ends the reads before they can count.
+    unsafe {
+        asm!("cpsid f");
+        control.modify(|bits| bits | IGNORE_BUS_FAULTS);
+        cortex_m::asm::dsb();
+        words();
+        cortex_m::asm::dsb();
+        control.modify(|bits| bits & !IGNORE_BUS_FAULTS);
+        cortex_m::asm::dsb();
+        asm!("cpsie f");
+    }
+    let torn = bank().sr().read().dbeccerr();
+    bank().ccr().write_value(Ccr(FAILURES));
+    if torn { Err(Fault) } else { Ok(()) }
+}
