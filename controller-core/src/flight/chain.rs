@@ -55,7 +55,7 @@ pub(super) struct Chain<'m> {
 }
 
 /// A reference at rest.
-#[inline]
+#[inline(never)] // once in an image
 fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
     let zero = Vector3::zeros();
     let position = *position;
