@@ -103,7 +103,7 @@ const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
 pub struct Memory(Governor);
 
 impl Memory {
-    /// For any governor. All zeros: a static one takes no flash.
+    /// For any governor. All zeros, which is at rest at the origin: a static one takes no flash.
     pub const EMPTY: Self = Self(Governor {
         period: 0.0,
         timeout: 0,
@@ -168,7 +168,8 @@ impl Governor {
             require(value <= most, field, Reason::NotAbove(most))?;
         }
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
-        let governor = &mut memory.0;
+        *memory = Memory::EMPTY;
+        let Memory(governor) = memory;
         let windows = Windows::design(bounds, limits, period)?;
         governor.turning.design(bounds, limits, period)?;
         governor.smoother.design(&windows, period);
@@ -181,9 +182,6 @@ impl Governor {
         governor.windows = windows;
         governor.period = period;
         governor.timeout = windows::ticks(limits.timeout, period) as u32;
-        governor.smoother.start(&Vector3::zeros(), &Vector3::zeros());
-        governor.turning.start(0, 0);
-        governor.stop();
         Ok(governor)
     }
 

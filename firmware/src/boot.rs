@@ -1,7 +1,8 @@
 //! From the embedded scenario to a pilot: the certificate worked out again on the machine that will fly, and logged.
 //!
-//! It takes two seconds or more on a Cortex-M4F (350 million instructions: double precision is software there), and most
-//! of the stack there is, before any task runs. A refused configuration boots as well: it answers, tests motors, and never arms, and says which inequality fails.
+//! It takes two seconds or more on a Cortex-M4F (350 million instructions: double precision is software there), and more of the
+//! stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration boots as well: it answers,
+//! tests motors, and never arms, and says which inequality fails.
 
 use crate::configuration;
 use crate::outputs::Outputs;
@@ -50,7 +51,7 @@ pub fn start<M: RawMutex>(
     Ok((pilot(place, certification.as_ref(), &limits), outputs))
 }
 
-// The two that follow need most of the stack, one after the other: neither may become part of another's frame.
+// Configuration, certificate and pilot need most of the stack, one after the other: none may become part of another's frame.
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]

@@ -15,6 +15,7 @@ include!(concat!(env!("OUT_DIR"), "/configuration.rs"));
 ///
 /// # Errors
 /// Never for a file that the build accepted: the same checks, and stricter ones, have seen the same bits.
+#[inline(never)] // building it takes a stack of its own
 pub fn embedded() -> Result<Configuration, ParameterError> {
     built()
 }

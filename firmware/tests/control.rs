@@ -7,7 +7,6 @@ use core::cell::{Cell, RefCell};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
-use static_cell::StaticCell;
 use support::Simulated;
 use support::receiver::Local;
 
@@ -41,7 +40,7 @@ impl Watchdog for Fed<'_> {
 /// When motors were written and the watchdog fed in 80 ms, the third tick being delayed by `delay`; and ticks missed.
 fn ticks(delay: u64) -> (Vec<u64>, Vec<u64>, u32) {
     let (clock, shared) = (Simulated::default(), Local::new());
-    let place = Box::leak(Box::new(StaticCell::new()));
+    let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
     let (written, fed) = (RefCell::default(), RefCell::default());
     let mut motors = Busy { clock: &clock, delay: (3, delay), written: &written };

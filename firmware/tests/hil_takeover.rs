@@ -12,7 +12,6 @@ use firmware::link::{CommandResult, Reply};
 use firmware::shared::{Asked, Flag, Origin};
 use mavlink::dialects::common::ATT_POS_MOCAP_DATA;
 use nalgebra::Vector3;
-use static_cell::StaticCell;
 use support::receiver::{Fed, Local, texts};
 use support::simulator::{Hil, Pins, now, odometry};
 use support::{Simulated, v2};
@@ -81,7 +80,7 @@ impl Watchdog for Bench {
 /// from 45 ms on; and the answer.
 fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, CommandResult, Vec<String>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
-    let place = Box::leak(Box::new(StaticCell::new()));
+    let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
     let mut pins = Pins::default();
     let mut motors = SelectedMotors { pins: &mut pins, hil: &hil, wanted: &shared.hil, clock: Simulated::default() };

@@ -14,7 +14,6 @@ use firmware::{boot, configuration, imu, link};
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
 use mavlink::dialects::common::MavResult;
-use static_cell::StaticCell;
 use std::cell::Cell;
 use std::rc::Rc;
 

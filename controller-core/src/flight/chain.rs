@@ -54,8 +54,14 @@ pub(super) struct Chain<'m> {
     refusals: u32,
 }
 
+/// What `make` makes, moved in one piece: inlined, each of its fields would be moved for itself.
+#[inline(never)]
+fn apart<T>(make: impl FnOnce() -> T) -> T {
+    make()
+}
+
 /// A reference at rest.
-#[inline]
+#[inline(never)] // once in an image
 fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
     let zero = Vector3::zeros();
     let position = *position;
@@ -74,7 +80,7 @@ impl<'m> Chain<'m> {
         let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
         Ok(Self {
             governor: Governor::new(configuration.bounds(), limits, period, memory)?,
-            controller: Controller::new(certified, period)?,
+            controller: apart(|| Controller::new(certified, period))?,
             allocation: MinimumNorm::new(rotors),
             rotors: rotors.len(),
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),

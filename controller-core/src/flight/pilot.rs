@@ -40,11 +40,7 @@ impl<'m> Pilot<'m> {
     /// arms, and says why.
     #[must_use]
     #[inline]
-    pub fn new(
-        certification: Result<&Certified, &Refused>,
-        limits: &GovernorLimits,
-        memory: &'m mut Memory,
-    ) -> Self {
+    pub fn new(certification: Result<&Certified, &Refused>, limits: &GovernorLimits, memory: &'m mut Memory) -> Self {
         Self {
             chain: match certification {
                 Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),

@@ -105,7 +105,7 @@ pub(super) struct Smoother {
 }
 
 impl Smoother {
-    /// Not designed yet.
+    /// Not designed yet, at rest at the origin.
     pub const NONE: Self = Self {
         history: [Vector3::new(0, 0, 0); HISTORY],
         newest: 0,
@@ -116,7 +116,7 @@ impl Smoother {
         axes: [Axis::AT_REST; 3],
     };
 
-    /// Prepares for `windows`; [`Self::start`] is next.
+    /// Prepares for `windows`.
     #[inline]
     pub fn design(&mut self, windows: &Windows, period: f32) {
         let [first, second, third] = windows.lengths;

@@ -71,7 +71,7 @@ pub(super) struct Turning {
 }
 
 impl Turning {
-    /// Not designed yet.
+    /// Not designed yet, at rest along world x.
     pub const NONE: Self = Self {
         history: [0; TURN_HISTORY],
         newest: 0,
@@ -88,7 +88,7 @@ impl Turning {
         second: 0,
     };
 
-    /// Prepares for `bounds` that are positive; [`Self::start`] is next.
+    /// Prepares for `bounds` that are positive.
     #[inline]
     pub fn design(
         &mut self,

@@ -137,7 +137,7 @@ impl Windows {
 const FITTING_STEPS: usize = 280;
 
 /// The least whole number of ticks that lasts `duration` seconds, at least one.
-#[inline]
+#[inline(never)] // once in an image
 pub(super) fn ticks(duration: f32, period: f32) -> usize {
     let exact = duration / period * (1.0 + ROUNDING_ROOM);
     let whole = exact as usize;

@@ -19,7 +19,6 @@ mod target {
     use firmware::shared::Shared;
     use firmware::status;
     use panic_probe as _;
-    use static_cell::StaticCell;
 
     static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
