@@ -210,7 +210,8 @@ fn commands_are_answered_with_number_result_and_addressee() {
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {
     let origin = Origin { system: 255, component: 190, command: 400 };
-    let say: [(fn(&Local, Origin), u32); 3] = [
+    type Say = fn(&Local, Origin);
+    let say: [(Say, u32); 3] = [
         (|shared, origin| shared.answer(origin, Ok(())), COMMAND_ACK_DATA::ID),
         (|shared, _| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
         (|shared, _| shared.announce(Severity::Information, &["now"]), STATUSTEXT_DATA::ID),

@@ -94,7 +94,6 @@ impl Frame<'_> {
 
     /// One byte of the payload.
     #[must_use]
-    #[inline(never)]
     pub fn byte(&self, offset: usize) -> u8 {
         self.payload.get(offset).copied().unwrap_or(0)
     }
@@ -107,7 +106,6 @@ impl Frame<'_> {
 
     /// An unsigned number of four bytes.
     #[must_use]
-    #[inline(never)]
     pub fn u32(&self, offset: usize) -> u32 {
         u32::from_le_bytes(self.bytes(offset))
     }
@@ -132,7 +130,6 @@ impl Frame<'_> {
 
     /// Three of them.
     #[must_use]
-    #[inline(never)]
     pub fn vector(&self, offset: usize) -> Vector3<f32> {
         Vector3::from_fn(|row, _| self.f32(offset + 4 * row))
     }

@@ -107,13 +107,13 @@ impl Poses {
             }
             ATT_POS_MOCAP => {
                 // Time, attitude, position.
-                let (time, attitude, position) = (frame.u64(0), attitude(frame, 8)?, position(frame, 24)?);
+                let (time, pose) = (frame.u64(0), still(frame, 24, 8)?);
                 if time == 0 {
                     return Err(PoseRefusal::NoTime);
                 }
                 self.listen(frame, time)?;
-                let velocity = self.differences.take(position, time)?;
-                Ok(velocity.map(|velocity| Pose { position, velocity, attitude }))
+                let velocity = self.differences.take(pose.position, time)?;
+                Ok(velocity.map(|velocity| Pose { velocity, ..pose }))
             }
             _ => Ok(None),
         }
@@ -187,33 +187,30 @@ pub(crate) fn odometry(message: &Frame<'_>) -> Result<Pose, PoseRefusal> {
         return Err(PoseRefusal::NotFinite);
     }
     check(&velocity, SPEED_RANGE)?;
-    let (position, attitude) = (position(message, 8)?, attitude(message, 20)?);
+    let pose = still(message, 8, 20)?;
     let velocity = match child {
-        BODY_FRD => UnitQuaternion::new_unchecked(attitude) * frames::body(&velocity),
+        BODY_FRD => UnitQuaternion::new_unchecked(pose.attitude) * frames::body(&velocity),
         child if child == frame => frames::world(&velocity),
         _ => return Err(PoseRefusal::Frame),
     };
-    Ok(Pose { position, velocity, attitude })
+    Ok(Pose { velocity, ..pose })
 }
 
-/// A position of NED, at this place of the message.
-fn position(message: &Frame<'_>, offset: usize) -> Result<Vector3<f32>, PoseRefusal> {
-    let position = message.vector(offset);
-    check(&position, POSITION_MAX)?;
-    Ok(frames::world(&position))
-}
-
-/// An attitude, FRD to NED, scalar first.
-fn attitude(message: &Frame<'_>, offset: usize) -> Result<Quaternion<f32>, PoseRefusal> {
-    if !message.are_finite(offset, 4) {
+/// The pose of a vehicle at rest, with a position of NED and an attitude FRD to NED at these places of the message.
+fn still(message: &Frame<'_>, position: usize, attitude: usize) -> Result<Pose, PoseRefusal> {
+    if !message.are_finite(attitude, 4) {
         return Err(PoseRefusal::NotFinite);
     }
-    let q = Quaternion::from_parts(message.f32(offset), message.vector(offset + 4));
+    let position = message.vector(position);
+    check(&position, POSITION_MAX)?;
+    // Scalar first.
+    let q = Quaternion::from_parts(message.f32(attitude), message.vector(attitude + 4));
     let length = math::sqrt(q.norm_squared());
     if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
         return Err(PoseRefusal::NotARotation);
     }
-    Ok(frames::attitude(&(q / length)))
+    let (position, attitude) = (frames::world(&position), frames::attitude(&(q / length)));
+    Ok(Pose { position, velocity: Vector3::zeros(), attitude })
 }
 
 /// Refuses components that are not finite or greater than `range`.

@@ -56,47 +56,40 @@ pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
     if frame != LOCAL_NED {
         return Err(SetpointRefusal::Frame);
     }
-    let [position, velocity, acceleration] =
-        [used(message, mask, 0)?, used(message, mask, 1)?, used(message, mask, 2)?];
-    let motion = match (position, velocity, acceleration) {
-        (_, _, Some(_)) if mask & FORCE != 0 => return Err(SetpointRefusal::Mask),
-        (Some(position), None, None) => Motion::Position(position),
-        (None, Some(velocity), None) => Motion::Velocity(velocity),
-        (Some(position), Some(velocity), acceleration) => {
-            let acceleration = acceleration.unwrap_or_default();
-            Motion::PositionVelocityAcceleration { position, velocity, acceleration }
-        }
+    let quantity = |index: usize| frames::world(&message.vector(4 + 12 * index));
+    let motion = match (is_used(message, mask, 0)?, is_used(message, mask, 1)?, is_used(message, mask, 2)?) {
+        (_, _, true) if mask & FORCE != 0 => return Err(SetpointRefusal::Mask),
+        (true, false, false) => Motion::Position(quantity(0)),
+        (false, true, false) => Motion::Velocity(quantity(1)),
+        (true, true, accelerated) => Motion::PositionVelocityAcceleration {
+            position: quantity(0),
+            velocity: quantity(1),
+            acceleration: if accelerated { quantity(2) } else { Vector3::zeros() },
+        },
         _ => return Err(SetpointRefusal::Mask),
     };
-    Ok(Setpoint { motion, turn: turn(mask, message.f32(40), message.f32(44))? })
+    Ok(Setpoint { motion, turn: turn(message, mask)? })
 }
 
-/// The world vector of position, velocity or acceleration, if the mask has it used. All three axes are, or none.
-fn used(message: &Frame<'_>, mask: u16, quantity: usize) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
-    match mask >> (3 * quantity) & 0b111 {
-        0b000 => {
-            let offset = 4 + 12 * quantity;
-            if !message.are_finite(offset, 3) {
-                return Err(SetpointRefusal::NotFinite);
-            }
-            Ok(Some(frames::world(&message.vector(offset))))
-        }
-        0b111 => Ok(None),
+/// Whether the mask has position (0), velocity (1) or acceleration (2) used. All three axes are, or none.
+fn is_used(message: &Frame<'_>, mask: u16, index: usize) -> Result<bool, SetpointRefusal> {
+    match mask >> (3 * index) & 0b111 {
+        0b000 if message.are_finite(4 + 12 * index, 3) => Ok(true),
+        0b000 => Err(SetpointRefusal::NotFinite),
+        0b111 => Ok(false),
         _ => Err(SetpointRefusal::Mask),
     }
 }
 
-fn turn(mask: u16, angle: f32, rate: f32) -> Result<Turn, SetpointRefusal> {
-    let angle = (mask & NO_HEADING == 0).then_some(angle).map(finite).transpose()?;
-    let rate = (mask & NO_HEADING_RATE == 0).then_some(rate).map(finite).transpose()?;
-    let rate = rate.map(frames::heading_rate);
-    Ok(match (angle.map(frames::heading), rate) {
-        (None, None) => Turn::Keep,
-        (None, Some(rate)) => Turn::Rate(rate),
-        (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
+fn turn(message: &Frame<'_>, mask: u16) -> Result<Turn, SetpointRefusal> {
+    let (turns, rotates) = (mask & NO_HEADING == 0, mask & NO_HEADING_RATE == 0);
+    if turns && !message.are_finite(40, 1) || rotates && !message.are_finite(44, 1) {
+        return Err(SetpointRefusal::NotFinite);
+    }
+    let (angle, rate) = (frames::heading(message.f32(40)), frames::heading_rate(message.f32(44)));
+    Ok(match (turns, rotates) {
+        (false, false) => Turn::Keep,
+        (false, true) => Turn::Rate(rate),
+        (true, _) => Turn::Angle { angle, rate: if rotates { rate } else { 0.0 } },
     })
-}
-
-fn finite(value: f32) -> Result<f32, SetpointRefusal> {
-    if value.is_finite() { Ok(value) } else { Err(SetpointRefusal::NotFinite) }
 }

@@ -23,7 +23,6 @@ impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
     ///
     /// # Errors
     /// [`Full`] where there is no room; the value is lost.
-    #[inline(never)]
     pub fn put(&self, value: T) -> Result<(), Full> {
         // The mutex lets one in at a time, so the queue is never borrowed.
         self.0.lock(|queue| queue.try_borrow_mut().ok().and_then(|mut queue| queue.push_back(value).ok()).ok_or(Full))
@@ -31,7 +30,6 @@ impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
 
     /// Takes the first one.
     #[must_use]
-    #[inline(never)]
     pub fn take(&self) -> Option<T> {
         self.0.lock(|queue| queue.try_borrow_mut().ok()?.pop_front())
     }

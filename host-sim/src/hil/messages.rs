@@ -107,7 +107,7 @@ impl Encoder {
     }
 
     fn append(&mut self, message: &impl MessageData, bytes: &mut Vec<u8>) {
-        let header = MavHeader { system_id: SYSTEM, component_id: 1, sequence: self.sequence };
+        let header = MavHeader { system_id: SYSTEM.into(), component_id: 1, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message_data(header, message);
