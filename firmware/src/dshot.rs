@@ -27,35 +27,33 @@ const STEPS: f32 = 1999.0;
 /// [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing but stop is
 /// right for all of them.
 pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
+    let mut frames = stop();
     match command {
-        MotorCommand::Stop => Ok(stop()),
-        MotorCommand::Run(commands) if commands.iter().all(|command| command.is_finite()) => {
-            Ok(commands.map(|command| run(command).unwrap_or_else(stop_frame)))
+        MotorCommand::Stop => {}
+        MotorCommand::Run(commands) => {
+            for (frame, command) in frames.iter_mut().zip(commands) {
+                *frame = run(command)?;
+            }
         }
-        MotorCommand::One { motor, level } if level.is_finite() => {
-            let mut frames = stop();
-            *frames.get_mut(motor).ok_or(Fault)? = run(level).unwrap_or_else(stop_frame);
-            Ok(frames)
-        }
-        MotorCommand::Run(_) | MotorCommand::One { .. } => Err(Fault),
+        MotorCommand::One { motor, level } => *frames.get_mut(motor).ok_or(Fault)? = run(level)?,
     }
+    Ok(frames)
 }
 
 /// The stop command for every motor.
 #[must_use]
 pub fn stop() -> [NormalFrame; MOTORS] {
-    [(); MOTORS].map(|()| stop_frame())
-}
-
-fn stop_frame() -> NormalFrame {
-    NormalFrame::command(Command::MotorStop, false)
+    [(); MOTORS].map(|()| NormalFrame::command(Command::MotorStop, false))
 }
 
 /// A frame that turns the motor: `command` 0 is the slowest speed, 1 the fastest, anything beyond is held there.
-fn run(command: f32) -> Option<NormalFrame> {
+fn run(command: f32) -> Result<NormalFrame, Fault> {
+    if !command.is_finite() {
+        return Err(Fault);
+    }
     // Saturating: below the range 0, above it the last step.
     let step = (command.clamp(0.0, 1.0) * STEPS + 0.5) as u16;
-    NormalFrame::new(step, false)
+    NormalFrame::new(step, false).ok_or(Fault)
 }
 
 /// Timer ticks that a zero bit is high for, of `period` ticks a bit.
@@ -77,12 +75,16 @@ impl<W: From<u16>> Waveform<W> {
 
     /// Draws `frames` at `period` ticks a bit, motor i on channel `channels[i]` (0 to 3).
     pub fn draw(&mut self, frames: &[NormalFrame; MOTORS], channels: &[usize; MOTORS], period: u16) {
-        // The library draws thirds of what it is told: of 9/8 periods, these are 3/8 and 6/8 of one.
-        let told = period + period / 8;
+        let zero = zero_width(period);
         for (frame, &channel) in frames.iter().zip(channels) {
-            let [bits @ .., _] = frame.duty_cycles(told);
-            let widths = bits.into_iter().chain([0; ROWS - BITS]);
-            for (row, width) in self.0.iter_mut().zip(widths) {
+            // The first to leave is the highest.
+            let bits = frame.inner().reverse_bits();
+            for (index, row) in self.0.iter_mut().enumerate() {
+                let width = match index {
+                    BITS.. => 0,
+                    _ if (bits >> index) & 1 == 1 => 2 * zero,
+                    _ => zero,
+                };
                 if let Some(word) = row.get_mut(channel) {
                     *word = W::from(width);
                 }
