@@ -170,7 +170,7 @@ fn form(configuration: &Configuration, derivation: Derivation) -> Form {
 
     let reach = Reachable::new(f64::from(gains.k_f), f64::from(gains.k_s), m_p, gravity, bounds);
     let magnitude = match derivation {
-        Derivation::Printed => math::sqrt_f64(3.0) * m_p + math::hypot(horizontal, vertical + gravity),
+        Derivation::Printed => math::SQRT_3 * m_p + math::hypot(horizontal, vertical + gravity),
         Derivation::Sharp => reach.magnitude(),
     };
     let least_law = mass * reach.vertical_least;
