@@ -114,7 +114,18 @@ impl Certificate {
     /// Everything that decides: the sharp form's inequalities, then two for each rotor.
     #[inline]
     pub fn inequalities(&self) -> impl Iterator<Item = &Inequality> {
-        self.sharp.inequalities.iter().chain(self.rotors.iter().flat_map(|rotor| [&rotor.least, &rotor.greatest]))
+        let count = self.sharp.inequalities.len() + 2 * self.rotors.len();
+        (0..count).filter_map(|place| self.inequality(place))
+    }
+
+    #[inline]
+    fn inequality(&self, place: usize) -> Option<&Inequality> {
+        let wrench = &self.sharp.inequalities;
+        wrench.get(place).or_else(|| {
+            let of_rotors = place.checked_sub(wrench.len())?;
+            let rotor = self.rotors.get(of_rotors / 2)?;
+            Some(if of_rotors.is_multiple_of(2) { &rotor.least } else { &rotor.greatest })
+        })
     }
 
     /// Whether the configuration is certified: everything that decides holds.
@@ -159,7 +170,7 @@ fn form(configuration: &Configuration, derivation: Derivation) -> Form {
 
     let reach = Reachable::new(f64::from(gains.k_f), f64::from(gains.k_s), m_p, gravity, bounds);
     let magnitude = match derivation {
-        Derivation::Printed => math::sqrt_f64(3.0) * m_p + math::hypot(horizontal, vertical + gravity),
+        Derivation::Printed => math::SQRT_3 * m_p + math::hypot(horizontal, vertical + gravity),
         Derivation::Sharp => reach.magnitude(),
     };
     let least_law = mass * reach.vertical_least;

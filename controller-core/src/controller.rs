@@ -172,7 +172,8 @@ impl Controller {
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);
         let attitude_law = AttitudeLaw::new(&gains, &vehicle.inertia);
-        let heaviest = vehicle.mass.max(vehicle.inertia.max()).max(vehicle.gravity);
+        let light = |x: &f32| *x <= USUAL_VEHICLE;
+        let usual = light(&vehicle.mass) && light(&vehicle.gravity) && vehicle.inertia.iter().all(light);
         Ok(Self {
             vehicle,
             gains,
@@ -181,7 +182,7 @@ impl Controller {
             transition,
             switching_scalar,
             thrust_floor,
-            usual_squares: if heaviest <= USUAL_VEHICLE { USUAL_SQUARES } else { 0.0 },
+            usual_squares: if usual { USUAL_SQUARES } else { 0.0 },
             usual_climb: gains.m_p + USUAL_CLIMB,
             memory: Memory::RESET,
         })

@@ -364,14 +364,15 @@ mod tests {
     #[test]
     fn rotors_with_their_inverse_are_those_that_worked_it_out_and_others_are_refused() {
         let rotors = Rotors::quad_x(hummingbird()).unwrap();
-        let again = |change: fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>)| {
+        type Change = fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>);
+        let again = |change: Change| {
             let mut list = Vec::from_slice(&rotors).unwrap();
             let mut inverse = Vec::from_slice(rotors.pseudo_inverse()).unwrap();
             change(&mut list, &mut inverse);
             Rotors::with_inverse(&list, &inverse)
         };
         assert_eq!(again(|_, _| {}), Ok(rotors.clone()));
-        let refused: [fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>); 9] = [
+        let refused: [Change; 9] = [
             |_, inverse| inverse[2].w *= 1.0 + 1e-8,
             |_, inverse| inverse.swap(0, 1),
             |_, inverse| inverse[1].x = f64::NAN,

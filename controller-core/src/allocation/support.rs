@@ -252,16 +252,16 @@ impl RotorDemand {
         self.margin >= 0.0
     }
 
+    /// What `commands` ask of rotor `index`, whose thrust is `row` of B+ times the wrench.
+    #[must_use]
     #[inline]
-    fn new(index: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
+    pub fn new(index: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
         let (available_min, available_max) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
         let (up, down) = (commands.reach(row), commands.reach(&-row));
         let (above, below) = (available_max - up.total, -down.total - available_min);
-        let (limit, margin, towards) = if above <= below {
-            (Limit::Maximum, above, torque_part(row))
-        } else {
-            (Limit::Minimum, below, -torque_part(row))
-        };
+        let (limit, margin, sign) =
+            if above <= below { (Limit::Maximum, above, 1.0) } else { (Limit::Minimum, below, -1.0) };
+        let towards = torque_part(row) * sign;
         let (share, spread) = (0.5 * (up.thrust - down.thrust), 0.5 * (up.thrust + down.thrust));
         let beyond = (share - available_max).max(available_min - share);
         let worse = |worst: (Cause, f64), term: &TorqueTerm| {
@@ -273,13 +273,18 @@ impl RotorDemand {
         } else {
             commands.torque.iter().fold((Cause::Thrust, spread), worse)
         };
-        let without = |axis: Vector3<f64>| commands.support(&towards) - commands.support(&towards.component_mul(&axis));
-        let roll = (Axis::Roll, without(Vector3::new(0.0, 1.0, 1.0)));
-        let others = [(Axis::Pitch, Vector3::new(1.0, 0.0, 1.0)), (Axis::Yaw, Vector3::new(1.0, 1.0, 0.0))];
-        let (weak_axis, relief) = others.into_iter().fold(roll, |most, (axis, rest)| {
-            let relief = without(rest);
-            if relief > most.1 { (axis, relief) } else { most }
-        });
+        let with_all_axes = commands.support(&towards);
+        let (mut weak_axis, mut relief) = (Axis::Roll, f64::NEG_INFINITY);
+        for (axis, place) in [(Axis::Roll, 0), (Axis::Pitch, 1), (Axis::Yaw, 2)] {
+            let mut rest = towards;
+            if let Some(component) = rest.get_mut(place) {
+                *component = 0.0;
+            }
+            let without = with_all_axes - commands.support(&rest);
+            if without > relief {
+                (weak_axis, relief) = (axis, without);
+            }
+        }
         Self {
             rotor: index,
             least: -down.total,

@@ -27,10 +27,9 @@ pub fn desired_rates(
     bounds: &ReferenceBounds,
     inertia: &Vector3<f64>,
 ) -> DesiredRates {
-    let root3 = math::sqrt_f64(3.0);
     let half_l1 = half_l1_norm(k_f, k_s);
-    let jerk = 2.0 * root3 * k_f * half_l1 * m_p + f64::from(bounds.jerk);
-    let snap = 2.0 * root3 * k_f * m_p * (k_f * half_l1 + k_s) + f64::from(bounds.snap);
+    let jerk = 2.0 * math::SQRT_3 * k_f * half_l1 * m_p + f64::from(bounds.jerk);
+    let snap = 2.0 * math::SQRT_3 * k_f * m_p * (k_f * half_l1 + k_s) + f64::from(bounds.snap);
     let vertical = gravity - m_p - f64::from(bounds.vertical_acceleration);
     let horizontal = core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration);
     let projection = vertical / math::hypot(vertical, horizontal);

@@ -64,7 +64,7 @@ impl Reachable {
             vertical_least: gravity - m_p - vertical,
             vertical_greatest: gravity + m_p + vertical,
             horizontal: core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration),
-            jerk: math::sqrt_f64(3.0) * axis_jerk + jerk,
+            jerk: math::SQRT_3 * axis_jerk + jerk,
             horizontal_jerk: core::f64::consts::SQRT_2 * axis_jerk + jerk,
             vertical_jerk: axis_jerk + jerk,
             horizontal_snap: core::f64::consts::SQRT_2 * axis_snap + snap,

@@ -19,7 +19,7 @@ use super::configuration::Configuration;
 use super::inequality::Inequality;
 use super::{ARITHMETIC_ALLOWANCE, Form};
 use crate::allocation::geometry::{ROTORS_MAX, Rotors};
-use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
+use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm};
 use crate::error::ParameterError;
 use heapless::Vec;
 
@@ -72,9 +72,9 @@ pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorRe
 #[inline]
 fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
     let mut reports = Vec::new();
-    for ((demand, row), (least, greatest)) in
-        demands(rotors, commands).into_iter().zip(rotors.pseudo_inverse()).zip(NAMES)
+    for (index, ((rotor, row), (least, greatest))) in rotors.iter().zip(rotors.pseudo_inverse()).zip(&NAMES).enumerate()
     {
+        let demand = RotorDemand::new(index, rotor, row, commands);
         let share = row.x * hover;
         let report = RotorReport {
             demand,

@@ -67,6 +67,15 @@ impl DesiredRates {
         }
     }
 
+    /// Whether any of these bounds is greater than the other's.
+    #[inline]
+    fn exceed(&self, other: &Self) -> bool {
+        let torque = self.feedforward_torque.iter().zip(other.feedforward_torque.as_slice());
+        self.angular_velocity > other.angular_velocity
+            || self.angular_acceleration > other.angular_acceleration
+            || torque.into_iter().any(|(ours, theirs)| ours > theirs)
+    }
+
     /// These bounds raised to hold for another cell too.
     #[inline]
     fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
@@ -312,16 +321,6 @@ impl HeadingCell {
             Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
         })
     }
-
-    /// The greatest of each part.
-    #[inline]
-    fn worst(all: &[Self]) -> Self {
-        let still = Self { rate: 0.0, acceleration: 0.0 };
-        all.iter().fold(still, |worst, cell| Self {
-            rate: worst.rate.max(cell.rate),
-            acceleration: worst.acceleration.max(cell.acceleration),
-        })
-    }
 }
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
@@ -331,7 +330,8 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
-    let worst_heading = HeadingCell::worst(&headings);
+    // |psi'| is greatest in the first cell, |psi''| in the last, where nothing is left to |psi'|.
+    let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
     let nothing = Parts { tilting: 0.0, yawing: 0.0 };
     let mut greatest =
         DesiredRates { angular_velocity: 0.0, angular_acceleration: 0.0, feedforward_torque: Vector3::zeros() };
@@ -355,7 +355,7 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
 
         let quadratic = tilt.quadratic_part(&worst_heading, &Shares::worst(&shares));
         let at_most = greatest.with(inertia, velocity, math::sqrt_f64(Parts::worst(&linear).square_of_sum(&quadratic)));
-        if at_most != greatest {
+        if at_most.exceed(&greatest) {
             let square = acceleration_square(&tilt, &linear, &headings, &shares);
             greatest = greatest.with(inertia, velocity, math::sqrt_f64(square));
         }
