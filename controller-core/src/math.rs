@@ -8,14 +8,9 @@
 //! | [`sqrt`] | x >= 0 | correctly rounded |
 //! | [`sin_cos_turns`] | all phases | 1.2e-7 |
 //! | [`tanh_of_scaled`], [`tanh_of_all_scaled`] | all numbers | 1.97e-7 |
-//! | [`sqrt_f64`] | x >= 0 | correctly rounded |
-//! | [`floor`], [`round`] | all numbers | exact |
-//! | [`atan2`] | all but the origin | 2e-15 |
-//! | [`exp_m1`] | \|x\| <= 100 | relative 2e-15, x times 1e-15 more for x > 0 |
-//! | [`ln_1p`] | x >= -0.9 | relative 3e-15 |
+//! | [`ln_1p`] | -0.9 <= x <= 1e6 | relative 3e-15 |
 //!
-//! Double precision is for configuration time, and software on the boards: its functions are loops rather than tables, and
-//! one copy of each serves all callers.
+//! Double precision is for configuration time, and `libm`'s: software on the boards.
 
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 

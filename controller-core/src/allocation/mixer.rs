@@ -121,7 +121,7 @@ impl Mixer {
     /// Thrusts for `wrench`, N and N m, body frame.
     ///
     /// # Errors
-    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
+    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never are.
     #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
         let asked = components(wrench);
