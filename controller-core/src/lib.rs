@@ -43,7 +43,7 @@
 //!
 //! The law's step, [`controller::Controller::command`], is compiled in this crate and for speed. Certificate, allocation,
 //! governor and flight rules are marked `#[inline]`: the crate that calls them compiles them, as it is compiled itself,
-//! and the firmware is compiled for size. Without that they would take 30 KB more of a board's flash. What they are
+//! and the firmware is compiled for size. Compiled for speed they would take far more of a board's flash. What they are
 //! marked with says nothing about calls: in the firmware most of them are calls.
 //!
 //! # Features

@@ -8,3 +8,8 @@ pub mod micoair_h743;
 pub mod mps2;
 #[cfg(feature = "stm32")]
 pub mod stm32;
+
+#[cfg(feature = "crazyflie-bolt")]
+use crazyflie_bolt as chosen;
+#[cfg(feature = "micoair-h743")]
+use micoair_h743 as chosen;

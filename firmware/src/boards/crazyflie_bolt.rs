@@ -7,15 +7,17 @@
 
 use super::stm32::clock::SystemClock;
 use super::stm32::fault;
-use super::stm32::imu::{self, BoardImu};
+use super::stm32::imu;
 use super::stm32::light::Lamp;
-use super::stm32::link::{self, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
-use super::stm32::restart::{self, Cause};
+use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::tasks::{self, Board};
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
+use core::mem::forget;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
@@ -55,95 +57,73 @@ pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
 /// The watchdog.
 pub type BoardWatchdog = ChipWatchdog<IWDG>;
 
-/// Everything on the board, each part ready for the task that will own it.
-pub struct Board {
-    /// Time since boot.
-    pub clock: SystemClock,
-    /// The sensor, powered up at its first sample.
-    pub imu: BoardImu,
-    /// The motors, silent.
-    pub motors: BoardMotors,
-    /// The watchdog, not started.
-    pub watchdog: BoardWatchdog,
-    /// The battery, out of reach.
-    pub battery: NoBattery,
-    /// The blue light, off.
-    pub light: Lamp,
-    /// What USART2 receives.
-    pub receiver: Receiver,
-    /// What USART2 sends.
-    pub transmitter: Transmitter,
-    /// What USART3 receives from a simulator.
-    pub simulator_receiver: SimulatorReceiver,
-    /// What USART3 sends to a simulator.
-    pub simulator_transmitter: SimulatorTransmitter,
-    /// Where parameters live.
-    pub storage: ParameterFlash,
-    /// Why the chip started.
-    pub restart: Cause,
-    /// Power of the motors' controllers, on for as long as these are held.
-    pub power: [Output<'static>; 4],
-}
+/// The battery.
+pub type BoardBattery = NoBattery;
 
-impl Board {
-    /// Sets the clocks and takes every peripheral. Once.
-    ///
-    /// # Panics
-    /// The second time.
-    #[must_use]
-    pub fn take() -> Self {
-        let restart = restart::cause();
-        let p = embassy_stm32::init(clocks());
-        pac::FLASH.acr().modify(|w| {
-            w.set_prften(true);
-            w.set_icen(true);
-            w.set_dcen(true);
-        });
+/// What it is called.
+pub const NAME: &str = "Crazyflie Bolt 1.1";
 
-        // The motors first: PA15 is pulled up until here, and the controllers must not see that.
-        let pins = Pins(
-            PwmPin::new(p.PA15, OutputType::PushPull),
-            PwmPin::new(p.PA1, OutputType::PushPull),
-            PwmPin::new(p.PB10, OutputType::PushPull),
-            PwmPin::new(p.PB11, OutputType::PushPull),
-        );
-        let motors = Dshot::new(p.TIM2, pins, MOTOR_CHANNELS, p.DMA1_CH1, Interrupts);
-        let power = [
-            Output::new(p.PA0, Level::High, Speed::Low),
-            Output::new(p.PB12, Level::High, Speed::Low),
-            Output::new(p.PC8, Level::High, Speed::Low),
-            Output::new(p.PC15, Level::High, Speed::Low),
-        ];
+/// The interrupts that control and the sensor's task run in: nothing on the board uses them.
+pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::UART4;
+/// See [`CONTROL_INTERRUPT`].
+pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
 
-        let bus = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
-        let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
-        let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
-        let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
-        let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+/// Sets the clocks and takes every peripheral. Once.
+///
+/// # Panics
+/// The second time.
+#[must_use]
+pub fn take() -> Board {
+    let restart = restart::cause();
+    let p = embassy_stm32::init(clocks());
+    pac::FLASH.acr().modify(|w| {
+        w.set_prften(true);
+        w.set_icen(true);
+        w.set_dcen(true);
+    });
 
-        let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
-        let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
-        let (receiver, transmitter) = link::halves(uart);
-        let (to, from) = link::simulator_rings();
-        let uart = BufferedUart::new(p.USART3, p.PC11, p.PC10, to, from, Interrupts, link::config());
-        let uart = defmt::unwrap!(uart.map_err(|_| "USART3's clock makes no 921,600 baud"));
-        let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
+    // The motors first: PA15 is pulled up until here, and the controllers must not see that.
+    let pins = Pins(
+        PwmPin::new(p.PA15, OutputType::PushPull),
+        PwmPin::new(p.PA1, OutputType::PushPull),
+        PwmPin::new(p.PB10, OutputType::PushPull),
+        PwmPin::new(p.PB11, OutputType::PushPull),
+    );
+    let motors = Dshot::new(p.TIM2, pins, MOTOR_CHANNELS, p.DMA1_CH1, Interrupts);
+    // The controllers have power for as long as these are held: for ever.
+    forget([
+        Output::new(p.PA0, Level::High, Speed::Low),
+        Output::new(p.PB12, Level::High, Speed::Low),
+        Output::new(p.PC8, Level::High, Speed::Low),
+        Output::new(p.PC15, Level::High, Speed::Low),
+    ]);
 
-        Self {
-            clock: SystemClock,
-            imu,
-            motors,
-            watchdog: ChipWatchdog::new(p.IWDG),
-            battery: NoBattery,
-            light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
-            receiver,
-            transmitter,
-            simulator_receiver,
-            simulator_transmitter,
-            storage: ParameterFlash::new(p.FLASH, pac::IWDG),
-            restart,
-            power,
-        }
+    let bus = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
+    let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
+    let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
+    let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
+    let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+
+    let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
+    let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+    let (receiver, transmitter) = link::halves(uart);
+    let (to, from) = link::simulator_rings();
+    let uart = BufferedUart::new(p.USART3, p.PC11, p.PC10, to, from, Interrupts, link::config());
+    let uart = defmt::unwrap!(uart.map_err(|_| "USART3's clock makes no 921,600 baud"));
+    let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
+
+    Board {
+        imu,
+        motors,
+        watchdog: ChipWatchdog::new(p.IWDG),
+        battery: NoBattery,
+        light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
+        receiver,
+        transmitter,
+        simulator_receiver,
+        simulator_transmitter,
+        storage: ParameterFlash::new(p.FLASH, pac::IWDG),
+        restart,
     }
 }
 
@@ -190,4 +170,16 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 #[exception]
 unsafe fn DefaultHandler(_: i16) -> ! {
     fault::stop_and_restart(motor_timer())
+}
+
+#[interrupt]
+unsafe fn UART4() {
+    // SAFETY: this is its handler.
+    unsafe { tasks::on_control_interrupt() }
+}
+
+#[interrupt]
+unsafe fn UART5() {
+    // SAFETY: this is its handler.
+    unsafe { tasks::on_sensor_interrupt() }
 }

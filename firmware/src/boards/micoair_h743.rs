@@ -7,12 +7,13 @@
 
 use super::stm32::clock::SystemClock;
 use super::stm32::fault;
-use super::stm32::imu::{self, BoardImu};
+use super::stm32::imu;
 use super::stm32::light::Lamp;
-use super::stm32::link::{self, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
-use super::stm32::restart::{self, Cause};
+use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::tasks::{self, Board};
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
@@ -58,84 +59,64 @@ pub type BoardMotors = Dshot<TIM1, DMA1_CH2, Interrupts>;
 /// The watchdog.
 pub type BoardWatchdog = ChipWatchdog<IWDG1>;
 
-/// Everything on the board, each part ready for the task that will own it.
-pub struct Board {
-    /// Time since boot.
-    pub clock: SystemClock,
-    /// The sensor, powered up at its first sample.
-    pub imu: BoardImu,
-    /// The motors, silent.
-    pub motors: BoardMotors,
-    /// The watchdog, not started.
-    pub watchdog: BoardWatchdog,
-    /// The battery.
-    pub battery: DividedBattery,
-    /// The green light, off.
-    pub light: Lamp,
-    /// What USART1 receives.
-    pub receiver: Receiver,
-    /// What USART1 sends.
-    pub transmitter: Transmitter,
-    /// What USART2 receives from a simulator.
-    pub simulator_receiver: SimulatorReceiver,
-    /// What USART2 sends to a simulator.
-    pub simulator_transmitter: SimulatorTransmitter,
-    /// Where parameters live.
-    pub storage: ParameterFlash,
-    /// Why the chip started.
-    pub restart: Cause,
-}
+/// The battery.
+pub type BoardBattery = DividedBattery;
 
-impl Board {
-    /// Sets the clocks and takes every peripheral. Once.
-    ///
-    /// # Panics
-    /// The second time.
-    #[must_use]
-    pub fn take() -> Self {
-        let restart = restart::cause();
-        let p = embassy_stm32::init(clocks());
-        if let Some(mut core) = cortex_m::Peripherals::take() {
-            core.SCB.enable_icache();
-        }
+/// What it is called.
+pub const NAME: &str = "MicoAir H743 V2";
 
-        // The motors first: their lines float until here.
-        let pins = Pins(
-            PwmPin::new(p.PE9, OutputType::PushPull),
-            PwmPin::new(p.PE11, OutputType::PushPull),
-            PwmPin::new(p.PE13, OutputType::PushPull),
-            PwmPin::new(p.PE14, OutputType::PushPull),
-        );
-        let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
+/// The interrupts that control and the sensor's task run in: nothing on the board uses them.
+pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::SAI1;
+/// See [`CONTROL_INTERRUPT`].
+pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 
-        let bus = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
-        let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
-        let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
-        let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
-        let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+/// Sets the clocks and takes every peripheral. Once.
+///
+/// # Panics
+/// The second time.
+#[must_use]
+pub fn take() -> Board {
+    let restart = restart::cause();
+    let p = embassy_stm32::init(clocks());
+    if let Some(mut core) = cortex_m::Peripherals::take() {
+        core.SCB.enable_icache();
+    }
 
-        let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
-        let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));
-        let (receiver, transmitter) = link::halves(uart);
-        let (to, from) = link::simulator_rings();
-        let uart = BufferedUart::new(p.USART2, p.PA3, p.PA2, to, from, Interrupts, link::config());
-        let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
-        let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
+    // The motors first: their lines float until here.
+    let pins = Pins(
+        PwmPin::new(p.PE9, OutputType::PushPull),
+        PwmPin::new(p.PE11, OutputType::PushPull),
+        PwmPin::new(p.PE13, OutputType::PushPull),
+        PwmPin::new(p.PE14, OutputType::PushPull),
+    );
+    let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
 
-        Self {
-            clock: SystemClock,
-            imu,
-            motors,
-            watchdog: ChipWatchdog::new(p.IWDG1),
-            battery: DividedBattery::new(p.ADC1, p.PC0),
-            light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
-            receiver,
-            transmitter,
-            simulator_receiver,
-            simulator_transmitter,
-            storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
-            restart,
-        }
+    let bus = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+    let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
+    let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
+    let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
+    let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+
+    let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
+    let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));
+    let (receiver, transmitter) = link::halves(uart);
+    let (to, from) = link::simulator_rings();
+    let uart = BufferedUart::new(p.USART2, p.PA3, p.PA2, to, from, Interrupts, link::config());
+    let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+    let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
+
+    Board {
+        imu,
+        motors,
+        watchdog: ChipWatchdog::new(p.IWDG1),
+        battery: DividedBattery::new(p.ADC1, p.PC0),
+        light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
+        receiver,
+        transmitter,
+        simulator_receiver,
+        simulator_transmitter,
+        storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
+        restart,
     }
 }
 
@@ -205,4 +186,16 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 #[exception]
 unsafe fn DefaultHandler(_: i16) -> ! {
     fault::stop_and_restart(motor_timer())
+}
+
+#[interrupt]
+unsafe fn SAI1() {
+    // SAFETY: this is its handler.
+    unsafe { tasks::on_control_interrupt() }
+}
+
+#[interrupt]
+unsafe fn SAI2() {
+    // SAFETY: this is its handler.
+    unsafe { tasks::on_sensor_interrupt() }
 }

@@ -1,4 +1,4 @@
-//! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers.
+//! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
 pub mod clock;
 pub mod fault;
@@ -8,4 +8,5 @@ pub mod link;
 pub mod motors;
 pub mod restart;
 pub mod storage;
+pub mod tasks;
 pub mod watchdog;

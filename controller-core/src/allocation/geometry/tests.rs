@@ -1,0 +1,115 @@
+use super::*;
+use nalgebra::Matrix4;
+
+fn hummingbird() -> QuadX {
+    QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 }
+}
+
+fn refused(change: impl Fn(&mut [Rotor])) -> ParameterError {
+    let mut rotors: Vec<Rotor, ROTORS_MAX> = Rotors::quad_x(hummingbird()).unwrap().iter().copied().collect();
+    change(&mut rotors);
+    Rotors::new(&rotors).unwrap_err()
+}
+
+#[test]
+fn thrust_on_the_left_rolls_right_and_thrust_ahead_pitches_up() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    let front_left = rotors.effectiveness()[0];
+    let side = 0.17 * core::f64::consts::FRAC_1_SQRT_2;
+    let expected = Vector4::new(1.0, side, -side, 1.36e-7 / 5.57e-6);
+    assert!((front_left - expected).amax() < 1e-8, "{front_left}");
+    let force = Vector3::new(0.0, 0.0, 1.0);
+    for (rotor, column) in rotors.iter().zip(rotors.effectiveness()) {
+        let torque = rotor.position.cross(&force);
+        assert!((column.y - f64::from(torque.x)).abs() < 1e-12 && (column.z - f64::from(torque.y)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_clockwise_rotor_turns_the_body_to_positive_yaw() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    for (rotor, column) in rotors.iter().zip(rotors.effectiveness()) {
+        assert_eq!(column.w > 0.0, rotor.spin == Spin::Clockwise);
+    }
+}
+
+#[test]
+fn the_pseudo_inverse_is_a_right_inverse() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    let product: Matrix4<f64> =
+        rotors.effectiveness().iter().zip(rotors.pseudo_inverse()).map(|(b, row)| b * row.transpose()).sum();
+    assert!((product - Matrix4::identity()).amax() < 1e-12, "{product}");
+}
+
+#[test]
+fn rotors_with_their_inverse_are_those_that_worked_it_out_and_others_are_refused() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    type Change = fn(&mut Vec<Rotor, 9>, &mut Vec<Vector4<f64>, 9>);
+    let again = |change: Change| {
+        let mut list = Vec::from_slice(&rotors).unwrap();
+        let mut inverse = Vec::from_slice(rotors.pseudo_inverse()).unwrap();
+        change(&mut list, &mut inverse);
+        Rotors::with_inverse(&list, &inverse)
+    };
+    assert_eq!(again(|_, _| {}), Ok(rotors.clone()));
+    let refused: [Change; 9] = [
+        |_, inverse| inverse[2].w *= 1.0 + 1e-8,
+        |_, inverse| inverse.swap(0, 1),
+        |_, inverse| inverse[1].x = f64::NAN,
+        |_, inverse| inverse.push(Vector4::zeros()).unwrap(),
+        |list, _| list[3].position.x *= 1.001,
+        |list, _| list[3].thrust_coefficient = 0.0,
+        |list, _| list[0].thrust_min = -0.1,
+        |list, _| list[0].thrust_max = f32::NAN,
+        |list, inverse| (list.truncate(3), inverse.truncate(3)).0,
+    ];
+    for change in refused {
+        assert_eq!(again(change), Err(DOES_NOT_SPAN));
+    }
+    let too_many = |list: &mut Vec<Rotor, 9>, _: &mut Vec<Vector4<f64>, 9>| {
+        let first = list[0];
+        list.resize(9, first).unwrap();
+    };
+    assert_eq!(again(too_many).unwrap_err().reason, Reason::TooMany(8));
+}
+
+#[test]
+fn speed_and_thrust_are_inverse_to_each_other() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    for i in 0..1000 {
+        let thrust = 12.5 * i as f32 / 1000.0;
+        let back = rotors[0].thrust_at(rotors[0].speed_at(thrust));
+        assert!((back - thrust).abs() <= 4.0 * f32::EPSILON * thrust);
+    }
+}
+
+#[test]
+fn every_bad_rotor_is_named() {
+    let case = |field, reason| ParameterError { field, reason };
+    assert_eq!(refused(|r| r[2].position.x = f32::NAN), case("rotors.position[2]", Reason::NotFinite));
+    assert_eq!(refused(|r| r[2].position.z = 1e3), case("rotors.position[2]", Reason::NotBelow(100.0)));
+    assert_eq!(refused(|r| r[0].thrust_coefficient = 0.0), case("rotors.thrust_coefficient[0]", Reason::NotPositive));
+    assert_eq!(refused(|r| r[3].drag_coefficient = -1.0), case("rotors.drag_coefficient[3]", Reason::NotPositive));
+    assert_eq!(refused(|r| r[1].thrust_min = -0.1), case("rotors.thrust_min[1]", Reason::Negative));
+    assert_eq!(refused(|r| r[1].thrust_max = f32::INFINITY), case("rotors.thrust_max[1]", Reason::NotFinite));
+    let equal = refused(|r| r[1].thrust_min = r[1].thrust_max);
+    assert!(equal.field == "rotors.thrust_min[1]" && matches!(equal.reason, Reason::NotBelow(_)));
+}
+
+#[test]
+fn rotors_that_cannot_span_the_wrench_are_refused() {
+    let cannot = ParameterError { field: "rotors", reason: Reason::DoesNotSpan };
+    assert_eq!(refused(|r| r.iter_mut().for_each(|rotor| rotor.spin = Spin::Clockwise)), cannot);
+    assert_eq!(refused(|r| r.iter_mut().for_each(|rotor| rotor.position.x = 0.0)), cannot);
+    // Spins paired along one side: yaw is then a combination of roll and the rest.
+    let spins = [Spin::Clockwise, Spin::Clockwise, Spin::CounterClockwise, Spin::CounterClockwise];
+    assert_eq!(refused(|r| r.iter_mut().zip(spins).for_each(|(rotor, spin)| rotor.spin = spin)), cannot);
+}
+
+#[test]
+fn fewer_than_four_or_more_than_eight_rotors_are_refused() {
+    let quad = Rotors::quad_x(hummingbird()).unwrap();
+    let nine: Vec<Rotor, 9> = quad.iter().cycle().take(9).copied().collect();
+    assert_eq!(Rotors::new(&quad[..3]).unwrap_err().reason, Reason::TooFew(4));
+    assert_eq!(Rotors::new(&nine).unwrap_err().reason, Reason::TooMany(8));
+}
