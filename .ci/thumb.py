@@ -17,22 +17,30 @@ ALLOCATED, NOBITS, SYMTAB, FUNCTION = 2, 8, 2, 2
 
 def path(symbol):
     """The identifiers in a mangled Rust symbol, joined; other symbols as they are."""
-    if not symbol.startswith(("_ZN", "_R")):
-        return symbol
-    parts, place = [], 0
-    while found := re.compile(r"(\d+)").search(symbol, place):
-        start, length = found.end(), int(found[1])
-        if symbol.startswith("_R") and symbol[start : start + 1] == "_":
-            start += 1
-        part = symbol[start : start + length]
-        if length and len(part) == length and re.fullmatch(r"[A-Za-z_$][\w$.]*", part):
-            parts.append(part)
-            place = start + length
+    if symbol.startswith("_ZN"):
+        parts = identifiers(symbol, 3)
+        if parts and re.fullmatch(r"h[0-9a-f]{16}", parts[-1]):
+            parts.pop()
+        return "::".join(parts)
+    return "::".join(identifiers(symbol, 2)) if symbol.startswith("_R") else symbol
+
+
+def identifiers(symbol, place):
+    """The identifiers in a mangled Rust symbol from `place` on, of either mangling: each follows its length."""
+    parts = []
+    while place < len(symbol):
+        if found := re.compile(r"(\d+)_?").match(symbol, place):
+            # An underscore parts a length from an identifier that begins with a digit or an underscore.
+            start = found.end() if symbol.startswith("_R") else found.end(1)
+            place = start + int(found[1])
+            if place > start:
+                parts.append(symbol[start:place])
+        elif symbol.startswith("_R") and (number := re.compile(r"[sBKLG][0-9A-Za-z]*_").match(symbol, place)):
+            # What tells crates of one name apart, references back, constants and lifetimes: numbers that are no lengths.
+            place = number.end()
         else:
-            place = found.end()
-    if symbol.startswith("_ZN") and parts and re.fullmatch(r"h[0-9a-f]{16}", parts[-1]):
-        parts.pop()
-    return "::".join(parts)
+            place += 1
+    return parts
 
 
 class Image:
