@@ -210,10 +210,10 @@ impl Governor {
         self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
     }
 
-    /// Metres as length units.
+    /// Metres as length units, no more than [`FARTHEST`].
     #[inline]
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(math::whole)
+        (metres * self.windows.per_metre).map(|length| math::whole(length.clamp(-FARTHEST, FARTHEST)))
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -305,6 +305,9 @@ impl Governor {
         TurnGoal { phase, rate }
     }
 }
+
+/// The greatest length, units: 2^61, so that a target, its lead and the command's own place add up within 64 bits.
+const FARTHEST: f32 = 2_305_843_009_213_693_952.0;
 
 /// The longest ramp or timeout, s.
 const LONGEST_TIME: f32 = 60.0;

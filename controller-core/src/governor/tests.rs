@@ -283,3 +283,25 @@ fn a_bound_or_a_limit_of_zero_is_refused_by_name() {
     assert_eq!(refused(TYPICAL, GovernorLimits { timeout: 61.0, ..limits }, PERIOD), "governor.timeout");
     assert_eq!(refused(TYPICAL, limits, 0.2), "governor.period");
 }
+
+#[test]
+fn the_farthest_targets_in_the_finest_units_stay_within_the_integers() {
+    // Weak bounds on acceleration and wide ones on its derivatives make short averages and fine units.
+    let weak =
+        ReferenceBounds { horizontal_acceleration: 0.01, vertical_acceleration: 0.01, jerk: 1e3, snap: 1e5, ..TYPICAL };
+    let patient = GovernorLimits { timeout: 60.0, ..GovernorLimits::default() };
+    for sign in [1.0, -1.0] {
+        let governor = Governor::new(&weak, &patient, PERIOD, memory()).unwrap();
+        let all = |range: f32| Vector3::repeat(sign * range);
+        let motion = Motion::PositionVelocityAcceleration {
+            position: all(0.99 * POSITION_RANGE),
+            velocity: all(0.0),
+            acceleration: all(0.99 * crate::reference::DERIVATIVE_RANGE),
+        };
+        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        for _ in 0..7_000 {
+            let reference = governor.tick();
+            assert!(weak.contain(&reference, 1e-5) && reference.position.x * sign >= 0.0, "{reference:?}");
+        }
+    }
+}
