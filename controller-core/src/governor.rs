@@ -150,13 +150,10 @@ impl Governor {
         period: f32,
         memory: &'m mut Memory,
     ) -> Result<&'m mut Self, ParameterError> {
+        for (value, field) in bounds.named() {
+            require_positive(value, field)?;
+        }
         for (value, most, field) in [
-            (bounds.horizontal_acceleration, f32::MAX, "reference_bounds.horizontal_acceleration"),
-            (bounds.vertical_acceleration, f32::MAX, "reference_bounds.vertical_acceleration"),
-            (bounds.jerk, f32::MAX, "reference_bounds.jerk"),
-            (bounds.snap, f32::MAX, "reference_bounds.snap"),
-            (bounds.heading_rate, f32::MAX, "reference_bounds.heading_rate"),
-            (bounds.heading_second_derivative, f32::MAX, "reference_bounds.heading_second_derivative"),
             (period, 0.1, "governor.period"),
             (limits.horizontal_speed, SPEED_RANGE, "governor.horizontal_speed"),
             (limits.vertical_speed, SPEED_RANGE, "governor.vertical_speed"),

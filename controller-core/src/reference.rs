@@ -100,20 +100,26 @@ impl ReferenceBounds {
         heading_second_derivative: 0.0,
     };
 
-    /// Checks that every bound is finite and not negative.
-    ///
-    /// # Errors
-    /// Names the first field that is not.
+    /// Each bound with its name.
     #[inline]
-    pub fn validated(self) -> Result<Self, ParameterError> {
-        for (value, field) in [
+    pub(crate) fn named(&self) -> [(f32, &'static str); 6] {
+        [
             (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
             (self.vertical_acceleration, "reference_bounds.vertical_acceleration"),
             (self.jerk, "reference_bounds.jerk"),
             (self.snap, "reference_bounds.snap"),
             (self.heading_rate, "reference_bounds.heading_rate"),
             (self.heading_second_derivative, "reference_bounds.heading_second_derivative"),
-        ] {
+        ]
+    }
+
+    /// Checks that every bound is finite and not negative.
+    ///
+    /// # Errors
+    /// Names the first field that is not.
+    #[inline]
+    pub fn validated(self) -> Result<Self, ParameterError> {
+        for (value, field) in self.named() {
             require_finite(value, field)?;
             require(value >= 0.0, field, Reason::Negative)?;
         }

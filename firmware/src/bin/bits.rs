@@ -7,28 +7,19 @@
 mod target {
     use core::panic::PanicInfo;
     use cortex_m as _; // the critical section that printing takes
-    use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
     use cortex_m_semihosting::hprintln;
+    use firmware::boards::mps2::exit;
     use firmware::replay::{RECORD, Replay, TICKS};
     use semihosting::fs::File;
     use semihosting::io::Read;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let code = match replay() {
-            Ok(digest) => {
-                hprintln!("{}", digest);
-                EXIT_SUCCESS
-            }
-            Err(problem) => {
-                hprintln!("error: {}", problem);
-                EXIT_FAILURE
-            }
-        };
-        debug::exit(code);
-        loop {
-            cortex_m::asm::wfi();
+        match replay() {
+            Ok(digest) => hprintln!("{}", digest),
+            Err(problem) => exit::fail(problem),
         }
+        exit::end(true)
     }
 
     fn replay() -> Result<heapless::String<64>, &'static str> {
@@ -44,11 +35,7 @@ mod target {
 
     #[panic_handler]
     fn panicked(info: &PanicInfo<'_>) -> ! {
-        hprintln!("{}", info);
-        debug::exit(EXIT_FAILURE);
-        loop {
-            cortex_m::asm::wfi();
-        }
+        exit::fail(info)
     }
 }
 

@@ -16,8 +16,8 @@ use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
 use core::panic::PanicInfo;
-use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
+use firmware::boards::mps2::exit;
 use firmware::configuration;
 use nalgebra::{Quaternion, Vector3};
 use static_cell::ConstStaticCell;
@@ -58,20 +58,12 @@ type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let code = if measure() { EXIT_SUCCESS } else { EXIT_FAILURE };
-    debug::exit(code);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    exit::end(measure())
 }
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
-    hprintln!("{}", info);
-    debug::exit(EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    exit::fail(info)
 }
 
 /// Everything, as a table; whether it could be measured at all.

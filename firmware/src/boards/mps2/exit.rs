@@ -1,32 +1,34 @@
-//! Every way to end in failure: a line on the emulator's standard error, and status 1.
+//! Every way to end: in failure with a line on the emulator's standard error and status 1, otherwise with status 0.
 //!
 //! The lines are plain text, not defmt: a fault may come while defmt's encoder is in use.
 
+use core::fmt::Display;
 use cortex_m_rt::{ExceptionFrame, exception};
 use cortex_m_semihosting::{debug, heprintln};
 
-/// Ends the emulation with status 1.
-pub fn fail(why: &str) -> ! {
-    heprintln!("error: {}", why);
+/// Ends the emulation.
+pub fn end(success: bool) -> ! {
     loop {
-        debug::exit(debug::EXIT_FAILURE);
+        debug::exit(if success { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
     }
+}
+
+/// Ends the emulation with status 1.
+pub fn fail(why: impl Display) -> ! {
+    heprintln!("error: {}", why);
+    end(false)
 }
 
 /// The processor could not go on; panics end here too, after printing themselves.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     heprintln!("error: hard fault at {:#010x}, called from {:#010x}", frame.pc(), frame.lr());
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
+    end(false)
 }
 
 /// An interrupt that nobody handles.
 #[exception]
 unsafe fn DefaultHandler(interrupt: i16) -> ! {
     heprintln!("error: unexpected interrupt {}", interrupt);
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
+    end(false)
 }
