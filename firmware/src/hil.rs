@@ -141,7 +141,8 @@ pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &i
     let mut draft = Draft::new();
     let mut sequence: u8 = 0;
     loop {
-        hil.outgoing.wait().await;
+        // The time limit only makes the wait a bounded one.
+        let _ = within(clock, SILENCE, hil.outgoing.wait()).await;
         let Some(command) = hil.command.take() else { continue };
         let system = shared.parameters.get(Name::SystemId) as u8;
         let header = Header { system, component: COMPONENT, sequence };
