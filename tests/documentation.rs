@@ -31,7 +31,7 @@ fn tests() -> BTreeSet<String> {
         "controller-core/src",
         "controller-core/tests",
         "host-sim/src",
-        "host-sim/scenario/src",
+        "scenario/src",
         "host-sim/tests",
         "firmware/src",
         "tests",

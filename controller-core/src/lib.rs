@@ -102,7 +102,7 @@
 //! | (29) | \|d\| <= 4 sqrt(2) \|theta~\| \|u\| | [`projection`] | projection.rs: `the_perturbation_is_never_larger_than_the_papers` (against the paper's d, not its bound) |
 //! | Theorem 4, (34): H_R | the law on SO(3), by path lifting | [`controller::Controller::step`] | tests/recovery.rs: `a_thousand_random_attitudes_and_spins_settle_within_six_seconds`; tests/hysteresis.rs: `noise_at_a_half_turn_changes_the_lift_at_most_once_a_flight` |
 //! | Remarks 1, 2 | nothing to hold | | |
-//! | Table I | gains | [`gains::GainParameters::TABLE_1`], `scenarios/paper.toml` | host-sim/scenario/src/tests.rs: `the_built_in_file_is_the_papers_experiment` |
+//! | Table I | gains | [`gains::GainParameters::TABLE_1`], `scenarios/paper.toml` | scenario/src/tests.rs: `the_built_in_file_is_the_papers_experiment` |
 //! | Section VI, Figures 1, 2 | the experiment | `host_sim::fly`, `host_sim::claims`, `host_sim::plots` | tests/paper.rs: `the_papers_experiment_meets_every_published_figure`, `it_tracks_several_times_closer_than_published` |
 //! | Appendix A: Phi, dist | nearest lift to the memory | [`path_lifting::lift`] | path_lifting.rs: `the_memory_follows_in_steps_of_alpha`, `the_lift_follows_its_path_through_a_half_turn_and_switches_once_past_the_hysteresis` |
 //! | Appendix A: C_m, D_m, C_q, D_q, (35): H_l | both jumps | [`path_lifting::lift`], [`path_lifting::switching_scalar`] | tests/independent_law.rs: `memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks`; tests/hysteresis.rs: `without_hysteresis_the_lift_chatters` |

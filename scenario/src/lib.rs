@@ -36,7 +36,7 @@ use timing::Timing;
 use toml::Table;
 
 /// The paper's Section VI, built in.
-pub const PAPER: &str = include_str!("../../../scenarios/paper.toml");
+pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// What a scenario file may hold at its top level.
 const SECTIONS: [&str; 12] = [
