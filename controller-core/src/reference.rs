@@ -44,17 +44,11 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The sum of the squares of position and velocity.
+    /// The sum of the squares of all vectors and of the heading's rates.
     #[inline(always)]
-    pub(crate) fn travel_squares(&self) -> f32 {
-        sum_of_squares(&[&self.position, &self.velocity])
-    }
-
-    /// The sum of the squares of jerk, snap and the heading's rates.
-    #[inline(always)]
-    pub(crate) fn rate_squares(&self) -> f32 {
+    pub(crate) fn squares(&self) -> f32 {
         let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
-        sum_of_squares(&[&self.jerk, &self.snap, &turning])
+        sum_of_squares(&[&self.position, &self.velocity, &self.acceleration, &self.jerk, &self.snap, &turning])
     }
 
     /// Checks that every field is finite and in range.

@@ -55,16 +55,10 @@ pub(crate) fn is_rotation(q: &Quaternion<f32>) -> bool {
 }
 
 impl State {
-    /// The sum of the squares of position and velocity.
+    /// The sum of the squares of position, velocity and angular velocity.
     #[inline(always)]
-    pub(crate) fn travel_squares(&self) -> f32 {
-        sum_of_squares(&[&self.position, &self.velocity])
-    }
-
-    /// The sum of the squares of the angular velocity.
-    #[inline(always)]
-    pub(crate) fn turning_squares(&self) -> f32 {
-        sum_of_squares(&[&self.angular_velocity])
+    pub(crate) fn squares(&self) -> f32 {
+        sum_of_squares(&[&self.position, &self.velocity, &self.angular_velocity])
     }
 
     /// Whether the attitude is a rotation.
