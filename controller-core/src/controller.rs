@@ -132,7 +132,6 @@ impl Controller {
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
-    #[inline]
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         Self::build(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
@@ -153,7 +152,6 @@ impl Controller {
         Self::build(vehicle, gains, thrust_floor, period)
     }
 
-    #[inline]
     fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(&gains, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
@@ -241,8 +239,7 @@ impl Controller {
             return Err(InputError::OutOfRange { field: "reference" });
         }
         let FilterState { filtered, intermediate } = filter;
-        self.memory =
-            Memory { filter: self.transition.advance(&filter, &command.feedback), lift: Some(lifted.lift) };
+        self.memory = Memory { filter: self.transition.advance(&filter, &command.feedback), lift: Some(lifted.lift) };
 
         let diagnostics = Diagnostics {
             position_error: command.position_error,

@@ -23,7 +23,6 @@ pub struct State {
 }
 
 /// Refuses the first of `vectors` with a component that is not finite, or greater than the range beside it.
-#[inline(never)] // once in an image
 pub(crate) fn check_vectors(vectors: &[(&Vector3<f32>, f32, &'static str)]) -> Result<(), InputError> {
     for &(vector, range, field) in vectors {
         // A NaN compares false with everything, so it fails here too.
@@ -68,7 +67,6 @@ impl State {
     }
 
     /// Checks every field, one by one.
-    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vectors(&[
             (&self.position, STATE_RANGE, "state.position"),
