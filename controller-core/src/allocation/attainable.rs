@@ -30,11 +30,11 @@
 //! So a range errs by rounding across every face, whatever the face's slope; the mixer's last clip takes that back.
 
 use super::collected;
-use super::geometry::{ROTORS_MAX, Rotors};
+use super::geometry::{ROTORS_MAX, Rotors, normal};
 use crate::math;
 use core::cell::Cell;
 use heapless::Vec;
-use nalgebra::{Vector2, Vector3, Vector4};
+use nalgebra::{Vector2, Vector4};
 
 /// What evaluating a.w in f32 may lose, relative to |a|.|w|: four products, four sums, and the rounding of a, w and the
 /// bounds, half an [`f32::EPSILON`] each at most.
@@ -141,17 +141,6 @@ impl<const N: usize> Slabs<N> {
             (into(at - slab.high), into(at - slab.low))
         })
     }
-}
-
-/// The vector normal to three others in four dimensions: the cross product's bigger sister.
-pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
-    let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
-    Vector4::new(
-        minor(|v| Vector3::new(v.y, v.z, v.w)),
-        -minor(|v| Vector3::new(v.x, v.z, v.w)),
-        minor(|v| Vector3::new(v.x, v.y, v.w)),
-        -minor(|v| Vector3::new(v.x, v.y, v.z)),
-    )
 }
 
 /// sum_i |normal| . |b_i| high_i: the size of what rounding is relative to.

@@ -15,7 +15,6 @@
 //!
 //! Tilted rotors, and rotors that push down, are beyond this module.
 
-use super::attainable::normal;
 use super::collected;
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
@@ -291,6 +290,17 @@ fn columns(rotors: &[Rotor]) -> Vec<Vector4<f64>, ROTORS_MAX> {
 /// The squared lengths of the rows of B.
 fn squares(columns: &[Vector4<f64>]) -> Vector4<f64> {
     columns.iter().map(|column| column.component_mul(column)).sum()
+}
+
+/// The vector normal to three others in four dimensions: the cross product's bigger sister.
+pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
+    let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
+    Vector4::new(
+        minor(|v| Vector3::new(v.y, v.z, v.w)),
+        -minor(|v| Vector3::new(v.x, v.z, v.w)),
+        minor(|v| Vector3::new(v.x, v.y, v.w)),
+        -minor(|v| Vector3::new(v.x, v.y, v.z)),
+    )
 }
 
 impl Deref for Rotors {

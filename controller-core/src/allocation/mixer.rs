@@ -23,9 +23,9 @@
 //! It does not know the rotors' lag, nor what they delivered last tick. It is for flights that nothing is proven about:
 //! certified ones never come to step 2 and are flown without it.
 
-use super::attainable::{Polygon, Slabs, generators, normal};
+use super::attainable::{Polygon, Slabs, generators};
 use super::collected;
-use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
+use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors, normal};
 use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
 use crate::error::InputError;
 use crate::state::Wrench;
