@@ -153,7 +153,7 @@ impl Controller {
     }
 
     fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
-        let transition = FilterTransition::new(&gains, period)?;
+        let transition = FilterTransition::new(gains.k_f, gains.k_s, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);
         let attitude_law = AttitudeLaw::new(&gains, &vehicle.inertia);
@@ -175,7 +175,7 @@ impl Controller {
     /// # Errors
     /// Names `control.period` if it is outside (0, 0.1]; the period then stays what it was.
     pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
-        self.transition = FilterTransition::new(&self.gains, period)?;
+        self.transition = FilterTransition::new(self.gains.k_f, self.gains.k_s, period)?;
         Ok(())
     }
 

@@ -62,15 +62,15 @@ impl FilterTransition {
     /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].
     const GREATEST_WEIGHT: f64 = 1.0 - 8.0 / 16_777_216.0;
 
-    /// For the bandwidths in `gains` and a period in (0, [`Self::LONGEST_PERIOD`]] s.
+    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::LONGEST_PERIOD`]] s.
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
-    pub fn new(gains: &Gains, period: f32) -> Result<Self, ParameterError> {
+    pub fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
         let longest = Self::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
-        let (k_f, k_s, h) = (f64::from(gains.k_f), f64::from(gains.k_s), f64::from(period));
+        let (k_f, k_s, h) = (f64::from(k_f), f64::from(k_s), f64::from(period));
         let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
@@ -88,16 +88,24 @@ impl FilterTransition {
     /// them now, to the last bit.
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
+        let FilterState { filtered: f, intermediate: s } = state;
+        let (x_f, x_s) = self.advance_axis(f.x, s.x, feedback.x);
+        let (y_f, y_s) = self.advance_axis(f.y, s.y, feedback.y);
+        let (z_f, z_s) = self.advance_axis(f.z, s.z, feedback.z);
+        FilterState { filtered: Vector3::new(x_f, y_f, z_f), intermediate: Vector3::new(x_s, y_s, z_s) }
+    }
+
+    /// One axis' u_f and u_s one period later, with its ubar held.
+    #[must_use]
+    pub fn advance_axis(&self, u_f: f32, u_s: f32, ubar: f32) -> (f32, f32) {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
         // move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three roundings make
         // each product at most its weight times (M - x) (1 + 2^-24)^3, and the weights add up to less than that leaves.
         // So x plus the step is at most M before it is rounded, and hence after.
-        let filtered = state.filtered.zip_zip_map(&state.intermediate, feedback, |u_f, u_s, ubar| {
-            u_f + (self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f))
-        });
-        let intermediate =
-            state.intermediate.zip_map(feedback, |u_s, ubar| u_s + self.intermediate_towards_input * (ubar - u_s));
-        FilterState { filtered, intermediate }
+        (
+            u_f + (self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f)),
+            u_s + self.intermediate_towards_input * (ubar - u_s),
+        )
     }
 }
 
@@ -221,7 +229,7 @@ mod tests {
                 for m_p in [2.0, 0.3, 7.77, 1e-3] {
                     let gains = GainParameters { k_f, k_s, m_p, ..GainParameters::TABLE_1 };
                     let gains = Gains::new(gains, &vehicle).unwrap();
-                    let transition = FilterTransition::new(&gains, period).unwrap();
+                    let transition = FilterTransition::new(gains.k_f, gains.k_s, period).unwrap();
                     for _ in 0..3000 {
                         let mut vector = || Vector3::new(within(m_p), within(m_p), within(m_p));
                         let state = FilterState { filtered: vector(), intermediate: vector() };

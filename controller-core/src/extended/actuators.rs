@@ -1,0 +1,162 @@
+//! What the rotors were commanded, through their delay and lag: the wrench that acts, as far as the law knows.
+//!
+//! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with the
+//! rotors' time constant. So between two ticks the command c_(k-n-1) acts for a time f h, then c_(k-n), and with x the wrench
+//! and e(t) = e^(-t / lag), its end and its mean over the interval are linear in x, c_(k-n-1) and c_(k-n): [`Response`].
+//!
+//! The estimates compare accelerations averaged over an interval with this mean. The rotors' speeds lag, not their thrusts;
+//! the difference is of second order in the command's step.
+
+use crate::error::{ParameterError, Reason, require, require_finite};
+use crate::math;
+use nalgebra::Vector4;
+
+/// The greatest delay that is modelled, samples.
+pub const DELAY_MAX: usize = 4;
+
+/// How a vehicle's wrench follows its commands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorParameters {
+    /// Time constant of the thrust, s.
+    pub lag: f32,
+    /// From a tick to the moment its command reaches the rotors, s.
+    pub delay: f32,
+}
+
+/// Weights of x, the older and the newer command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Response {
+    state: f32,
+    older: f32,
+    newer: f32,
+}
+
+impl Response {
+    fn of(&self, state: &Vector4<f32>, older: &Vector4<f32>, newer: &Vector4<f32>) -> Vector4<f32> {
+        state * self.state + older * self.older + newer * self.newer
+    }
+}
+
+/// The model's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorModel {
+    /// n.
+    whole_delay: usize,
+    end: Response,
+    mean: Response,
+}
+
+/// The model's memory: what was commanded, and what acts. A wrench is (T, tau) in N and N m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorState {
+    acting: Vector4<f32>,
+    /// The newest first.
+    commanded: [Vector4<f32>; DELAY_MAX + 1],
+}
+
+impl ActuatorState {
+    /// A wrench that has been commanded for ever.
+    #[must_use]
+    pub fn steady(wrench: Vector4<f32>) -> Self {
+        Self { acting: wrench, commanded: [wrench; DELAY_MAX + 1] }
+    }
+
+    /// Takes up what is commanded now.
+    pub fn command(&mut self, wrench: Vector4<f32>) {
+        let mut next = wrench;
+        for slot in &mut self.commanded {
+            core::mem::swap(slot, &mut next);
+        }
+    }
+}
+
+impl ActuatorModel {
+    /// For ticks `period` seconds apart.
+    ///
+    /// # Errors
+    /// Names `rotors.lag` or `sampling.delay` if negative or not finite, or a delay beyond [`DELAY_MAX`] - 1 periods.
+    pub fn new(parameters: &ActuatorParameters, period: f32) -> Result<Self, ParameterError> {
+        let ActuatorParameters { lag, delay } = *parameters;
+        for (value, field) in [(lag, "rotors.lag"), (delay, "sampling.delay")] {
+            require_finite(value, field)?;
+            require(value >= 0.0, field, Reason::Negative)?;
+        }
+        let longest = (DELAY_MAX - 1) as f32 * period;
+        require(delay <= longest, "sampling.delay", Reason::NotBelow(longest))?;
+        let (lag, period) = (f64::from(lag), f64::from(period));
+        let samples = f64::from(delay) / period;
+        // A delay of whole samples that rounding put just below is one.
+        let whole = math::floor(samples + 1e-6);
+        let late = (samples - whole).max(0.0) * period;
+        // e(t), and the mean of e over t times t, which is the lag times 1 - e(t).
+        let decay = |time: f64| if lag > 0.0 { math::exp(-time / lag) } else { 0.0 };
+        let area = |time: f64| lag * (1.0 - decay(time));
+        let rest = period - late;
+        let end = [decay(period), (1.0 - decay(late)) * decay(rest), 1.0 - decay(rest)];
+        let through_older = (late - area(late)) + (1.0 - decay(late)) * area(rest);
+        let mean = [area(period), through_older, rest - area(rest)].map(|area| area / period);
+        let end = if lag > 0.0 { end } else { [0.0, 0.0, 1.0] };
+        let response = |[state, older, newer]: [f64; 3]| Response {
+            state: state as f32,
+            older: older as f32,
+            newer: newer as f32,
+        };
+        Ok(Self { whole_delay: whole as usize, end: response(end), mean: response(mean) })
+    }
+
+    /// Lets one period pass; returns the mean wrench over it.
+    pub fn advance(&self, state: &mut ActuatorState) -> Vector4<f32> {
+        let command = |age: usize| state.commanded.get(age).copied().unwrap_or_default();
+        let (newer, older) = (command(self.whole_delay), command(self.whole_delay + 1));
+        let mean = self.mean.of(&state.acting, &older, &newer);
+        state.acting = self.end.of(&state.acting, &older, &newer);
+        mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The model against its differential equation in small steps.
+    #[test]
+    fn end_and_mean_are_those_of_the_lag_whatever_the_delay() {
+        let period = 0.01;
+        for (lag, delay) in [(0.0, 0.0), (0.005, 0.0), (0.03, 0.01), (0.03, 0.013), (0.001, 0.0275), (0.0, 0.004)] {
+            let model = ActuatorModel::new(&ActuatorParameters { lag, delay }, period).unwrap();
+            let mut state = ActuatorState::steady(Vector4::zeros());
+            let (mut x, mut history) = (0.0_f64, [0.0_f64; 8]);
+            let steps = 20_000;
+            let step = f64::from(period) / f64::from(steps);
+            for tick in 0..30 {
+                let sent = f64::from((tick * 37 % 11) as f32 - 5.0);
+                history.rotate_right(1);
+                history[0] = sent;
+                state.command(Vector4::repeat(sent as f32));
+                let mean = model.advance(&mut state);
+                let mut sum = 0.0;
+                for i in 0..steps {
+                    let age = f64::from(delay) - (f64::from(i) + 0.5) * step;
+                    let late = (age / f64::from(period)).ceil().max(0.0) as usize;
+                    let before = x;
+                    x = if lag > 0.0 {
+                        history[late] + (x - history[late]) * (-step / f64::from(lag)).exp()
+                    } else {
+                        history[late]
+                    };
+                    sum += if lag > 0.0 { 0.5 * (before + x) } else { x };
+                }
+                assert!((f64::from(mean.x) - sum / f64::from(steps)).abs() < 2e-3, "{lag} {delay} {tick}: {mean}");
+                assert!((f64::from(state.acting.x) - x).abs() < 2e-3, "{lag} {delay} {tick}: {}", state.acting);
+            }
+        }
+    }
+
+    #[test]
+    fn delays_and_lags_beyond_the_model_are_refused_by_name() {
+        let field = |lag, delay| ActuatorModel::new(&ActuatorParameters { lag, delay }, 0.01).unwrap_err().field;
+        assert_eq!(field(-0.001, 0.0), "rotors.lag");
+        assert_eq!(field(0.0, f32::NAN), "sampling.delay");
+        assert_eq!(field(0.0, 0.031), "sampling.delay");
+    }
+}

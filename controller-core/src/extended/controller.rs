@@ -1,0 +1,301 @@
+//! One step of the extended law: state and reference in, wrench out.
+//!
+//! ```text
+//! what happened since the last tick -> force, torque_bias, thrust_scale
+//! State, Reference -> position -> attitude_reference -> heading -> path_lifting -> attitude -> thrust_floor -> Wrench
+//! ```
+//!
+//! The order within a tick: the averages of the estimates first; then everything from filters and generators as they stand,
+//! with the feedback and the accelerations that will be held; then all of them advance by one period. So the wrench is the one
+//! for the instant the state was taken, as in the paper's [`controller`](crate::controller).
+
+use super::actuators::{ActuatorModel, ActuatorParameters, ActuatorState};
+use super::attitude::{AttitudeLaw, AttitudeTorque};
+use super::force::{self, ForceEstimate, ForceGenerator};
+use super::heading::{self, HeadingLag};
+use super::parameters::Extended;
+use super::position::PositionLaw;
+use super::thrust_floor::ThrustFloor;
+use super::thrust_scale::ThrustScale;
+use super::torque_bias::{self, TorqueBias};
+use crate::allocation::Rotors;
+use crate::attitude_reference::DesiredAttitude;
+use crate::controller::Diagnostics;
+use crate::error::{InputError, ParameterError, Reason, require, require_positive};
+use crate::path_lifting::{self, Lift};
+use crate::position::{FilterState, FilterTransition};
+use crate::reference::{DERIVATIVE_RANGE, Reference};
+use crate::state::{State, Wrench, length_squared};
+use crate::vehicle::Vehicle;
+use nalgebra::{Quaternion, Vector3, Vector4};
+
+/// What the law knows beyond its filters and its lift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimates {
+    /// The force per mass.
+    pub force: ForceEstimate,
+    /// The averaged torque bias, N m, body frame, before it is cut to its level.
+    pub torque: Vector3<f32>,
+    /// What the rotors deliver of what is commanded.
+    pub scale: f32,
+}
+
+impl Estimates {
+    /// Nothing known.
+    pub const NONE: Self = Self { force: ForceEstimate::NONE, torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+}
+
+/// The last tick, as far as the estimates need it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Last {
+    velocity: Vector3<f32>,
+    /// R e3.
+    thrust_axis: Vector3<f32>,
+    angular_velocity: Vector3<f32>,
+}
+
+/// Everything the law remembers from one tick to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Memory {
+    /// x_f.
+    pub filter: FilterState,
+    /// The path lifting's memory; none before the first step.
+    pub lift: Option<Lift>,
+    /// The heading's lag; none before the first step.
+    pub heading: Option<HeadingLag>,
+    /// The estimates.
+    pub estimates: Estimates,
+    last: Option<Last>,
+    actuators: ActuatorState,
+    /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
+    acted: Vector4<f32>,
+}
+
+/// The extended law for one vehicle, one set of constants and one period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controller {
+    vehicle: Vehicle,
+    parameters: Extended,
+    period: f32,
+    per_mass: f32,
+    switching_scalar: f32,
+    /// M_z- + D_z - g: the reference's vertical acceleration stays above it, m/s^2.
+    steepest_fall: f32,
+    position: PositionLaw,
+    force: ForceGenerator,
+    attitude: AttitudeLaw,
+    torque_bias: TorqueBias,
+    thrust_scale: ThrustScale,
+    floor: ThrustFloor,
+    actuators: ActuatorModel,
+    holds: bool,
+    memory: Memory,
+}
+
+impl Controller {
+    pub(crate) fn build(
+        vehicle: &Vehicle,
+        parameters: &Extended,
+        rotors: Option<&Rotors>,
+        actuators: &ActuatorParameters,
+        period: f32,
+    ) -> Result<Self, ParameterError> {
+        require_positive(period, "control.period")?;
+        let longest = FilterTransition::LONGEST_PERIOD;
+        require(period <= longest, "control.period", Reason::NotBelow(longest))?;
+        let p = &parameters.position;
+        Ok(Self {
+            vehicle: *vehicle,
+            parameters: *parameters,
+            period,
+            per_mass: 1.0 / vehicle.mass,
+            switching_scalar: path_lifting::switching_scalar(parameters.attitude.delta),
+            steepest_fall: p.m_down + parameters.estimates.force_vertical - vehicle.gravity,
+            position: PositionLaw::new(p, period)?,
+            force: ForceGenerator::new(&parameters.estimates, vehicle.gravity, period)?,
+            attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
+            torque_bias: TorqueBias::new(&parameters.estimates, period),
+            thrust_scale: ThrustScale::new(&parameters.estimates, period),
+            floor: ThrustFloor::new(rotors, parameters.floor_margin),
+            actuators: ActuatorModel::new(actuators, period)?,
+            holds: false,
+            memory: Self::fresh(vehicle, Estimates::NONE),
+        })
+    }
+
+    /// A memory of `estimates` and nothing else.
+    fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Memory {
+        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale, 0.0, 0.0, 0.0);
+        Memory {
+            filter: FilterState::ZERO,
+            lift: None,
+            heading: None,
+            estimates,
+            last: None,
+            actuators: ActuatorState::steady(hover),
+            acted: hover,
+        }
+    }
+
+    /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
+    pub fn reset(&mut self) {
+        self.memory = Self::fresh(&self.vehicle, Estimates::NONE);
+    }
+
+    /// The same with what has been estimated kept: how a flight goes on without a pose.
+    pub fn restart(&mut self) {
+        self.memory = Self::fresh(&self.vehicle, self.memory.estimates);
+    }
+
+    /// Whether the estimates stay as they are: on the ground, while a rotor saturates, without a velocity.
+    pub fn hold_estimates(&mut self, hold: bool) {
+        self.holds = hold;
+    }
+
+    /// What the law remembers.
+    #[must_use]
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// The estimate of the torque bias, cut to its level, N m, body frame.
+    #[must_use]
+    pub fn torque_estimate(&self) -> Vector3<f32> {
+        self.torque_bias.estimate(&self.memory.estimates.torque)
+    }
+
+    /// One tick of the law.
+    ///
+    /// # Errors
+    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or (the
+    /// reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        self.admit(state, reference)?;
+        let Memory { filter, lift, heading, .. } = self.memory;
+        let axis = thrust_axis(&state.attitude);
+        let estimates = self.estimate(state, &axis);
+
+        let feedback = self.position.feedback(state, reference, &filter);
+        let force_acceleration = self.force.acceleration(&estimates.force);
+        let command = self.command(reference, &filter, &estimates.force);
+        let jerk =
+            self.with_drag(&reference.jerk, &reference.acceleration) + feedback.filtered_rate - estimates.force.rate;
+        let snap =
+            self.with_drag(&reference.snap, &reference.jerk) + feedback.filtered_acceleration - force_acceleration;
+
+        let desired = DesiredAttitude::new(&command, &reference.heading);
+        let papers = desired.motion(&jerk, &snap, &reference.heading);
+        let heading = heading.unwrap_or_else(|| HeadingLag::none(papers.velocity.z, &self.parameters.heading));
+        let turning = heading::turning(&heading, &papers, &self.parameters.heading, self.period);
+
+        let error = heading.turned_back(&desired.error(&state.attitude));
+        let lifted = path_lifting::lift(lift.as_ref(), &error, self.switching_scalar, self.parameters.attitude.alpha);
+        let AttitudeTorque { angular_velocity_error, potential, damping, torque } =
+            self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
+        let torque = torque - self.torque_bias.estimate(&estimates.torque);
+        let along = self.vehicle.mass * command.dot(&axis);
+        let thrust = along.max(self.floor.least(&torque, estimates.scale));
+
+        // Inputs in range can overflow together, on a reference that all but cancels gravity.
+        let wrench = Wrench { thrust, torque };
+        if !wrench.is_finite() {
+            return Err(InputError::OutOfRange { field: "reference" });
+        }
+        let mut actuators = self.memory.actuators;
+        actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) / estimates.scale);
+        let acted = self.actuators.advance(&mut actuators);
+        self.memory = Memory {
+            filter: self.position.advance(&filter, &feedback.feedback),
+            lift: Some(lifted.lift),
+            heading: Some(heading::advanced(&heading, &turning, self.period)),
+            estimates: Estimates { force: self.force.advanced(&estimates.force, &force_acceleration), ..estimates },
+            last: Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity }),
+            actuators,
+            acted,
+        };
+
+        let diagnostics = Diagnostics {
+            position_error: feedback.position_error,
+            velocity_error: feedback.velocity_error,
+            z_1: feedback.z_1,
+            z_2: feedback.z_2,
+            feedback: feedback.feedback,
+            filtered: filter.filtered,
+            intermediate: filter.intermediate,
+            acceleration_command: command,
+            desired_attitude: desired.attitude(),
+            desired_angular_velocity: turning.velocity,
+            desired_angular_acceleration: turning.acceleration,
+            attitude_error: lifted.quaternion,
+            mrp: lifted.mrp,
+            lift_sign: lifted.lift.sign,
+            angular_velocity_error,
+            attitude_feedback: potential,
+            rate_feedback: damping,
+        };
+        Ok((wrench, diagnostics))
+    }
+
+    /// The estimates with what happened since the last tick.
+    fn estimate(&self, state: &State, axis: &Vector3<f32>) -> Estimates {
+        let Memory { estimates, last, acted, .. } = &self.memory;
+        let Some(last) = last.as_ref().filter(|_| !self.holds) else {
+            return *estimates;
+        };
+        let mean_axis = (last.thrust_axis + axis) * 0.5;
+        let commanded = acted.x * self.per_mass;
+        let per_period = 1.0 / self.period;
+        let lift = (state.velocity.z - last.velocity.z) * per_period + self.vehicle.gravity;
+        let scale = self.thrust_scale.learnt(estimates.scale, commanded, mean_axis.z, lift);
+        let force = force::observed([&last.velocity, &state.velocity], &mean_axis, scale * commanded, &self.force);
+        let torque = Vector3::new(acted.y, acted.z, acted.w) * scale;
+        let torque = torque_bias::observed(
+            [&last.angular_velocity, &state.angular_velocity],
+            &torque,
+            &self.vehicle.inertia,
+            per_period,
+        );
+        Estimates {
+            force: self.force.averaged(&estimates.force, &force),
+            torque: self.torque_bias.averaged(&estimates.torque, &torque),
+            scale,
+        }
+    }
+
+    /// u = u_f + g e3 + p_d'' + kappa p_d' - d.
+    fn command(&self, reference: &Reference, filter: &FilterState, force: &ForceEstimate) -> Vector3<f32> {
+        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered - force.value;
+        command.z += self.vehicle.gravity;
+        command
+    }
+
+    /// A derivative of the reference with the drag that the one below it makes.
+    fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
+        let drag = self.parameters.estimates.drag_across;
+        Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
+    }
+
+    /// Refuses what the law cannot be evaluated for. Nearly every input passes at a glance.
+    fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
+        let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
+        let climbs = reference.acceleration.z > self.steepest_fall;
+        if small & climbs & state.has_unit_attitude() { Ok(()) } else { self.examine(state, reference) }
+    }
+
+    #[cold]
+    fn examine(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
+        state.check()?;
+        reference.check()?;
+        if reference.acceleration.z > self.steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
+    }
+}
+
+/// R e3 of a quaternion near unit length.
+fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
+    let double = 2.0 / length_squared(q);
+    Vector3::new(
+        double * (q.i * q.k + q.w * q.j),
+        double * (q.j * q.k - q.w * q.i),
+        1.0 - double * (q.i * q.i + q.j * q.j),
+    )
+}

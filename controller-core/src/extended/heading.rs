@@ -1,0 +1,93 @@
+//! The heading generator: the desired frame may lag in heading, so that its motion about the thrust axis is bounded by
+//! design. Section 3 of `docs/extended-law.md`.
+//!
+//! R_d = R_d*(rho, nu_d) R_z(chi), where R_d* is the paper's frame with rates w* and accelerations w*':
+//!
+//! | here | equation |
+//! |---|---|
+//! | chi | chi' = W - w*_3, kept as (cos, sin) of chi / 2, cos >= 0 |
+//! | W, [`Turning::velocity`]'s third | W' = sat(w*_3' - c_2 (W - w*_3) - 2 c_1 sin(chi / 2); A), \|W\| <= W_max |
+//! | omega_d | (R_z(-chi) (w*_1, w*_2), W) |
+//! | omega_d' | (R_z(-chi) (w*_1', w*_2') + chi' (omega_d2, -omega_d1), W') |
+//!
+//! The thrust's direction does not depend on chi. Exact heading under a changing tilt can ask for more yaw torque than a vehicle
+//! has; here yaw is asked for J_33 A and a gyroscopic term at most, and the heading catches up. For small chi, 2 c_1 sin(chi/2) is
+//! c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2), which only then changes at once.
+
+use super::parameters::HeadingParameters;
+use crate::attitude_reference::AngularMotion;
+use crate::math;
+use nalgebra::{Quaternion, Vector2, Vector3};
+
+/// chi and W.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeadingLag {
+    /// (cos, sin) of chi / 2, the cosine not negative.
+    pub half_angle: Vector2<f32>,
+    /// W, rad/s.
+    pub rate: f32,
+}
+
+impl HeadingLag {
+    /// No lag, turning at `rate`, rad/s, as far as the generator may.
+    #[must_use]
+    pub fn none(rate: f32, parameters: &HeadingParameters) -> Self {
+        Self { half_angle: Vector2::new(1.0, 0.0), rate: rate.min(parameters.rate).max(-parameters.rate) }
+    }
+
+    /// R_z(-chi) times the paper's error: R~ as a quaternion of any length along R_d^T R.
+    #[must_use]
+    pub fn turned_back(&self, error: &Quaternion<f32>) -> Quaternion<f32> {
+        let (c, s) = (self.half_angle.x, self.half_angle.y);
+        let (w, x, y, z) = (error.w, error.i, error.j, error.k);
+        Quaternion::new(c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w)
+    }
+}
+
+/// The desired frame's motion, and the lag's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turning {
+    /// omega_d, rad/s, axes of the desired body frame.
+    pub velocity: Vector3<f32>,
+    /// omega_d', rad/s^2, axes of the desired body frame.
+    pub acceleration: Vector3<f32>,
+    /// chi', rad/s.
+    pub lag_rate: f32,
+}
+
+/// The desired motion for the paper's frame's `motion` and the lag at hand, with ticks `period` seconds apart.
+#[must_use]
+pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &HeadingParameters, period: f32) -> Turning {
+    let HeadingParameters { acceleration: most, rate: fastest, c_1, c_2 } = *parameters;
+    let AngularMotion { velocity: w, acceleration: a } = motion;
+    let (c, s) = (lag.half_angle.x, lag.half_angle.y);
+    let lag_rate = lag.rate - w.z;
+    let wanted = (a.z - c_2 * lag_rate - 2.0 * c_1 * s).min(most).max(-most);
+    // The rate at the end of the period is what W_max bounds.
+    let reached = (lag.rate + wanted * period).min(fastest).max(-fastest);
+    let turn = (reached - lag.rate) / period;
+
+    let (cos, sin) = (c * c - s * s, 2.0 * c * s);
+    let across = |v: &Vector3<f32>| Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x);
+    let (velocity, acceleration) = (across(w), across(a));
+    Turning {
+        velocity: Vector3::new(velocity.x, velocity.y, lag.rate),
+        acceleration: Vector3::new(
+            acceleration.x + lag_rate * velocity.y,
+            acceleration.y - lag_rate * velocity.x,
+            turn,
+        ),
+        lag_rate,
+    }
+}
+
+/// The lag one period later.
+#[must_use]
+pub fn advanced(lag: &HeadingLag, turning: &Turning, period: f32) -> HeadingLag {
+    let half = 0.5 * period * turning.lag_rate;
+    let (c, s) = (lag.half_angle.x, lag.half_angle.y);
+    let (cos, sin) = (c - half * s, s + half * c);
+    let length = math::sqrt(cos * cos + sin * sin);
+    let scale = if cos < 0.0 { -1.0 / length } else { 1.0 / length };
+    HeadingLag { half_angle: Vector2::new(cos * scale, sin * scale), rate: lag.rate + turning.acceleration.z * period }
+}

@@ -1,0 +1,62 @@
+//! An estimate of a constant torque: a centre of mass off the rotors' middle, a weak rotor. Section 5 of
+//! `docs/extended-law.md`.
+//!
+//! | here | equation |
+//! |---|---|
+//! | [`observed`] | J (omega_k - omega_(k-1)) / h + omega x J omega - tau, with omega and tau the means over the interval |
+//! | [`TorqueBias::averaged`] | the same averaged with the bandwidth L_tau |
+//! | [`TorqueBias::estimate`] | each component cut to its level |
+//!
+//! The estimate is subtracted from the torque; nothing else depends on it, so that no derivative of it is needed.
+
+use super::parameters::EstimateParameters;
+use crate::math;
+use nalgebra::Vector3;
+
+/// What turned the vehicle over an interval beside the torque commanded, N m, body frame.
+///
+/// `angular_velocities` are those at the interval's start and end, rad/s; `torque` the mean of what acted, N m.
+#[must_use]
+pub fn observed(
+    angular_velocities: [&Vector3<f32>; 2],
+    torque: &Vector3<f32>,
+    inertia: &Vector3<f32>,
+    per_period: f32,
+) -> Vector3<f32> {
+    let [start, end] = angular_velocities;
+    let mean = (start + end) * 0.5;
+    let acceleration = (end - start) * per_period;
+    inertia.component_mul(&acceleration) + mean.cross(&inertia.component_mul(&mean)) - torque
+}
+
+/// The estimate's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TorqueBias {
+    /// 1 - e^(-L_tau h).
+    averaging: f32,
+    level: Vector3<f32>,
+}
+
+impl TorqueBias {
+    /// For steps of `period`, s.
+    #[must_use]
+    pub fn new(parameters: &EstimateParameters, period: f32) -> Self {
+        let EstimateParameters { torque_tilt, torque_yaw, torque_smoothing, .. } = *parameters;
+        Self {
+            averaging: -math::exp_m1(-f64::from(torque_smoothing) * f64::from(period)) as f32,
+            level: Vector3::new(torque_tilt, torque_tilt, torque_yaw),
+        }
+    }
+
+    /// Takes what was [`observed`] into the `average`, N m.
+    #[must_use]
+    pub fn averaged(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
+        average + (observed - average) * self.averaging
+    }
+
+    /// The average as far as it is believed, N m.
+    #[must_use]
+    pub fn estimate(&self, average: &Vector3<f32>) -> Vector3<f32> {
+        average.inf(&self.level).sup(&-self.level)
+    }
+}
