@@ -18,6 +18,7 @@
 //! bound is raised by [`ARITHMETIC_ALLOWANCE`] before it is compared.
 
 pub mod configuration;
+pub mod extended;
 pub mod inequality;
 pub mod printed;
 pub mod reachable;
@@ -224,6 +225,7 @@ mod tests {
         let f = 0.418_879_02_f32;
         let swing = core::f32::consts::PI * f;
         let bounds = ReferenceBounds {
+            horizontal_speed: 5.0,
             horizontal_acceleration: f * f,
             vertical_acceleration: f * f,
             jerk: core::f32::consts::SQRT_2 * f * f * f,

@@ -68,6 +68,8 @@ impl Reference {
 /// Omega_r of Assumption 1: how hard a reference may ask the vehicle to move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceBounds {
+    /// K_v12: horizontal speed, Euclidean, m/s. Only a law that feeds drag forward depends on it.
+    pub horizontal_speed: f32,
     /// K_a12: horizontal acceleration, Euclidean, m/s^2.
     pub horizontal_acceleration: f32,
     /// K_a3: |vertical acceleration|, m/s^2.
@@ -85,6 +87,7 @@ pub struct ReferenceBounds {
 impl ReferenceBounds {
     /// The bounds of a reference at rest.
     pub const REST: Self = Self {
+        horizontal_speed: 0.0,
         horizontal_acceleration: 0.0,
         vertical_acceleration: 0.0,
         jerk: 0.0,
@@ -94,8 +97,9 @@ impl ReferenceBounds {
     };
 
     /// Each bound with its name.
-    pub(crate) fn named(&self) -> [(f32, &'static str); 6] {
+    pub(crate) fn named(&self) -> [(f32, &'static str); 7] {
         [
+            (self.horizontal_speed, "reference_bounds.horizontal_speed"),
             (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
             (self.vertical_acceleration, "reference_bounds.vertical_acceleration"),
             (self.jerk, "reference_bounds.jerk"),
@@ -120,8 +124,9 @@ impl ReferenceBounds {
     /// Whether `reference` lies inside, with a relative allowance for single-precision rounding.
     #[must_use]
     pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
-        let Reference { acceleration: a, jerk, snap, heading, .. } = reference;
+        let Reference { velocity: v, acceleration: a, jerk, snap, heading, .. } = reference;
         [
+            (v.xy().norm_squared(), self.horizontal_speed),
             (a.xy().norm_squared(), self.horizontal_acceleration),
             (a.z * a.z, self.vertical_acceleration),
             (jerk.norm_squared(), self.jerk),

@@ -55,6 +55,7 @@ impl Case {
         let typical = random.below(2) == 0;
         let bounds = if typical {
             ReferenceBounds {
+                horizontal_speed: 5.0,
                 horizontal_acceleration: 2.5,
                 vertical_acceleration: 0.5,
                 jerk: 4.0,
@@ -64,6 +65,7 @@ impl Case {
             }
         } else {
             ReferenceBounds {
+                horizontal_speed: 5.0,
                 horizontal_acceleration: random.sized(0.5, 6.0),
                 vertical_acceleration: random.sized(0.3, 4.0),
                 jerk: random.sized(1.0, 30.0),

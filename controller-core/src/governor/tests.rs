@@ -7,6 +7,7 @@ use std::boxed::Box;
 
 /// Bounds a small quadrotor certifies.
 pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
+    horizontal_speed: 5.0,
     horizontal_acceleration: 2.5,
     vertical_acceleration: 0.5,
     jerk: 4.0,

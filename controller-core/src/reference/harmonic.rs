@@ -205,10 +205,13 @@ impl Harmonic {
                 Wave::new(z, amplitude[2], frequency[2], order),
             ]
         };
+        let [x, y, _] = wave(1);
+        let speed = Wave::bound(&[x, y]);
         let [x, y, z] = wave(2);
         let (heading_rate, heading_second_derivative) = heading_bounds(heading.rate, swing_rate, heading.frequency);
         let round = |bound: f64| outwards(bound * (1.0 + ROUNDING));
         let bounds = ReferenceBounds {
+            horizontal_speed: round(speed),
             horizontal_acceleration: round(Wave::bound(&[x, y])),
             vertical_acceleration: round(Wave::bound(&[z])),
             jerk: round(Wave::bound(&wave(3))),

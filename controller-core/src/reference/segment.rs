@@ -151,6 +151,7 @@ fn is_finite<const N: usize>(vector: &nalgebra::SVector<f32, N>) -> bool {
 
 /// The suprema of a reference's bounds over the segments taken in; the measures are squares.
 pub(super) struct Suprema {
+    pub horizontal_speed: Supremum<fn(&Vector2<f64>) -> f64>,
     pub horizontal_acceleration: Supremum<fn(&Vector2<f64>) -> f64>,
     pub vertical_acceleration: Supremum<fn(&f64) -> f64>,
     pub jerk: Supremum<fn(&Vector3<f64>) -> f64>,
@@ -164,6 +165,7 @@ impl Suprema {
     /// Of no segment yet.
     pub(super) fn new() -> Self {
         Self {
+            horizontal_speed: Supremum::new(Vector2::norm_squared),
             horizontal_acceleration: Supremum::new(Vector2::norm_squared),
             vertical_acceleration: Supremum::new(|x| x * x),
             jerk: Supremum::new(Vector3::norm_squared),
@@ -178,12 +180,14 @@ impl Suprema {
 
     /// Takes in the control points as they are flown: what is bounded is the rounded polynomial.
     pub(super) fn include(&mut self, segment: &Segment) {
+        let velocity = segment.velocity.map(|point| point.map(f64::from));
+        self.horizontal_speed.include(&velocity.map(|point| point.xy()));
         let acceleration = segment.acceleration.map(|point| point.map(f64::from));
         self.horizontal_acceleration.include(&acceleration.map(|point| point.xy()));
         self.vertical_acceleration.include(&acceleration.map(|point| point.z));
         self.jerk.include(&segment.jerk.map(|point| point.map(f64::from)));
         self.snap.include(&segment.snap.map(|point| point.map(f64::from)));
-        let rate = segment.velocity.map(|point| f64::from(point.w));
+        let rate = velocity.map(|point| point.w);
         self.heading_rate.include(&rate);
         let mut turning = rate.map(|rate| Vector2::new(rate, 0.0));
         for (point, acceleration) in turning.iter_mut().zip(elevate(&acceleration.map(|point| point.w))) {

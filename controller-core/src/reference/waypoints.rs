@@ -167,6 +167,7 @@ fn bounds(segments: &[Segment]) -> Result<ReferenceBounds, ParameterError> {
         suprema.include(segment);
     }
     let bounds = ReferenceBounds {
+        horizontal_speed: outwards(suprema.horizontal_speed.bound_when_evaluated()),
         horizontal_acceleration: outwards(suprema.horizontal_acceleration.bound_when_evaluated()),
         vertical_acceleration: outwards(suprema.vertical_acceleration.bound_when_evaluated()),
         jerk: outwards(suprema.jerk.bound_when_evaluated()),
@@ -175,6 +176,7 @@ fn bounds(segments: &[Segment]) -> Result<ReferenceBounds, ParameterError> {
         heading_second_derivative: outwards(suprema.heading_second_derivative.bound_when_evaluated()),
     };
     for (bound, field) in [
+        (bounds.horizontal_speed, "reference.points (horizontal speed)"),
         (bounds.horizontal_acceleration, "reference.points (horizontal acceleration)"),
         (bounds.vertical_acceleration, "reference.points (vertical acceleration)"),
         (bounds.jerk, "reference.points (jerk)"),

@@ -35,6 +35,7 @@ pub fn configuration() -> Configuration {
         alpha: 0.25,
     };
     let bounds = ReferenceBounds {
+        horizontal_speed: 5.0,
         horizontal_acceleration: 2.4675,
         vertical_acceleration: 0.1755,
         jerk: 3.876,

@@ -1,0 +1,103 @@
+//! How the desired frame can move under the extended law. Section 10 of `docs/extended-law.md`.
+//!
+//! The frame's third axis is rho = u / n and it turns about it with W, |W| <= W_max, |W'| <= A, whatever the heading does. With w and p
+//! the parts of u'' and u' orthogonal to rho and r = rho . u',
+//!
+//! ```text
+//! omega_12  = p / n turned by a right angle,          omega_3  = W,
+//! omega'_12 = (w - 2 r p / n) / n turned likewise + W (omega_2, -omega_1),   omega'_3 = W'.
+//! ```
+//!
+//! The last two terms of omega'_12 are orthogonal, so |omega'_12| <= |w| / n + (p / n) sqrt(4 r^2 / n^2 + W^2).
+//!
+//! Everything is evaluated over cells of (|u_x, u_y|, u_z) that cover all that is reachable, at the end of a cell where it is worst.
+//! In a cell with tilt at most gamma a vector whose horizontal part is at most H long and whose vertical one at most Z has a part
+//! orthogonal to rho of at most H cos gamma + Z sin gamma while Z cos gamma >= H sin gamma, and sqrt(H^2 + Z^2) beyond, and a part along
+//! rho of at most Z cos gamma_least + H sin gamma. Shares of one u': p^2 + r^2 <= |u'|^2.
+
+use super::reach::Reach;
+use crate::math;
+
+/// Cells of |u_x, u_y|.
+pub const ACROSS_CELLS: usize = 24;
+/// Cells of u_z.
+pub const VERTICAL_CELLS: usize = 24;
+
+/// One cell of u, with what the desired frame does there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Least |u|, m/s^2.
+    pub least: f64,
+    /// Greatest |u|, m/s^2.
+    pub greatest: f64,
+    /// Greatest |w| / n, rad/s^2.
+    pub swing: f64,
+    /// Greatest p and r, and the squared length of u' that they share.
+    tangential: f64,
+    radial: f64,
+    square: f64,
+}
+
+impl Cell {
+    fn new(reach: &Reach, across: [f64; 2], vertical: [f64; 2]) -> Self {
+        let ([h_0, h_1], [z_0, z_1]) = (across, vertical);
+        let least = math::hypot(h_0, z_0);
+        // The steepest and the most upright of the cell.
+        let steep = math::hypot(h_1, z_0);
+        let (sin, cos) = (h_1 / steep, z_0 / steep);
+        let cos_greatest = z_1 / math::hypot(h_0, z_1);
+        let rate = reach.vertical_rate(z_0, z_1);
+        Self {
+            least,
+            greatest: math::hypot(h_1, z_1),
+            swing: orthogonal(reach.across_acceleration, reach.vertical_acceleration, sin, cos) / least,
+            tangential: orthogonal(reach.across_rate, rate, sin, cos),
+            radial: rate * cos_greatest + reach.across_rate * sin,
+            square: reach.across_rate * reach.across_rate + rate * rate,
+        }
+    }
+
+    /// Greatest |omega_12| = p / n, rad/s.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.tangential / self.least
+    }
+
+    /// Greatest (p / n) sqrt(4 r^2 / n^2 + `turn`^2), rad/s^2.
+    #[must_use]
+    pub fn curl(&self, turn: f64) -> f64 {
+        let Self { least: n, tangential, radial, square, .. } = *self;
+        let most = (tangential * tangential).min(square);
+        // In x = p^2 with r^2 the lesser of its own bound and what p leaves: rising, then a parabola.
+        let together = (square - radial * radial).max(0.0).min(most);
+        let peak = 0.5 * (square + 0.25 * turn * turn * n * n);
+        let x = peak.max(together).min(most);
+        let r_squared = (square - x).min(radial * radial).max(0.0);
+        math::sqrt_f64(x * (4.0 * r_squared / (n * n) + turn * turn)) / n
+    }
+
+    /// Greatest |omega'_12| while the frame turns about rho by `turn` at most, rad/s^2.
+    #[must_use]
+    pub fn acceleration(&self, turn: f64) -> f64 {
+        self.swing + self.curl(turn)
+    }
+}
+
+/// The greatest part orthogonal to rho of a vector in a cylinder of radius `across` and half height `vertical`, for tilts of at
+/// most that with sine `sin` and cosine `cos`.
+fn orthogonal(across: f64, vertical: f64, sin: f64, cos: f64) -> f64 {
+    if vertical * cos >= across * sin { across * cos + vertical * sin } else { math::hypot(across, vertical) }
+}
+
+/// All cells of what is reachable, `reach.vertical_least` being positive.
+pub fn cells(reach: &Reach) -> impl Iterator<Item = Cell> + '_ {
+    let ends = |cell: usize, count: usize, from: f64, to: f64| {
+        [cell, cell + 1].map(|end| from + (to - from) * end as f64 / count as f64)
+    };
+    (0..VERTICAL_CELLS).flat_map(move |vertical| {
+        let vertical = ends(vertical, VERTICAL_CELLS, reach.vertical_least, reach.vertical_greatest);
+        (0..ACROSS_CELLS).map(move |across| {
+            Cell::new(reach, ends(across, ACROSS_CELLS, 0.0, reach.across), vertical)
+        })
+    })
+}

@@ -1,0 +1,167 @@
+//! Every torque the extended law can command, along a direction b of torque space. Section 11 of `docs/extended-law.md`.
+//!
+//! The torque is a sum of terms, each bounded along b = (b_12, b_3) while body z is off the commanded thrust by the angle theta,
+//! r = sin(theta / 2):
+//!
+//! | term | greatest along b |
+//! |---|---|
+//! | potential | \|b_12\| (w r / 2 + G r sqrt(1 - r^2)) + \|b_3\| (w eta / 2) sqrt((1 - r^2 - qbar^2) / (1 - r^2 + eta^2 - 2 eta qbar)) |
+//! | damping | \|b_12\| M_omega_t + \|b_3\| M_omega_z |
+//! | bias estimate | (\|b_1\| + \|b_2\|) D_t + \|b_3\| D_y |
+//! | J R~^T omega_d' | \|omega'_12\| \|(R~ J b)_12\| + A \|(R~ J b)_3\|, and R~ turns J b's angle to z by theta at most |
+//! | gyroscopic | \|omega_d\|^2 times the largest eigenvalue of the form b . (omega x J omega) |
+//!
+//! At R~ = 1 the last two are one, with the terms that W makes put together: [`Torques::feedforward`].
+
+use super::motion::Cell;
+use crate::allocation::support::{Shape, TorqueTerm};
+use crate::error::ParameterError;
+use crate::extended::parameters::{AttitudeParameters, Extended};
+use crate::math;
+use nalgebra::{Vector2, Vector3};
+
+/// Cells of theta between no error and a half turn.
+pub const TILT_CELLS: usize = 24;
+
+/// The law's torque terms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Torques {
+    attitude: [f64; 8],
+    bias: [f64; 2],
+    inertia: Vector3<f64>,
+    /// A and W_max.
+    turn: [f64; 2],
+    qbar: f64,
+}
+
+/// An interval of theta.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TiltCell {
+    /// Sine and cosine of theta at its ends.
+    ends: [(f64, f64); 2],
+    /// Greatest torque of the tilt's potential, N m.
+    tilting: f64,
+    /// Greatest torque of the potential about z, N m.
+    yawing: f64,
+}
+
+impl TiltCell {
+    /// The greatest cosine of theta.
+    #[must_use]
+    pub fn cosine(&self) -> f64 {
+        self.ends[0].1
+    }
+}
+
+impl Torques {
+    /// For the constants `parameters` and the diagonal of J, kg m^2.
+    #[must_use]
+    pub fn new(parameters: &Extended, inertia: &Vector3<f64>) -> Self {
+        let AttitudeParameters { w, eta, k_t, m_t, eta_t, m_omega_t, m_omega_z, delta, .. } = parameters.attitude;
+        let square = (1.0 + f64::from(delta)) * (1.0 + f64::from(delta));
+        let e = &parameters.estimates;
+        Self {
+            attitude: [w, eta, k_t, m_t, eta_t, m_omega_t, m_omega_z, 0.0].map(f64::from),
+            bias: [e.torque_tilt, e.torque_yaw].map(f64::from),
+            inertia: *inertia,
+            turn: [parameters.heading.acceleration, parameters.heading.rate].map(f64::from),
+            qbar: (square - 1.0) / (square + 1.0),
+        }
+    }
+
+    /// qbar, at whose negative the lift switches.
+    #[must_use]
+    pub fn switching_scalar(&self) -> f64 {
+        self.qbar
+    }
+
+    /// The cells of theta, from no error to a half turn.
+    pub fn tilt_cells(&self) -> impl Iterator<Item = TiltCell> + '_ {
+        // Equal steps of r = sin(theta / 2): theta = 2 asin r, cos theta = 1 - 2 r^2, sin theta = 2 r sqrt(1 - r^2).
+        (0..TILT_CELLS).map(move |cell| {
+            let [near, far] = [cell, cell + 1].map(|end| end as f64 / TILT_CELLS as f64);
+            let angle = |r: f64| (2.0 * r * math::sqrt_f64((1.0 - r * r).max(0.0)), 1.0 - 2.0 * r * r);
+            TiltCell { ends: [angle(near), angle(far)], tilting: self.tilting(near, far), yawing: self.yawing(near) }
+        })
+    }
+
+    /// Greatest w r / 2 + G r sqrt(1 - r^2) for r from `near` to `far`.
+    fn tilting(&self, near: f64, far: f64) -> f64 {
+        let [w, _, k_t, m_t, eta_t, ..] = self.attitude;
+        let rest = |r: f64| math::sqrt_f64((1.0 - r * r).max(0.0));
+        // k_t r / sqrt(M_t^2 + k_t^2 r^2) rises with r, sqrt(1 - r^2) / sqrt(1 - r^2 + eta_t^2) falls.
+        let rising = m_t * k_t * far / math::hypot(m_t, k_t * far);
+        0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
+    }
+
+    /// Greatest w eta q_3 / 2h for r of at least `near`: at q_0 = -qbar.
+    fn yawing(&self, near: f64) -> f64 {
+        let [w, eta, ..] = self.attitude;
+        let rest = 1.0 - near * near;
+        let square = (rest - self.qbar * self.qbar).max(0.0) / (rest + eta * eta - 2.0 * eta * self.qbar);
+        0.5 * w * eta * math::sqrt_f64(square)
+    }
+
+    /// Greatest feedback along `b`: potential, damping and bias estimate.
+    #[must_use]
+    pub fn feedback(&self, b: &Vector3<f64>, tilt: &TiltCell) -> f64 {
+        let [.., m_omega_t, m_omega_z, _] = self.attitude;
+        let (across, about) = (math::hypot(b.x, b.y), b.z.abs());
+        across * (tilt.tilting + m_omega_t) + about * (tilt.yawing + m_omega_z) + self.bias(b)
+    }
+
+    /// Greatest bias estimate along `b`.
+    #[must_use]
+    pub fn bias(&self, b: &Vector3<f64>) -> f64 {
+        let [tilt, yaw] = self.bias;
+        tilt * (b.x.abs() + b.y.abs()) + yaw * b.z.abs()
+    }
+
+    /// Greatest J R~^T omega_d' along `b` for |omega'_12| of at most `swing`, rad/s^2.
+    #[must_use]
+    pub fn swung(&self, b: &Vector3<f64>, tilt: &TiltCell, swing: f64) -> f64 {
+        let [turn, _] = self.turn;
+        let weighted = self.inertia.component_mul(b);
+        let (across, about) = (math::hypot(weighted.x, weighted.y), weighted.z.abs());
+        // The angle to the z axis, either way, moved by at most theta: sines and cosines of sums.
+        let [_, (sin, cos)] = tilt.ends;
+        // Once theta makes up for the angle's complement, the vector can lie across; once for the angle, along.
+        let lies_across = about * cos <= across * sin;
+        let most_across = if lies_across { math::hypot(across, about) } else { across * cos + about * sin };
+        let lies_along = across * cos <= about * sin;
+        let most_about = if lies_along { math::hypot(across, about) } else { about * cos + across * sin };
+        swing * most_across + turn * most_about
+    }
+
+    /// Greatest gyroscopic torque along `b` for |omega_12| of at most `rate`, rad/s.
+    ///
+    /// # Errors
+    /// If a number is not finite; the constructors before it leave no way to that.
+    pub fn gyroscopic(&self, b: &Vector3<f64>, rate: f64) -> Result<f64, ParameterError> {
+        let [_, turn] = self.turn;
+        let shape = Shape::Gyroscopic { inertia: self.inertia, rate: math::hypot(rate, turn) };
+        Ok(TorqueTerm::new("gyroscopic torque", shape)?.support(b))
+    }
+
+    /// Greatest feed-forward along `b` without attitude error, in one `cell` of u.
+    ///
+    /// With a = (J_1 b_1, J_2 b_2) and c = ((J_1 + J_3 - J_2) b_1, (J_2 + J_3 - J_1) b_2) it is at most |a| |w| / n +
+    /// (p / n) sqrt((2r / n)^2 |a|^2 + W^2 |c|^2 + (4 r / n) |W| |a x c|) + |b_3| (J_3 A + |J_2 - J_1| p^2 / 2 n^2).
+    #[must_use]
+    pub fn feedforward(&self, b: &Vector3<f64>, cell: &Cell) -> f64 {
+        let [acceleration, rate] = self.turn;
+        let j = &self.inertia;
+        let a = Vector2::new(j.x * b.x, j.y * b.y);
+        let c = Vector2::new((j.x + j.z - j.y) * b.x, (j.y + j.z - j.x) * b.y);
+        let (length, other) = (math::hypot(a.x, a.y), math::hypot(c.x, c.y));
+        let tilting = if length > 0.0 {
+            // The cross term is second order in J_2 - J_1: half of its square is charged to each side.
+            let skew = (a.x * c.y - a.y * c.x).abs() / (length * other);
+            length * (cell.swing + cell.curl(rate * other / length) * math::sqrt_f64(1.0 + skew))
+        } else {
+            0.0
+        };
+        let yawing = j.z * acceleration + 0.5 * (j.y - j.x).abs() * cell.rate() * cell.rate();
+        tilting + b.z.abs() * yawing
+    }
+}
