@@ -29,3 +29,8 @@ pub mod position;
 pub mod thrust_floor;
 pub mod thrust_scale;
 pub mod torque_bias;
+
+#[cfg(test)]
+pub(crate) mod example;
+#[cfg(test)]
+mod tests;

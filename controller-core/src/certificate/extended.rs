@@ -90,7 +90,8 @@ pub fn bounds(
         }
     }
 
-    let support = |b: &Vector3<f64>, tilt: &TiltCell, swing: f64| torques.feedback(b, tilt) + torques.swung(b, tilt, swing);
+    let support =
+        |b: &Vector3<f64>, tilt: &TiltCell, swing: f64| torques.feedback(b, tilt) + torques.swung(b, tilt, swing);
     let worst = |b: &Vector3<f64>| -> Result<f64, ParameterError> {
         let over_tilts = torques.tilt_cells().map(|tilt| support(b, &tilt, swing)).fold(0.0, f64::max);
         Ok(over_tilts + torques.gyroscopic(b, rate)?)

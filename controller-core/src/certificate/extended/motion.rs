@@ -96,8 +96,6 @@ pub fn cells(reach: &Reach) -> impl Iterator<Item = Cell> + '_ {
     };
     (0..VERTICAL_CELLS).flat_map(move |vertical| {
         let vertical = ends(vertical, VERTICAL_CELLS, reach.vertical_least, reach.vertical_greatest);
-        (0..ACROSS_CELLS).map(move |across| {
-            Cell::new(reach, ends(across, ACROSS_CELLS, 0.0, reach.across), vertical)
-        })
+        (0..ACROSS_CELLS).map(move |across| Cell::new(reach, ends(across, ACROSS_CELLS, 0.0, reach.across), vertical))
     })
 }

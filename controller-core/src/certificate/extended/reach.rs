@@ -78,10 +78,7 @@ impl Reach {
             vertical_least: gravity - down - slack,
             vertical_greatest: gravity + up + slack,
             across_rate: 2.0 * k_f * half_l1 * m_h + jerk + drag * across + SQRT_2 * snap / bandwidth,
-            across_acceleration: 2.0 * k_f * m_h * (k_s + k_f * half_l1 * half_l1)
-                + rest
-                + drag * jerk
-                + SQRT_2 * snap,
+            across_acceleration: 2.0 * k_f * m_h * (k_s + k_f * half_l1 * half_l1) + rest + drag * jerk + SQRT_2 * snap,
             vertical_acceleration: k_f_z * span * (k_s_z + k_f_z * half_l1_z * half_l1_z) + rest + snap_z,
             other_vertical_rate: jerk + snap_z / bandwidth,
             slack,
