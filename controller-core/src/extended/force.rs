@@ -66,10 +66,10 @@ pub struct ForceGenerator {
     per_period: f32,
     gravity: f32,
     drag: f32,
-    /// 1 - e^(-L h).
-    averaging: f32,
-    /// k_d, 1/s.
-    bandwidth: f32,
+    /// 1 - e^(-L h) of each axis.
+    averaging: Vector3<f32>,
+    /// k_d of each axis, 1/s.
+    bandwidth: Vector3<f32>,
     /// D of each axis, m/s^2.
     level: Vector3<f32>,
     /// S of each axis, m/s^4.
@@ -89,25 +89,33 @@ impl ForceGenerator {
     pub fn new(parameters: &EstimateParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let e = parameters;
         let greatest = Self::STEP_MAX / period;
-        require(e.force_bandwidth <= greatest, "estimates.force_bandwidth", Reason::NotBelow(greatest))?;
-        let snap = Vector3::new(e.force_snap_across, e.force_snap_across, e.force_snap_vertical);
+        for (bandwidth, field) in [
+            (e.force_bandwidth_across, "estimates.force_bandwidth_across"),
+            (e.force_bandwidth_vertical, "estimates.force_bandwidth_vertical"),
+        ] {
+            require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
+        }
+        let axes = |across: f32, vertical: f32| Vector3::new(across, across, vertical);
+        let averaging = |smoothing: f32| -math::exp_m1(-f64::from(smoothing) * f64::from(period)) as f32;
+        let snap = axes(e.force_snap_across, e.force_snap_vertical);
+        let bandwidth = axes(e.force_bandwidth_across, e.force_bandwidth_vertical);
         Ok(Self {
             period,
             per_period: 1.0 / period,
             gravity,
             drag: e.drag_across,
-            averaging: -math::exp_m1(-f64::from(e.force_smoothing) * f64::from(period)) as f32,
-            bandwidth: e.force_bandwidth,
-            level: Vector3::new(e.force_across, e.force_across, e.force_vertical),
+            averaging: axes(averaging(e.force_smoothing_across), averaging(e.force_smoothing_vertical)),
+            bandwidth,
+            level: axes(e.force_across, e.force_vertical),
             snap,
-            jerk: snap / e.force_bandwidth,
+            jerk: snap.component_div(&bandwidth),
         })
     }
 
     /// Takes what was [`observed`] into the average.
     #[must_use]
     pub fn averaged(&self, estimate: &ForceEstimate, observed: &Vector3<f32>) -> ForceEstimate {
-        let average = estimate.average + (observed - estimate.average) * self.averaging;
+        let average = estimate.average + (observed - estimate.average).component_mul(&self.averaging);
         ForceEstimate { average, ..*estimate }
     }
 
@@ -115,16 +123,15 @@ impl ForceGenerator {
     #[must_use]
     pub fn acceleration(&self, estimate: &ForceEstimate) -> Vector3<f32> {
         let ForceEstimate { average, value, rate } = estimate;
-        let axis = |zeta: f32, d: f32, rate: f32, level: f32, snap: f32, jerk: f32| {
-            let target = within(zeta, level);
-            let wanted = within(self.bandwidth * (self.bandwidth * (target - d) - 2.0 * rate), snap);
+        let axis = |zeta: f32, d: f32, rate: f32, k: f32, [level, snap, jerk]: [f32; 3]| {
+            let wanted = within(k * (k * (within(zeta, level) - d) - 2.0 * rate), snap);
             (within(rate + wanted * self.period, jerk) - rate) * self.per_period
         };
-        let (level, snap, jerk) = (&self.level, &self.snap, &self.jerk);
+        let (k, level, snap, jerk) = (&self.bandwidth, &self.level, &self.snap, &self.jerk);
         Vector3::new(
-            axis(average.x, value.x, rate.x, level.x, snap.x, jerk.x),
-            axis(average.y, value.y, rate.y, level.y, snap.y, jerk.y),
-            axis(average.z, value.z, rate.z, level.z, snap.z, jerk.z),
+            axis(average.x, value.x, rate.x, k.x, [level.x, snap.x, jerk.x]),
+            axis(average.y, value.y, rate.y, k.y, [level.y, snap.y, jerk.y]),
+            axis(average.z, value.z, rate.z, k.z, [level.z, snap.z, jerk.z]),
         )
     }
 

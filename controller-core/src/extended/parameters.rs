@@ -86,14 +86,18 @@ pub struct EstimateParameters {
     pub force_across: f32,
     /// Greatest estimate along the vertical, m/s^2.
     pub force_vertical: f32,
-    /// k_d: how fast small changes are followed, 1/s.
-    pub force_bandwidth: f32,
+    /// k_d across: how fast small changes are followed, 1/s.
+    pub force_bandwidth_across: f32,
+    /// k_d along the vertical, 1/s.
+    pub force_bandwidth_vertical: f32,
     /// Greatest second derivative along each horizontal axis, m/s^4.
     pub force_snap_across: f32,
     /// Greatest second derivative along the vertical, m/s^4.
     pub force_snap_vertical: f32,
-    /// L: how fast accelerations are averaged, 1/s.
-    pub force_smoothing: f32,
+    /// L across: how fast accelerations are averaged, 1/s.
+    pub force_smoothing_across: f32,
+    /// L along the vertical, 1/s.
+    pub force_smoothing_vertical: f32,
     /// kappa: drag across per velocity and mass, known beforehand, 1/s.
     pub drag_across: f32,
     /// Greatest torque bias about x and y, N m.
@@ -115,10 +119,12 @@ impl EstimateParameters {
     pub const OFF: Self = Self {
         force_across: 0.0,
         force_vertical: 0.0,
-        force_bandwidth: 1.0,
+        force_bandwidth_across: 1.0,
+        force_bandwidth_vertical: 1.0,
         force_snap_across: 0.0,
         force_snap_vertical: 0.0,
-        force_smoothing: 1.0,
+        force_smoothing_across: 1.0,
+        force_smoothing_vertical: 1.0,
         drag_across: 0.0,
         torque_tilt: 0.0,
         torque_yaw: 0.0,
@@ -170,8 +176,10 @@ impl Extended {
             (p.k_f_vertical, "gains.k_f_vertical"),
             (p.k_s_across, "gains.k_s_across"),
             (p.k_s_vertical, "gains.k_s_vertical"),
-            (e.force_bandwidth, "estimates.force_bandwidth"),
-            (e.force_smoothing, "estimates.force_smoothing"),
+            (e.force_bandwidth_across, "estimates.force_bandwidth_across"),
+            (e.force_bandwidth_vertical, "estimates.force_bandwidth_vertical"),
+            (e.force_smoothing_across, "estimates.force_smoothing_across"),
+            (e.force_smoothing_vertical, "estimates.force_smoothing_vertical"),
             (e.torque_smoothing, "estimates.torque_smoothing"),
         ] {
             require_finite(value, field)?;

@@ -63,11 +63,12 @@ fn saturations_are_monotone_shorter_than_their_level_and_never_steeper_than_one(
 
 #[test]
 fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_stays() {
-    let parameters = EstimateParameters { force_bandwidth: 12.0, ..example::PARAMETERS.estimates };
+    let parameters = EstimateParameters { force_bandwidth_across: 12.0, ..example::PARAMETERS.estimates };
     let generator = ForceGenerator::new(&parameters, 9.81, 0.01).unwrap();
     let mut random = Random(2);
     let (mut estimate, mut nearest) = (ForceEstimate::NONE, [0.0_f32; 3]);
     let levels = [parameters.force_across, parameters.force_vertical];
+    let bandwidths = [parameters.force_bandwidth_across, parameters.force_bandwidth_vertical];
     let snaps = [parameters.force_snap_across, parameters.force_snap_vertical];
     for tick in 0..400_000 {
         // Reversals with every rhythm, jumps, noise.
@@ -81,7 +82,7 @@ fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_
         for (axis, kind) in [(0, 0), (1, 0), (2, 1)] {
             let shares = [
                 estimate.value[axis].abs() / levels[kind],
-                estimate.rate[axis].abs() * parameters.force_bandwidth / snaps[kind],
+                estimate.rate[axis].abs() * bandwidths[kind] / snaps[kind],
                 acceleration[axis].abs() / snaps[kind],
             ];
             assert!(shares.iter().all(|share| *share <= 1.0 + 1e-5), "{shares:?} on axis {axis} at {tick}");

@@ -55,7 +55,8 @@ impl Reach {
     pub fn new(parameters: &Extended, bounds: &ReferenceBounds, gravity: f64) -> Self {
         let (p, e) = (&parameters.position, &parameters.estimates);
         let double = f64::from;
-        let (drag, bandwidth) = (double(e.drag_across), double(e.force_bandwidth));
+        let drag = double(e.drag_across);
+        let [bandwidth, bandwidth_z] = [e.force_bandwidth_across, e.force_bandwidth_vertical].map(double);
         let (level, snap) = (double(e.force_across), double(e.force_snap_across));
         let (level_z, snap_z) = (double(e.force_vertical), double(e.force_snap_vertical));
         let [speed, across, vertical, jerk, rest] = [
@@ -80,7 +81,7 @@ impl Reach {
             across_rate: 2.0 * k_f * half_l1 * m_h + jerk + drag * across + SQRT_2 * snap / bandwidth,
             across_acceleration: 2.0 * k_f * m_h * (k_s + k_f * half_l1 * half_l1) + rest + drag * jerk + SQRT_2 * snap,
             vertical_acceleration: k_f_z * span * (k_s_z + k_f_z * half_l1_z * half_l1_z) + rest + snap_z,
-            other_vertical_rate: jerk + snap_z / bandwidth,
+            other_vertical_rate: jerk + snap_z / bandwidth_z,
             slack,
             feedback: (gravity - down, gravity + up),
             arc: arc(k_f_z, k_s_z, span),
