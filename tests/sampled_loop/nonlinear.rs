@@ -6,7 +6,7 @@
 
 use crate::common::{IDEAL, body_axis, model, vehicle};
 use controller_core::gains::GainParameters;
-use host_sim::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, Timing};
 use std::collections::VecDeque;
 
 const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];

@@ -10,8 +10,8 @@ use controller_core::position::FilterState;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
-use host_sim::sampled_loop::{Axis, Timing};
 use nalgebra::{DMatrix, DVector, Quaternion, Vector3};
+use scenario::sampled_loop::{Axis, Timing};
 
 /// One axis: what is measured (position, velocity, tilt, rate; only those the axis has move) and remembered.
 #[derive(Debug, Clone, Copy, Default)]

@@ -3,7 +3,7 @@
 use crate::common::{IDEAL, model, vehicle};
 use crate::oracle;
 use controller_core::gains::GainParameters;
-use host_sim::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, Timing};
 
 /// Even numbers in [0, 1) from a fixed seed.
 struct Random(u64);
