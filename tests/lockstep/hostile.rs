@@ -1,7 +1,7 @@
 //! Bytes that nobody meant to send: the vehicle flies on, or does what the flight rules say, and never panics.
 
-use crate::flight::Flight;
-use crate::station::Station;
+use super::flight::Flight;
+use super::station::Station;
 use controller_core::flight::Mode;
 use controller_core::flight::rules::POSE_AGE_MAX;
 use firmware::hardware::MotorCommand;

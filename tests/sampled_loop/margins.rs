@@ -1,7 +1,7 @@
 //! Margins: exactly there, and not earlier, an eigenvalue of the written-out loop leaves the unit circle.
 
-use crate::common::{IDEAL, model, vehicle};
-use crate::oracle;
+use super::common::{IDEAL, model, vehicle};
+use super::oracle;
 use controller_core::gains::GainParameters;
 use scenario::sampled_loop::{Axis, Timing};
 

@@ -2,7 +2,7 @@
 //!
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
-use crate::common::{IDEAL, body_axis, model, vehicle};
+use super::common::{IDEAL, body_axis, model, vehicle};
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;

@@ -1,8 +1,5 @@
 //! Random vehicles, gains, states and references for the tests, reproducible from a seed.
 
-// Every test crate that includes this module uses a part of it.
-#![allow(dead_code)]
-
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
