@@ -1,5 +1,5 @@
 //! The linearised sampled loop against the whole simulation, rotors and six degrees of freedom: what the one predicts, the
-//! other shows. `cargo test -p host-sim --test rotor_lag -- --nocapture` prints the table.
+//! other shows. `cargo test -p host-sim rotor_lag -- --nocapture` prints the table.
 //!
 //! The paper's vehicle and Table I at 100 Hz, hovering, with rotors so strong that none saturates: only their lag and the
 //! delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.

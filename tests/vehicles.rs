@@ -1,6 +1,6 @@
 //! The vehicles of `vehicles/`, with their rotors turning: certified to the last rotor, and flown without one that saturates.
 //! What the boards allocate with clips nothing of what their certificates allow.
-//! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
+//! `cargo test -p host-sim vehicles -- --nocapture` prints what each flight showed.
 
 use crate::support::random;
 use crate::support::random::ChaCha8Rng;
