@@ -5,8 +5,8 @@
 //! delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.
 
 use host_sim::flight::Flight;
-use host_sim::scenario::{PAPER, Scenario};
 use scenario::sampled_loop::Axis;
+use scenario::{PAPER, Scenario};
 
 /// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3 rad.
 const START_DEG: f64 = 0.01;
@@ -56,7 +56,7 @@ fn peaks(scenario: &Scenario, stretches: usize) -> Vec<f64> {
     let stretch = |_| {
         (0..200).fold(0.0_f64, |peak, _| {
             let tick = flight.tick().unwrap();
-            assert!(!tick.clipping.any(), "a rotor saturated: stronger ones are needed for this test");
+            assert!(!tick.clipped, "a rotor saturated: stronger ones are needed for this test");
             peak.max(4.0 * f64::from(tick.diagnostics.mrp.norm()).atan())
         })
     };

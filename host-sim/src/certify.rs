@@ -3,12 +3,12 @@
 //! Only the sharp form and the rotors decide. The margins of the sampled loop are reported below them: a certificate is
 //! about limits, not about how well a vehicle flies, but whoever reads it wants to know both.
 
-use crate::scenario::Scenario;
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::certificate::rotors::RotorReport;
 use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
+use scenario::Scenario;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
 const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
@@ -114,11 +114,10 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
         let radius = format!("{:.4}", report.spectral_radius);
         rows.push(vec![report.axis.name().to_owned(), radius, gain, delay, verdict.to_owned()]);
     }
-    let lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
     let timing = format!(
         "at {} Hz, rotor lag {} ms, delay {} ms, for vehicle {} kg\n",
         short(1e6 / scenario.timing.period_us as f64),
-        short(1e3 * lag),
+        short(1e3 * scenario.rotor_lag),
         short(1e3 * scenario.delay()),
         short(f64::from(configuration.vehicle().mass))
     );
