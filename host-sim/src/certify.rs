@@ -3,9 +3,10 @@
 //! Only the sharp form and the rotors decide. The margins of the sampled loop are reported below them: a certificate is
 //! about limits, not about how well a vehicle flies, but whoever reads it wants to know both.
 
+mod blame;
+
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::inequality::Inequality;
-use controller_core::certificate::rotors::RotorReport;
 use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
 use scenario::Scenario;
@@ -32,6 +33,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     if !certificate.rotors.is_empty() {
         text += "\n";
         text += &rotors(&certificate);
+        text += &blame::sentence(&scenario.configuration, &certificate)?;
     }
     text += "\n";
     text += &loops(scenario)?;
@@ -97,9 +99,7 @@ fn rotors(certificate: &Certificate) -> String {
         row.extend(required(inequality));
         rows.push(row);
     }
-    let tightest = |report: &&RotorReport| report.least.margin().min(report.greatest.margin());
-    let worst = certificate.rotors.iter().min_by(|a, b| tightest(a).total_cmp(&tightest(b)));
-    aligned(&rows) + &worst.map_or(String::new(), |report| format!("{}\n", report.demand))
+    aligned(&rows)
 }
 
 fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
