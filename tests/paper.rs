@@ -5,6 +5,7 @@ use host_sim::claims::{all_hold, claims, table};
 use host_sim::flight::Flight;
 use host_sim::flown::Flown;
 use scenario::Scenario;
+use scenario::verdict::Verdict;
 
 fn flown(scenario: &Scenario) -> Flown {
     Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
@@ -22,7 +23,7 @@ fn the_papers_experiment_meets_every_published_figure() {
     }
     assert_eq!(flown.clipped, 0);
     assert!(flown.filter <= 2.0);
-    let claims = claims(&scenario, &flown);
+    let claims = claims(&scenario, &Verdict::of(&scenario).unwrap(), &flown);
     assert!(all_hold(&claims), "{}", table(&claims));
 }
 
@@ -59,7 +60,7 @@ fn every_scenario_of_the_collection_flies_within_its_claims() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let scenario = Scenario::load(&entry.unwrap().path()).unwrap();
         let flown = flown(&scenario);
-        let claims = claims(&scenario, &flown);
+        let claims = claims(&scenario, &Verdict::of(&scenario).unwrap(), &flown);
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
         assert!(flown.steady_position_error < 0.01, "{}: {} m", scenario.name, flown.steady_position_error);
         let thrust = Certificate::new(&scenario.configuration).unwrap().sharp.thrust;
