@@ -3,7 +3,7 @@
 
 use controller_core::certificate::configuration::Certified;
 use controller_core::controller::{Controller, Diagnostics};
-use controller_core::reference::{Reference, Trajectory};
+use controller_core::reference::Reference;
 use firmware::replay::{PERIOD_US, Replay, TICKS, record};
 use host_sim::flight::Flight;
 use nalgebra::Vector3;

@@ -108,7 +108,8 @@ fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_ar
     });
     let summary = serve(&scenario, &mut port, &session, None).unwrap();
     board.join().unwrap();
-    assert_eq!((summary.pace.ticks(), summary.pace.missed(), summary.end), (3, 0, End::Over));
+    assert_eq!((summary.pace.ticks(), summary.end), (3, End::Over));
+    assert!(summary.to_string().contains(", 0 missed"), "{summary}");
 }
 
 #[test]
