@@ -76,7 +76,7 @@ fn a_loop_without_margin_fails_a_flight_that_arrives() {
 #[test]
 fn a_flight_that_does_not_reach_its_reference_in_time_fails_with_the_numbers() {
     let directory = directory("late");
-    // Table I needs nine seconds from the paper's start.
+    // Table I needs nineteen seconds from the paper's start.
     std::fs::write(directory.join("short.toml"), with(PAPER, "duration", "duration = 5.0")).unwrap();
     let output = host_sim(&directory, &["fly", "short.toml", "--out", "out"]);
     let text = stdout(&output);

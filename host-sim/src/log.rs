@@ -1,18 +1,25 @@
 //! log.csv: one row per control tick.
 //!
-//! The first 40 columns are a contract with other tools; what stands to their right may grow. Angles in rad, the rest in SI
+//! The first 40 columns are a contract with other tools; what stands to their right may grow, by the rotors' thrusts at the end
+//! (N, after lag, numbered from 1). Angles in rad, the rest in SI
 //! units; each number has the digits that give its bits back.
 
 use crate::flight::Tick;
 use std::io::{self, Write};
 
-/// The header row.
-pub const HEADER: &str = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,yaw_d,thrust,tau_x,tau_y,tau_z,\
+/// The header row of a vehicle without rotors.
+const HEADER: &str = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,yaw_d,thrust,tau_x,tau_y,tau_z,\
 mrp_x,mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,s_omega,\
 qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 
-/// What a row takes, bytes: 689 to 738 in the flights of `scenarios/` and `vehicles/`.
-pub const BYTES_PER_ROW: u64 = 720;
+/// The header row for a vehicle with so many rotors.
+#[must_use]
+pub fn header(rotors: usize) -> String {
+    (1..=rotors).fold(HEADER.to_owned(), |header, rotor| header + &format!(",rotor_{rotor}"))
+}
+
+/// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`.
+pub const BYTES_PER_ROW: u64 = 740;
 
 /// Writes one row.
 ///
@@ -39,7 +46,9 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     singles(out, &[qd.w, qd.i, qd.j, qd.k])?;
     singles(out, d.desired_angular_velocity.as_slice())?;
     singles(out, d.desired_angular_acceleration.as_slice())?;
-    writeln!(out, ",{}", u8::from(tick.clipped))
+    write!(out, ",{}", u8::from(tick.clipped))?;
+    doubles(out, &tick.rotors)?;
+    writeln!(out)
 }
 
 fn doubles(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
@@ -59,6 +68,7 @@ mod tests {
         let contract = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,yaw_d,thrust,tau_x,tau_y,tau_z,mrp_x,\
             mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,\
             s_omega";
-        assert!(HEADER.starts_with(contract));
+        assert!(header(0).starts_with(contract));
+        assert!(header(4).ends_with(",clipped,rotor_1,rotor_2,rotor_3,rotor_4"));
     }
 }
