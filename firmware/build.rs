@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Boards and the files that describe their memory, from this package's folder.
-const MEMORY: [(&str, &str); 5] = [
+const MEMORY: [(&str, &str); 4] = [
     ("MICOAIR_H743", "memory/micoair-h743.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
-    ("MPS2_AN386", "memory/mps2-an386.x"),
-    ("MPS2_AN500", "memory/mps2-an500.x"),
-    ("PROBE", "memory/mps2-an386.x"),
+    ("MPS2", "memory/mps2.x"),
+    ("PROBE", "memory/mps2.x"),
 ];
 
 fn main() {

@@ -13,7 +13,6 @@
 //! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
-//! | `memory` | copying and filling memory in little flash; on boards only |
 //! | [`outputs`] | thrusts to motor commands |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
@@ -39,8 +38,6 @@ pub mod hardware;
 pub mod hil;
 pub mod imu;
 pub mod link;
-#[cfg(target_os = "none")]
-mod memory;
 pub mod outputs;
 pub mod parameters;
 pub mod replay;
