@@ -33,7 +33,6 @@ use heapless::Vec;
 
 /// Collects what fits; heapless' own `collect` panics when full, which the callers' counts rule out and a panic-free
 /// core must not contain.
-#[inline]
 fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     for item in items {

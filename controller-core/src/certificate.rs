@@ -67,14 +67,12 @@ pub struct Form {
 impl Form {
     /// Whether every inequality holds.
     #[must_use]
-    #[inline]
     pub fn holds(&self) -> bool {
         self.inequalities.iter().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
     #[must_use]
-    #[inline]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(&self.inequalities)
     }
@@ -103,7 +101,6 @@ impl Certificate {
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
-    #[inline]
     pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
         let printed = form(configuration, Derivation::Printed);
         let sharp = form(configuration, Derivation::Sharp);
@@ -112,13 +109,11 @@ impl Certificate {
     }
 
     /// Everything that decides: the sharp form's inequalities, then two for each rotor.
-    #[inline]
     pub fn inequalities(&self) -> impl Iterator<Item = &Inequality> {
         let count = self.sharp.inequalities.len() + 2 * self.rotors.len();
         (0..count).filter_map(|place| self.inequality(place))
     }
 
-    #[inline]
     fn inequality(&self, place: usize) -> Option<&Inequality> {
         let wrench = &self.sharp.inequalities;
         wrench.get(place).or_else(|| {
@@ -130,21 +125,18 @@ impl Certificate {
 
     /// Whether the configuration is certified: everything that decides holds.
     #[must_use]
-    #[inline]
     pub fn holds(&self) -> bool {
         self.inequalities().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
     #[must_use]
-    #[inline]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(self.inequalities())
     }
 }
 
 /// Bounds on the desired rates with the position feedback at `m_p` (zero: the reference alone).
-#[inline]
 fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation) -> DesiredRates {
     let (gains, bounds) = (configuration.gains(), configuration.bounds());
     let gravity = f64::from(configuration.vehicle().gravity);
@@ -160,7 +152,6 @@ fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation
     }
 }
 
-#[inline]
 fn form(configuration: &Configuration, derivation: Derivation) -> Form {
     let (vehicle, limits, gains) = (configuration.vehicle(), configuration.limits(), configuration.gains());
     let bounds = configuration.bounds();
@@ -203,7 +194,6 @@ fn form(configuration: &Configuration, derivation: Derivation) -> Form {
 }
 
 /// iota of Theorem 2. The sharp form uses what the saturation reaches at |theta| = 1 + delta instead of its limit.
-#[inline]
 fn feedback_torque(configuration: &Configuration, derivation: Derivation) -> f64 {
     let gains = configuration.gains();
     let (m_theta, m_omega) = (f64::from(gains.m_theta), f64::from(gains.m_omega));

@@ -50,17 +50,6 @@ use crate::state::{State, Wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
 
-/// Inputs whose squares add up to less are finite and within their ranges, and no number on the way to the wrench overflows
-/// while the command is steeper than [`USUAL_CLIMB`] and the vehicle lighter than [`USUAL_VEHICLE`]: omega_d' then stays
-/// below 1e28.
-const USUAL_SQUARES: f32 = 0.01 * DERIVATIVE_RANGE * DERIVATIVE_RANGE;
-
-/// How far p_d'' + g is above M_p at least, m/s^2.
-const USUAL_CLIMB: f32 = 0.1;
-
-/// Mass, inertia and gravity, SI.
-const USUAL_VEHICLE: f32 = 1e4;
-
 /// Everything the law remembers from one tick to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Memory {
@@ -133,10 +122,8 @@ pub struct Controller {
     transition: FilterTransition,
     switching_scalar: f32,
     thrust_floor: Option<f32>,
-    /// [`USUAL_SQUARES`], or zero where the vehicle is not usual.
-    usual_squares: f32,
-    /// M_p and [`USUAL_CLIMB`], m/s^2.
-    usual_climb: f32,
+    /// M_p - g: the reference's vertical acceleration stays above it, m/s^2.
+    steepest_fall: f32,
     memory: Memory,
 }
 
@@ -145,7 +132,6 @@ impl Controller {
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
-    #[inline]
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         Self::build(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
@@ -166,14 +152,11 @@ impl Controller {
         Self::build(vehicle, gains, thrust_floor, period)
     }
 
-    #[inline]
     fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(&gains, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);
         let attitude_law = AttitudeLaw::new(&gains, &vehicle.inertia);
-        let light = |x: &f32| *x <= USUAL_VEHICLE;
-        let usual = light(&vehicle.mass) && light(&vehicle.gravity) && vehicle.inertia.iter().all(light);
         Ok(Self {
             vehicle,
             gains,
@@ -182,8 +165,7 @@ impl Controller {
             transition,
             switching_scalar,
             thrust_floor,
-            usual_squares: if usual { USUAL_SQUARES } else { 0.0 },
-            usual_climb: gains.m_p + USUAL_CLIMB,
+            steepest_fall: gains.m_p - vehicle.gravity,
             memory: Memory::RESET,
         })
     }
@@ -232,44 +214,33 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        let FilterState { filtered, intermediate } = self.memory.filter;
-        let travelled = state.travel_squares() + reference.travel_squares();
-        let command = self.position_law.command(state, reference, &self.memory.filter);
-        let CommandRates { jerk_command, snap_command } =
-            self.position_law.rates(reference, &self.memory.filter, &command.feedback);
-        let filter = self.transition.advance(&self.memory.filter, &command.feedback);
+        self.admit(state, reference)?;
+        let Memory { filter, lift } = self.memory;
 
-        // Nearly every input passes at once. One that does not is looked at, and may have to leave no trace in the end.
-        let climbs = reference.acceleration.z + self.vehicle.gravity > self.usual_climb;
-        let squares = travelled
-            + state.turning_squares()
-            + reference.rate_squares()
-            + command.acceleration_command.norm_squared();
-        let usual = state.has_unit_attitude() & climbs & (squares <= self.usual_squares);
-        let before = if usual { None } else { Some(self.examine(state, reference)?) };
-        self.memory.filter = filter;
+        let command = self.position_law.command(state, reference, &filter);
+        let CommandRates { jerk_command, snap_command } =
+            self.position_law.rates(reference, &filter, &command.feedback);
 
         let desired = DesiredAttitude::new(&command.acceleration_command, &reference.heading);
         let motion = desired.motion(&jerk_command, &snap_command, &reference.heading);
+
         let error = desired.error(&state.attitude);
-        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
-        if lifted.jumped {
-            self.memory.lift = Some(lifted.lift);
-        }
+        let lifted = path_lifting::lift(lift.as_ref(), &error, self.switching_scalar, self.gains.alpha);
+
         let thrust = self.vehicle.mass * desired.magnitude();
         let thrust = self.thrust_floor.map_or(thrust, |floor| projected_thrust(thrust, &error, floor));
         let TorqueCommand { angular_velocity_error, attitude_feedback, rate_feedback, torque } = self
             .attitude_law
             .command(&error, lifted.factor, &state.angular_velocity, &motion.velocity, &motion.acceleration);
-        let wrench = Wrench { thrust, torque };
 
-        if let Some(before) = before
-            && !wrench.is_finite()
-        {
-            // Inputs in range can overflow together, on a reference that all but cancels gravity.
-            self.memory = before;
+        // Inputs in range can overflow together, on a reference that all but cancels gravity.
+        let wrench = Wrench { thrust, torque };
+        if !wrench.is_finite() {
             return Err(InputError::OutOfRange { field: "reference" });
         }
+        let FilterState { filtered, intermediate } = filter;
+        self.memory = Memory { filter: self.transition.advance(&filter, &command.feedback), lift: Some(lifted.lift) };
+
         let diagnostics = Diagnostics {
             position_error: command.position_error,
             velocity_error: command.velocity_error,
@@ -292,16 +263,27 @@ impl Controller {
         Ok((wrench, diagnostics))
     }
 
-    /// What is wrong with an input that stands out; the memory as it is, if nothing.
+    /// Refuses what the law cannot be evaluated for. Nearly every input passes at a glance.
+    #[inline(always)]
+    fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
+        if self.passes_at_a_glance(state, reference) { Ok(()) } else { self.examine(state, reference) }
+    }
+
+    /// Whether nothing can be wrong: where the squares of all components add up to little, each is finite and in range.
+    #[inline(always)]
+    fn passes_at_a_glance(&self, state: &State, reference: &Reference) -> bool {
+        let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
+        let climbs = reference.acceleration.z > self.steepest_fall;
+        small & climbs & state.has_unit_attitude()
+    }
+
+    /// What is wrong with an input, if anything.
     #[cold]
     #[inline(never)]
-    fn examine(&self, state: &State, reference: &Reference) -> Result<Memory, InputError> {
+    fn examine(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
         state.check()?;
         reference.check()?;
-        if reference.acceleration.z <= self.gains.m_p - self.vehicle.gravity {
-            return Err(InputError::FallsTooFast);
-        }
-        Ok(self.memory)
+        if reference.acceleration.z > self.steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
     }
 }
 

@@ -79,19 +79,16 @@ impl fmt::Display for ParameterError {
 impl core::error::Error for ParameterError {}
 
 /// Shorthand for constructors: refuses `field` for `reason` unless `condition` holds.
-#[inline]
 pub(crate) fn require(condition: bool, field: &'static str, reason: Reason) -> Result<(), ParameterError> {
     if condition { Ok(()) } else { Err(ParameterError { field, reason }) }
 }
 
 /// Refuses anything but a finite number.
-#[inline]
 pub(crate) fn require_finite(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require(value.is_finite(), field, Reason::NotFinite)
 }
 
 /// Refuses anything but a finite number above zero.
-#[inline]
 pub(crate) fn require_positive(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require_finite(value, field)?;
     require(value > 0.0, field, Reason::NotPositive)

@@ -54,7 +54,6 @@ pub struct Stamped<T> {
 impl<T> Stamped<T> {
     /// How old it is at `now`, us; zero for a time to come.
     #[must_use]
-    #[inline]
     pub fn age(&self, now: u64) -> u64 {
         now.saturating_sub(self.time)
     }

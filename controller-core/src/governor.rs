@@ -11,10 +11,8 @@
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `smoother`: the averages in integers, and the quintic spline that makes the output one smooth function of time;
 //! - `turning`: the same for the heading;
-//! - `take_over`, `bridge`: how a reference already accelerating is taken over. A [`Governor`] starts from steady motion and
-//!   knows nothing of this; a [`TakeOver`] puts a bridge before one.
 //!
-//! What holds by construction: every bound, at every instant (on a bridge: every tick), whatever is sent (NaN is refused);
+//! What holds by construction: every bound, at every instant, whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
 //! psi'' likewise; from rest, a constant position is reached along the straight segment without overshoot, exactly (the
 //! averages of a monotone approach are monotone), and a stop is a straight braking of the command followed by the
@@ -26,21 +24,17 @@
 //! averages comes out smaller.
 
 mod braking;
-mod bridge;
 mod lead;
 mod pursuit;
 mod setpoint;
 mod smoother;
-mod take_over;
 mod turning;
 mod windows;
 
 pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
-pub use take_over::{TakeOver, TakeOverError};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
-use crate::math;
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use lead::Lead;
@@ -73,7 +67,6 @@ pub struct GovernorLimits {
 }
 
 impl Default for GovernorLimits {
-    #[inline]
     fn default() -> Self {
         Self { horizontal_speed: 5.0, vertical_speed: 2.0, snap_ramp: 0.1, heading_ramp: 0.2, timeout: 0.5 }
     }
@@ -143,7 +136,6 @@ impl Governor {
     /// # Errors
     /// For a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too unlike each other for the
     /// integers.
-    #[inline]
     pub fn new<'m>(
         bounds: &ReferenceBounds,
         limits: &GovernorLimits,
@@ -187,7 +179,6 @@ impl Governor {
     ///
     /// # Errors
     /// For numbers not finite or out of range; the governor goes on as before then.
-    #[inline]
     pub fn start(
         &mut self,
         position: &Vector3<f32>,
@@ -195,29 +186,21 @@ impl Governor {
         heading: &Heading,
     ) -> Result<(), InputError> {
         check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
-        self.settle(position, velocity);
-        self.turning.start(turning::phase_of(heading), 0);
+        self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
+        self.turning.start(turning::phase_of(heading));
         self.stop();
         Ok(())
     }
 
-    /// Hands a steady velocity to the smoother.
-    #[inline]
-    fn settle(&mut self, position: &Vector3<f32>, velocity: &Vector3<f32>) {
-        self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
-    }
-
     /// Metres as length units, no more than [`FARTHEST`].
-    #[inline]
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(|length| math::whole(length.clamp(-FARTHEST, FARTHEST)))
+        (metres * self.windows.per_metre).map(|length| (length.clamp(-FARTHEST, FARTHEST)) as i64)
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
     ///
     /// # Errors
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
-    #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         self.goal = Goal { position: position.map(|position| self.length(&position)), velocity, acceleration };
@@ -230,7 +213,6 @@ impl Governor {
     }
 
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
-    #[inline]
     pub fn stop(&mut self) {
         self.goal = Goal::STOP;
         self.turn = TurnGoal::STOP;
@@ -238,42 +220,21 @@ impl Governor {
 
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
-    #[inline]
     pub fn at_rest(&self) -> bool {
         self.pursue() == Vector3::zeros() && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
-    #[inline]
     pub fn tick(&mut self) -> Reference {
-        self.age();
-        let Knot { position, velocity, acceleration, jerk, snap } = self.travel();
-        Reference { position, velocity, acceleration, jerk, snap, heading: self.turn() }
-    }
-
-    /// A tick passes for what was asked.
-    #[inline]
-    fn age(&mut self) {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
-    }
-
-    /// The position's part of a tick.
-    #[inline]
-    fn travel(&mut self) -> Knot {
         self.smoother.push(&self.pursue());
-        self.smoother.knot()
-    }
-
-    /// The heading's part of a tick.
-    #[inline]
-    fn turn(&mut self) -> Heading {
         self.turning.tick(&self.turn_goal());
-        self.turning.heading()
+        let Knot { position, velocity, acceleration, jerk, snap } = self.smoother.knot();
+        Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
     }
 
     /// The commanded acceleration of this tick.
-    #[inline]
     fn pursue(&self) -> Vector3<i32> {
         let u = self.smoother.speed();
         let Goal { position, velocity, acceleration } = &self.goal;
@@ -294,11 +255,10 @@ impl Governor {
     }
 
     /// The heading's goal of this tick.
-    #[inline]
     fn turn_goal(&self) -> TurnGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
         let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
-        let phase = self.turn.phase.map(|phase| phase.wrapping_add(math::whole(rate as f32 * lead)));
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add((rate as f32 * lead) as i64));
         TurnGoal { phase, rate }
     }
 }

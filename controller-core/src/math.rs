@@ -8,13 +8,13 @@
 //! | [`sqrt`] | x >= 0 | correctly rounded |
 //! | [`sin_cos_turns`] | all phases | 1.2e-7 |
 //! | [`tanh_of_scaled`], [`tanh_of_all_scaled`] | all numbers | 1.97e-7 |
-//! | [`ln_1p`] | -0.9 <= x <= 1e6 | relative 3e-15 |
 //!
-//! Double precision is for configuration time, and `libm`'s: software on the boards.
+//! Double precision is for configuration time: `libm`'s functions under the names that std gives them.
 
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 
-use nalgebra::{Vector3, Vector4};
+pub use libm::{exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64};
+use nalgebra::Vector3;
 
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the
 /// target's ABI tells (stable compilers do not tell its feature `vfp2`).
@@ -46,18 +46,10 @@ extern "C" fn sqrtf(x: f32) -> f32 {
     f32::from_bits(bits)
 }
 
-/// `x` rounded towards zero, at the end of the range where it is beyond, zero if it is no number.
-#[must_use]
-#[inline(never)] // saturating takes more than the call does
-pub fn whole(x: f32) -> i64 {
-    x as i64
-}
-
 /// Sine and cosine of `phase` / 2^64 turns.
 ///
 /// The phase is an integer, so its reduction to an octant is exact however long the clock has run.
 #[must_use]
-#[inline(never)] // once in an image: 0.1 KB
 pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
     /// Radians per unit of a phase whose full turn is 2^32.
     const RADIANS: f32 = core::f32::consts::TAU / 4_294_967_296.0;
@@ -87,7 +79,6 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 /// rest of the stated error is rounding. A common factor of A and Q cancels, and the scale of z is the one at which both
 /// leading coefficients are one: two multiplications less. In exact arithmetic 2 A Q <= A^2 + Q^2, and the rounded quotient
 /// was found at most one for every single-precision number, so nothing is clipped.
-#[inline]
 #[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
     if z * z <= SATURATION {
@@ -118,81 +109,8 @@ fn unsaturated(z: f32) -> f32 {
     2.0 * a * q / (a * a + q * q)
 }
 
-/// a . b in double precision, for configuration time. Out of line: where double precision is software, every operation is
-/// a call, and copies of this in every caller would cost more flash than the law.
-#[inline]
-#[must_use]
-pub fn dot(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
-    a.dot(b)
-}
-
-/// The products of the components, out of line like [`dot`].
-#[inline]
-#[must_use]
-pub fn component_product(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
-    a.component_mul(b)
-}
-
-/// e^x for x <= 1, for configuration time (not used in a tick): to 4e-16, from the function that is needed anyway.
-#[inline]
-#[must_use]
-pub fn exp(x: f64) -> f64 {
-    1.0 + exp_m1(x)
-}
-
-/// ln(1 + x) for -0.9 <= x <= 1e6, for configuration time: the y with e^y - 1 = x, by Newton's method, to a relative 3e-15.
-#[inline]
-#[must_use]
-pub fn ln_1p(x: f64) -> f64 {
-    /// From the power of two, at most ln 2 off, to the last bit.
-    const STEPS: u32 = 7;
-    let exponent = ((1.0 + x).to_bits() >> 52) as i32 - 1023;
-    let mut y = f64::from(exponent) * core::f64::consts::LN_2;
-    for _ in 0..STEPS {
-        let reached = exp_m1(y);
-        y -= (reached - x) / (1.0 + reached);
-    }
-    y
-}
-
 /// The square root of three.
 pub const SQRT_3: f64 = 1.732_050_807_568_877_2;
-
-/// Square root in double precision, for configuration time.
-#[inline]
-#[must_use]
-pub fn sqrt_f64(x: f64) -> f64 {
-    libm::sqrt(x)
-}
-
-/// sqrt(x^2 + y^2) of numbers from single precision and their quotients: in double precision their squares neither
-/// overflow nor vanish. For configuration time.
-#[inline]
-#[must_use]
-pub fn hypot(x: f64, y: f64) -> f64 {
-    sqrt_f64(x * x + y * y)
-}
-
-/// The nearest integer, halves away from zero, for configuration time.
-#[inline]
-#[must_use]
-pub fn round(x: f64) -> f64 {
-    libm::round(x)
-}
-
-/// The greatest integer not above x, for configuration time.
-#[inline]
-#[must_use]
-pub fn floor(x: f64) -> f64 {
-    libm::floor(x)
-}
-
-/// e^x - 1 without cancellation near zero, for configuration time.
-#[inline]
-#[must_use]
-pub fn exp_m1(x: f64) -> f64 {
-    libm::expm1(x)
-}
 
 #[cfg(test)]
 mod tests {
@@ -244,33 +162,6 @@ mod tests {
         }
         let mixed = tanh_of_all_scaled(&Vector3::new(f32::NAN, f32::INFINITY, 0.01));
         assert!(mixed.x.is_nan() && mixed.y == 1.0 && mixed.z == tanh_of_scaled(0.01));
-    }
-
-    /// A fixed sequence of bits.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> u64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            self.0 ^ self.0 >> 29
-        }
-
-        /// In [-1, 1).
-        fn signed(&mut self) -> f64 {
-            (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
-
-    #[test]
-    fn the_logarithm_is_within_its_stated_error() {
-        let (mut random, mut worst) = (Random(4), 0.0_f64);
-        for _ in 0..1_000_000 {
-            let part = random.signed();
-            for x in [10.0_f64.powf(6.0 * part.abs()) - 1.0, -0.9 * part.abs()] {
-                worst = worst.max((ln_1p(x) / x.ln_1p() - 1.0).abs());
-            }
-        }
-        assert!(worst < 3e-15, "worst relative error {worst:e}");
     }
 
     #[test]

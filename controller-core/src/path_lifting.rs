@@ -43,8 +43,6 @@ pub struct Lifted {
     pub mrp: Vector3<f32>,
     /// The memory after this instant's jumps.
     pub lift: Lift,
-    /// Whether the memory is another than before: it jumped, or was lifted afresh.
-    pub jumped: bool,
 }
 
 /// The scalar part at which |phi(q)| = 1 + `delta`.
@@ -64,7 +62,6 @@ pub fn switching_scalar(delta: f32) -> f32 {
 #[must_use]
 pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {
     let length = math::sqrt(length_squared(error));
-    let mut jumped = previous.is_none();
     let Lift { mut memory, mut sign } = match previous {
         Some(lift) => *lift,
         None => Lift { memory: *error * (canonical_sign(error) / length), sign: 1.0 },
@@ -83,16 +80,14 @@ pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: 
         cold_path();
         sign = -sign;
         factor = -factor;
-        jumped = true;
     }
     let quaternion = *error * (factor / length);
     if follows {
         cold_path();
         memory = quaternion * sign;
-        jumped = true;
     }
     let mrp = mrp::from_multiple(error, factor, length);
-    Lifted { quaternion, factor, mrp, lift: Lift { memory, sign }, jumped }
+    Lifted { quaternion, factor, mrp, lift: Lift { memory, sign } }
 }
 
 /// The sign of the one of ±q with q_0 > 0, or at q_0 = 0 with its first non-zero vector component positive.

@@ -66,7 +66,6 @@ impl FilterTransition {
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
-    #[inline]
     pub fn new(gains: &Gains, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
         let longest = Self::LONGEST_PERIOD;
@@ -87,7 +86,6 @@ impl FilterTransition {
 
     /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all of
     /// them now, to the last bit.
-    #[inline]
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
@@ -150,7 +148,6 @@ pub struct CommandRates {
 
 impl PositionLaw {
     /// For `gains` under `gravity`, m/s^2.
-    #[inline]
     #[must_use]
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;

@@ -44,21 +44,14 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The sum of the squares of position and velocity.
+    /// The sum of the squares of all vectors and of the heading's rates.
     #[inline(always)]
-    pub(crate) fn travel_squares(&self) -> f32 {
-        sum_of_squares(&[&self.position, &self.velocity])
-    }
-
-    /// The sum of the squares of jerk, snap and the heading's rates.
-    #[inline(always)]
-    pub(crate) fn rate_squares(&self) -> f32 {
+    pub(crate) fn squares(&self) -> f32 {
         let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
-        sum_of_squares(&[&self.jerk, &self.snap, &turning])
+        sum_of_squares(&[&self.position, &self.velocity, &self.acceleration, &self.jerk, &self.snap, &turning])
     }
 
     /// Checks that every field is finite and in range.
-    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
         let turning = Vector3::new(self.heading.rate(), self.heading.acceleration(), 0.0);
         check_vectors(&[
@@ -101,7 +94,6 @@ impl ReferenceBounds {
     };
 
     /// Each bound with its name.
-    #[inline]
     pub(crate) fn named(&self) -> [(f32, &'static str); 6] {
         [
             (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
@@ -117,7 +109,6 @@ impl ReferenceBounds {
     ///
     /// # Errors
     /// Names the first field that is not.
-    #[inline]
     pub fn validated(self) -> Result<Self, ParameterError> {
         for (value, field) in self.named() {
             require_finite(value, field)?;
@@ -128,7 +119,6 @@ impl ReferenceBounds {
 
     /// Whether `reference` lies inside, with a relative allowance for single-precision rounding.
     #[must_use]
-    #[inline]
     pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
         let Reference { acceleration: a, jerk, snap, heading, .. } = reference;
         [

@@ -23,7 +23,6 @@ pub struct State {
 }
 
 /// Refuses the first of `vectors` with a component that is not finite, or greater than the range beside it.
-#[inline(never)] // once in an image
 pub(crate) fn check_vectors(vectors: &[(&Vector3<f32>, f32, &'static str)]) -> Result<(), InputError> {
     for &(vector, range, field) in vectors {
         // A NaN compares false with everything, so it fails here too.
@@ -55,16 +54,10 @@ pub(crate) fn is_rotation(q: &Quaternion<f32>) -> bool {
 }
 
 impl State {
-    /// The sum of the squares of position and velocity.
+    /// The sum of the squares of position, velocity and angular velocity.
     #[inline(always)]
-    pub(crate) fn travel_squares(&self) -> f32 {
-        sum_of_squares(&[&self.position, &self.velocity])
-    }
-
-    /// The sum of the squares of the angular velocity.
-    #[inline(always)]
-    pub(crate) fn turning_squares(&self) -> f32 {
-        sum_of_squares(&[&self.angular_velocity])
+    pub(crate) fn squares(&self) -> f32 {
+        sum_of_squares(&[&self.position, &self.velocity, &self.angular_velocity])
     }
 
     /// Whether the attitude is a rotation.
@@ -74,7 +67,6 @@ impl State {
     }
 
     /// Checks every field, one by one.
-    #[inline]
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check_vectors(&[
             (&self.position, STATE_RANGE, "state.position"),

@@ -1,7 +1,7 @@
 //! Who sends the setpoints.
 
 use crate::case::{Case, Random};
-use controller_core::governor::{Motion, Setpoint, TakeOver, Turn};
+use controller_core::governor::{Governor, Motion, Setpoint, Turn};
 use controller_core::prelude::{Reference, Vector3};
 use core::f32::consts::{PI, TAU};
 
@@ -44,7 +44,7 @@ impl Adversary {
         }
     }
 
-    pub fn send(self, tick: u32, random: &mut Random, governor: &mut TakeOver, now: &Reference, period: f32) {
+    pub fn send(self, tick: u32, random: &mut Random, governor: &mut Governor, now: &Reference, period: f32) {
         let often = (0.02 / period).round().max(1.0) as u32;
         let along = Vector3::new(0.8, -0.6, 1.0);
         let sided = |positive: bool| if positive { along } else { -along };

@@ -1,6 +1,6 @@
 //! The conditions of a stream: bounds, limits, tick rate and where the reference starts, all drawn from a seed.
 
-use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::GovernorLimits;
 use controller_core::prelude::{Heading, Reference, ReferenceBounds, Vector2, Vector3};
 use core::f32::consts::PI;
 
@@ -102,51 +102,10 @@ impl Case {
         }
     }
 
-    /// Where a governor is that was sent about at random for a while, from a rest.
-    pub fn interrupted(&self, random: &mut Random, resting: &Reference) -> Reference {
-        let mut memory = Memory::EMPTY;
-        let governor = Governor::new(&self.bounds, &self.limits, self.period, &mut memory).unwrap();
-        governor.start(&resting.position, &resting.velocity, &resting.heading).unwrap();
-        let mut last = governor.tick();
-        for _ in 0..1 + random.below(3) {
-            let motion = Motion::Velocity(random.vector(5.0));
-            governor.accept(&Setpoint { motion, turn: Turn::Rate(random.between(-2.0, 2.0)) }).unwrap();
-            for _ in 0..random.below(100) {
-                last = governor.tick();
-            }
-        }
-        last
-    }
-
-    /// A moment of an ellipse in space, somewhere up to its bounds, with a heading that turns and swings.
-    pub fn orbiting(&self, random: &mut Random) -> Reference {
-        let b = &self.bounds;
-        let rate = random.sized(0.2, 6.0);
-        let (cosine, sine) = (random.vector(1.0), random.vector(1.0));
-        let horizontal = cosine.xy().norm().hypot(sine.xy().norm());
-        let vertical = cosine.z.hypot(sine.z);
-        let all = cosine.norm().hypot(sine.norm());
-        let size = (b.horizontal_acceleration / (horizontal * rate.powi(2)))
-            .min(b.vertical_acceleration / (vertical * rate.powi(2)))
-            .min(b.jerk / (all * rate.powi(3)))
-            .min(b.snap / (all * rate.powi(4)))
-            .min(6.0 / (all * rate))
-            * random.between(0.0, 0.999);
-        let (sin, cos) = random.between(-PI, PI).sin_cos();
-        let wave = (cosine * cos + sine * sin) * size;
-        let slope = (sine * cos - cosine * sin) * (size * rate);
-        // psi' = r cos, psi'' = -r w sin, with r^4 + (r w)^2 within the bound.
-        let share = random.between(0.0, 0.99);
-        let swing = (b.heading_rate * share).min((0.9 * b.heading_second_derivative * share).sqrt());
-        let left = (b.heading_second_derivative.powi(2) * share - swing.powi(4)).max(0.0).sqrt();
-        let (sin, cos) = random.between(-PI, PI).sin_cos();
-        Reference {
-            position: random.vector(20.0),
-            velocity: slope,
-            acceleration: -wave * rate.powi(2),
-            jerk: -slope * rate.powi(2),
-            snap: wave * rate.powi(4),
-            heading: Heading::new(random.heading(), swing * cos, -left * sin).unwrap(),
-        }
+    /// How long stopping from `velocity` and coming back takes without haste, s.
+    pub fn returning(&self, velocity: &Vector3<f32>) -> f32 {
+        let time = |speed: f32, acceleration: f32, limit: f32| speed / acceleration * (1.0 + 0.5 * speed / limit);
+        let across = time(velocity.xy().norm(), self.bounds.horizontal_acceleration, self.limits.horizontal_speed);
+        across + time(velocity.z.abs(), self.bounds.vertical_acceleration, self.limits.vertical_speed)
     }
 }

@@ -3,15 +3,12 @@
 use crate::case::Case;
 use controller_core::prelude::{Reference, Vector3};
 
-/// How near to its bounds the streams of a thread came (as shares, take-overs apart), and how they fared.
+/// How near to its bounds the streams of a thread came (as shares), and how they fared.
 #[derive(Clone, Copy, Default)]
 pub struct Tally {
     pub ticks: u64,
-    /// Starts in motion: on orbits, and where another governor was.
-    pub orbiting: u64,
-    pub interrupted: u64,
-    /// Of these, what was refused.
-    pub refused: [u64; 2],
+    /// Starts in motion.
+    pub moving: u64,
     pub nearest: [f64; 6],
     pub longest: f32,
 }
@@ -19,11 +16,7 @@ pub struct Tally {
 impl Tally {
     pub fn merged(mut self, other: &Self) -> Self {
         self.ticks += other.ticks;
-        self.orbiting += other.orbiting;
-        self.interrupted += other.interrupted;
-        for (refused, theirs) in self.refused.iter_mut().zip(other.refused) {
-            *refused += theirs;
-        }
+        self.moving += other.moving;
         self.longest = self.longest.max(other.longest);
         for (nearest, theirs) in self.nearest.iter_mut().zip(other.nearest) {
             *nearest = nearest.max(theirs);
@@ -36,16 +29,27 @@ impl Tally {
 pub struct Witness<'a> {
     pub case: &'a Case,
     pub last: Reference,
-    /// Ticks left of a take-over, whose polynomials have corners within ticks.
-    pub crossing: u32,
 }
 
 impl Witness<'_> {
+    /// The first tick goes on from `start`, to a unit of the governor's lengths and to what snap makes of one tick.
+    pub fn start(&self, start: &Reference, tally: &mut Tally) {
+        let (b, t) = (&self.case.bounds, self.case.period);
+        let unit = b.horizontal_acceleration.max(b.vertical_acceleration) * t * t / 65_536.0 * 3.0_f32.sqrt();
+        let velocity = (self.last.velocity - start.velocity).norm();
+        let rounding = 4.0 * f32::EPSILON;
+        let room = unit / t + b.snap * t.powi(3) + rounding * start.velocity.norm();
+        assert!(velocity <= room, "starts {velocity:e} m/s off, beyond {room:e}");
+        let position = (self.last.position - start.position - start.velocity * t).norm();
+        let room = 2.0 * unit + b.snap * t.powi(4) + rounding * start.position.norm();
+        assert!(position <= room, "starts {position:e} m off, beyond {room:e}");
+        self.bounds(&self.last, tally);
+    }
+
     pub fn see(&mut self, next: Reference, tally: &mut Tally) {
         self.bounds(&next, tally);
         self.continuity(&next);
         self.last = next;
-        self.crossing = self.crossing.saturating_sub(1);
         tally.ticks += 1;
     }
 
@@ -63,9 +67,7 @@ impl Witness<'_> {
         ];
         for (share, nearest) in shares.iter().zip(&mut tally.nearest) {
             assert!(*share <= 1.0, "outside by {shares:?}: {next:?}");
-            if self.crossing == 0 {
-                *nearest = nearest.max(*share);
-            }
+            *nearest = nearest.max(*share);
         }
     }
 
@@ -76,25 +78,19 @@ impl Witness<'_> {
         let [p0, v0, a0, j0, s0] = [last.position, last.velocity, last.acceleration, last.jerk, last.snap].map(double);
         let [p1, v1, a1, j1, s1] = [next.position, next.velocity, next.acceleration, next.jerk, next.snap].map(double);
         let rounding = f64::from(f32::EPSILON);
-        // Within one tick of a take-over snap strays from a line between its ends by at most twice its bound.
-        let stray = if self.crossing > 0 { 2.0 * f64::from(b.snap) } else { 0.0 };
-        // Its polynomials' coefficients sum, in magnitude, to 1, 7, 31 and 120 from position to jerk, times an amplitude over
-        // its duration; jerk is at least a 64th of that sum where it matters.
         let acceleration = f64::from(b.horizontal_acceleration + b.vertical_acceleration);
-        let span = 4.0 * f64::from(self.case.windows()[0]) * t;
-        let fades = if self.crossing > 0 { 1.0 } else { 0.0 };
-        let near = |excess: Vector3<f64>, scale: f64, fade: f64, order: i32, what: &str| {
-            let room = 4.0 * rounding * (scale + fades * fade + 1e-3) + stray * t.powi(order);
+        let near = |excess: Vector3<f64>, scale: f64, what: &str| {
+            let room = 4.0 * rounding * (scale + 1e-3);
             assert!(excess.norm() <= room, "{what}: {excess} beyond {room:e}\n{last:?}\n{next:?}");
         };
         let (jerk, snap) = (f64::from(b.jerk), f64::from(b.snap));
-        near(j1 - j0 - (s0 + s1) * (t / 2.0), jerk + t * snap, 16.0 * jerk, 1, "jerk");
+        near(j1 - j0 - (s0 + s1) * (t / 2.0), jerk + t * snap, "jerk");
         let corrected = (j0 + j1) * (t / 2.0) - (s1 - s0) * (t * t / 12.0);
-        near(a1 - a0 - corrected, acceleration + t * jerk, 8.0 * acceleration, 2, "acceleration");
+        near(a1 - a0 - corrected, acceleration + t * jerk, "acceleration");
         let corrected = (a0 + a1) * (t / 2.0) - (j1 - j0) * (t * t / 12.0);
-        near(v1 - v0 - corrected, v0.norm() + t * acceleration, 2.0 * acceleration * span, 3, "velocity");
+        near(v1 - v0 - corrected, v0.norm() + t * acceleration, "velocity");
         let corrected = (v0 + v1) * (t / 2.0) - (a1 - a0) * (t * t / 12.0) + (s1 - s0) * (t.powi(4) / 720.0);
-        near(p1 - p0 - corrected, p0.norm() + t * v0.norm(), acceleration * span * span, 4, "position");
+        near(p1 - p0 - corrected, p0.norm() + t * v0.norm(), "position");
         let [h0, h1] = [last.heading, next.heading];
         let [d0, d1] = [h0.direction(), h1.direction()].map(|direction| direction.map(f64::from));
         let [r0, r1, w0, w1] = [h0.rate(), h1.rate(), h0.acceleration(), h1.acceleration()].map(f64::from);
@@ -107,13 +103,10 @@ impl Witness<'_> {
         // Sine and cosine carry absolute errors of 1.2e-7 each.
         assert!(excess.abs() <= 8.0 * rounding, "heading: {excess:e}");
         let ramp = |bound: f32, ramp: f32| 2.0 * f64::from(bound * self.case.period / ramp) * (1.0 + 1e-6);
-        if self.crossing == 0 {
-            let most = ramp(b.snap, self.case.limits.snap_ramp);
-            assert!((s1 - s0).norm() <= most, "snap jumps by {} > {most}", (s1 - s0).norm());
-        }
+        let most = ramp(b.snap, self.case.limits.snap_ramp);
+        assert!((s1 - s0).norm() <= most, "snap jumps by {} > {most}", (s1 - s0).norm());
         let most = ramp(b.heading_second_derivative, self.case.limits.heading_ramp);
-        // A take-over may have less time for psi'' than the ramp.
-        assert!(self.crossing > 0 || (w1 - w0).abs() <= most, "psi'' jumps by {}", w1 - w0);
+        assert!((w1 - w0).abs() <= most, "psi'' jumps by {}", w1 - w0);
     }
 }
 

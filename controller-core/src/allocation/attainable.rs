@@ -30,11 +30,11 @@
 //! So a range errs by rounding across every face, whatever the face's slope; the mixer's last clip takes that back.
 
 use super::collected;
-use super::geometry::{ROTORS_MAX, Rotors};
-use crate::math::{self, component_product, dot};
+use super::geometry::{ROTORS_MAX, Rotors, normal};
+use crate::math;
 use core::cell::Cell;
 use heapless::Vec;
-use nalgebra::{Vector2, Vector3, Vector4};
+use nalgebra::{Vector2, Vector4};
 
 /// What evaluating a.w in f32 may lose, relative to |a|.|w|: four products, four sums, and the rounding of a, w and the
 /// bounds, half an [`f32::EPSILON`] each at most.
@@ -55,11 +55,10 @@ pub(super) struct Generator {
 }
 
 /// The generators of some of the rotors, in the order given.
-#[inline]
 pub(super) fn generators<'a>(rotors: &Rotors, chosen: impl Iterator<Item = &'a usize>) -> Vec<Generator, ROTORS_MAX> {
     let one = |index: &usize| {
         let rotor = rotors.get(*index)?;
-        let column = component_product(rotors.effectiveness().get(*index)?, &rotors.scale());
+        let column = rotors.effectiveness().get(*index)?.component_mul(&rotors.scale());
         Some(Generator { column, low: f64::from(rotor.thrust_min), high: f64::from(rotor.thrust_max) })
     };
     collected(chosen.filter_map(one))
@@ -75,21 +74,20 @@ struct Slab {
 
 impl Slab {
     /// The slab between the faces with `normal`, and the cosine between normal and direction; none where they are parallel.
-    #[inline]
     fn new(
         rotors: &Rotors,
         generators: &[Generator],
         direction: &Vector4<f64>,
         normal: &Vector4<f64>,
     ) -> Option<(f64, Self)> {
-        let along = dot(normal, direction);
-        let cosine = along.abs() / math::sqrt_f64(dot(normal, normal) * dot(direction, direction));
+        let along = normal.dot(direction);
+        let cosine = along.abs() / math::sqrt_f64(normal.dot(normal) * direction.dot(direction));
         // Dependent triples have no normal (0 / 0 compares false): the faces they lie in come from other triples.
         if cosine > PARALLEL {
             let normal = normal / along;
             let (low, high) = extent(generators, &normal);
             let slack = if cosine < STEEP { ROUNDING * magnitude(generators, &normal) } else { 0.0 };
-            let normal = component_product(&normal, &rotors.scale()).map(|x| x as f32);
+            let normal = normal.component_mul(&rotors.scale()).map(|x| x as f32);
             Some((cosine, Self { normal, low: (low - slack) as f32, high: (high + slack) as f32 }))
         } else {
             None
@@ -103,14 +101,13 @@ pub(super) struct Slabs<const N: usize>(Vec<Slab, N>);
 
 impl<const N: usize> Slabs<N> {
     /// The zonotope of `generators`, open along `open` if given; `direction` is d, in the wrench's own units.
-    #[inline]
     pub(super) fn new(
         rotors: &Rotors,
         generators: &[Generator],
         open: Option<Vector4<f64>>,
         direction: Vector4<f64>,
     ) -> Self {
-        let direction = component_product(&direction, &rotors.scale());
+        let direction = direction.component_mul(&rotors.scale());
         let mut slabs: Vec<(f64, Slab), N> = Vec::new();
         for (i, a) in generators.iter().enumerate() {
             for (j, b) in generators.iter().enumerate().skip(i + 1) {
@@ -137,7 +134,6 @@ impl<const N: usize> Slabs<N> {
     }
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if there is none, nearly so.
-    #[inline]
     pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
         self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
             let at = slab.normal.dot(wrench);
@@ -147,29 +143,15 @@ impl<const N: usize> Slabs<N> {
     }
 }
 
-/// The vector normal to three others in four dimensions: the cross product's bigger sister.
-#[inline]
-pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
-    let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
-    Vector4::new(
-        minor(|v| Vector3::new(v.y, v.z, v.w)),
-        -minor(|v| Vector3::new(v.x, v.z, v.w)),
-        minor(|v| Vector3::new(v.x, v.y, v.w)),
-        -minor(|v| Vector3::new(v.x, v.y, v.z)),
-    )
-}
-
 /// sum_i |normal| . |b_i| high_i: the size of what rounding is relative to.
-#[inline]
 fn magnitude(generators: &[Generator], normal: &Vector4<f64>) -> f64 {
-    generators.iter().map(|generator| dot(&normal.abs(), &generator.column.abs()) * generator.high).sum()
+    generators.iter().map(|generator| normal.abs().dot(&generator.column.abs()) * generator.high).sum()
 }
 
 /// The zonotope's least and greatest component along `normal`.
-#[inline]
 fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
     generators.iter().fold((0.0, 0.0), |(low, high), generator| {
-        let at = dot(normal, &generator.column);
+        let at = normal.dot(&generator.column);
         let (one, other) = (at * generator.low, at * generator.high);
         (low + one.min(other), high + one.max(other))
     })
@@ -187,7 +169,6 @@ struct Edge {
 }
 
 impl Edge {
-    #[inline]
     fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
         let part = (point - self.start).dot(&self.per_length).clamp(0.0, 1.0);
         self.start + self.along * part
@@ -199,7 +180,6 @@ impl Edge {
 pub(super) struct Polygon(Vec<Edge, { 2 * ROTORS_MAX }>);
 
 impl Polygon {
-    #[inline]
     pub(super) fn new(rotors: &Rotors) -> Self {
         let arms = || rotors.effectiveness().iter().map(|column| Vector2::new(column.y, column.z));
         let mut edges = Vec::new();
@@ -238,7 +218,6 @@ impl Polygon {
     }
 
     /// The point itself if it lies in the polygon, else the nearest one of the polygon's edges.
-    #[inline]
     pub(super) fn nearest(&self, point: &Vector2<f32>) -> Vector2<f32> {
         if self.0.iter().all(|edge| edge.outward.dot(&(point - edge.start)) <= 0.0) {
             return *point;

@@ -15,7 +15,6 @@
 //!
 //! Tilted rotors, and rotors that push down, are beyond this module.
 
-use super::attainable::normal;
 use super::collected;
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
@@ -81,7 +80,6 @@ pub enum Spin {
 impl Spin {
     /// The sign s of the drag torque on the body about +z.
     #[must_use]
-    #[inline]
     pub fn sign(self) -> f32 {
         match self {
             Self::Clockwise => 1.0,
@@ -110,20 +108,17 @@ pub struct Rotor {
 impl Rotor {
     /// Thrust, N, at a speed in rad/s.
     #[must_use]
-    #[inline]
     pub fn thrust_at(&self, speed: f32) -> f32 {
         self.thrust_coefficient * speed * speed
     }
 
     /// Speed, rad/s, at a thrust in N (negative ones count as zero).
     #[must_use]
-    #[inline]
     pub fn speed_at(&self, thrust: f32) -> f32 {
         math::sqrt(thrust.max(0.0) / self.thrust_coefficient)
     }
 
     /// The wrench (T, tau_x, tau_y, tau_z) of one newton of its thrust.
-    #[inline]
     fn column(&self) -> Vector4<f64> {
         let yaw = f64::from(self.spin.sign()) * f64::from(self.drag_coefficient) / f64::from(self.thrust_coefficient);
         Vector4::new(1.0, f64::from(self.position.y), -f64::from(self.position.x), yaw)
@@ -159,7 +154,6 @@ impl Rotors {
     /// # Errors
     /// Names the field, with the rotor's number from 0; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
     /// combination of the others to within [`INDEPENDENCE`].
-    #[inline]
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
         let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
@@ -197,7 +191,6 @@ impl Rotors {
     ///
     /// # Errors
     /// Names `rotors`.
-    #[inline]
     pub fn with_inverse(rotors: &[Rotor], inverse: &[Vector4<f64>]) -> Result<Self, ParameterError> {
         let (Ok(list), Ok(inverse)) = (Vec::from_slice(rotors), Vec::from_slice(inverse)) else {
             return Err(ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) });
@@ -211,7 +204,6 @@ impl Rotors {
     ///
     /// # Errors
     /// As [`Rotors::new`]; a bad arm shows as the positions it makes, bad speeds as the thrusts.
-    #[inline]
     pub fn quad_x(quad: QuadX) -> Result<Self, ParameterError> {
         let side = quad.arm * core::f32::consts::FRAC_1_SQRT_2;
         require_positive(quad.arm, "rotors.arm")?;
@@ -236,26 +228,22 @@ impl Rotors {
 
     /// Column i of B: the wrench (T, tau_x, tau_y, tau_z) of one newton of rotor i.
     #[must_use]
-    #[inline]
     pub fn effectiveness(&self) -> &[Vector4<f64>] {
         &self.columns
     }
 
     /// Row i of B+: the thrust of rotor i, N, per unit of (T, tau_x, tau_y, tau_z), least sum of squares.
     #[must_use]
-    #[inline]
     pub fn pseudo_inverse(&self) -> &[Vector4<f64>] {
         &self.inverse
     }
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
-    #[inline]
     pub(super) fn scale(&self) -> Vector4<f64> {
         squares(&self.columns).map(|square| 1.0 / math::sqrt_f64(square))
     }
 
     /// Whether B B+ is the unit matrix.
-    #[inline]
     fn is_inverse(&self) -> bool {
         (0..16).all(|place| {
             let (row, column) = (place / 4, place % 4);
@@ -267,7 +255,6 @@ impl Rotors {
     }
 
     /// Works out B, its scaling and B+, if the rows of B are independent enough.
-    #[inline]
     fn spanning(rotors: Vec<Rotor, ROTORS_MAX>) -> Option<Self> {
         let columns = columns(&rotors);
         let squares = squares(&columns);
@@ -275,7 +262,7 @@ impl Rotors {
             return None;
         }
         let scale = squares.map(|square| 1.0 / math::sqrt_f64(square));
-        let scaled = || columns.iter().map(|column| math::component_product(column, &scale));
+        let scaled = || columns.iter().map(|column| column.component_mul(&scale));
         // The rows' cosines. The diagonal of the inverse is 1/sin^2 of each row's angle to the span of the others.
         let row = |select: fn(&Vector4<f64>) -> f64| -> Vector4<f64> {
             scaled().map(|column| column * select(&column)).sum()
@@ -283,34 +270,42 @@ impl Rotors {
         let (x, y, z, w) = (row(|c| c.x), row(|c| c.y), row(|c| c.z), row(|c| c.w));
         let inverted =
             [(&x, normal(&y, &z, &w)), (&y, normal(&x, &z, &w)), (&z, normal(&x, &y, &w)), (&w, normal(&x, &y, &z))]
-                .map(|(row, normal)| normal / math::dot(&normal, row));
+                .map(|(row, normal)| normal / normal.dot(row));
         let independent = |of_row: f64| of_row > 0.0 && of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
         let [x, y, z, w] = &inverted;
         if ![x.x, y.y, z.z, w.w].into_iter().all(independent) {
             return None;
         }
-        let solved = |column: Vector4<f64>| Vector4::from(inverted.map(|row| math::dot(&row, &column)));
-        let inverse = collected(scaled().map(|column| math::component_product(&solved(column), &scale)));
+        let solved = |column: Vector4<f64>| Vector4::from(inverted.map(|row| row.dot(&column)));
+        let inverse = collected(scaled().map(|column| solved(column).component_mul(&scale)));
         Some(Self { rotors, columns, inverse })
     }
 }
 
 /// The columns of B.
-#[inline]
 fn columns(rotors: &[Rotor]) -> Vec<Vector4<f64>, ROTORS_MAX> {
     collected(rotors.iter().map(Rotor::column))
 }
 
 /// The squared lengths of the rows of B.
-#[inline]
 fn squares(columns: &[Vector4<f64>]) -> Vector4<f64> {
-    columns.iter().map(|column| math::component_product(column, column)).sum()
+    columns.iter().map(|column| column.component_mul(column)).sum()
+}
+
+/// The vector normal to three others in four dimensions: the cross product's bigger sister.
+pub(super) fn normal(a: &Vector4<f64>, b: &Vector4<f64>, c: &Vector4<f64>) -> Vector4<f64> {
+    let minor = |pick: fn(&Vector4<f64>) -> Vector3<f64>| pick(a).cross(&pick(b)).dot(&pick(c));
+    Vector4::new(
+        minor(|v| Vector3::new(v.y, v.z, v.w)),
+        -minor(|v| Vector3::new(v.x, v.z, v.w)),
+        minor(|v| Vector3::new(v.x, v.y, v.w)),
+        -minor(|v| Vector3::new(v.x, v.y, v.z)),
+    )
 }
 
 impl Deref for Rotors {
     type Target = [Rotor];
 
-    #[inline]
     fn deref(&self) -> &[Rotor] {
         &self.rotors
     }

@@ -31,14 +31,12 @@ pub(super) struct Actuator {
 }
 
 impl Actuator {
-    #[inline]
     fn new(rotor: &Rotor, column: &Vector4<f64>, share: &Vector4<f64>) -> Self {
         let single = |v: &Vector4<f64>| v.map(|x| x as f32);
         Self { column: single(column), share: single(share), least: rotor.thrust_min, greatest: rotor.thrust_max }
     }
 
     /// `thrust` moved into the rotor's range.
-    #[inline]
     pub(super) fn clip(&self, thrust: f32) -> f32 {
         thrust.max(self.least).min(self.greatest)
     }
@@ -64,7 +62,6 @@ pub struct MinimumNorm {
 impl MinimumNorm {
     /// For `rotors`; configuration time.
     #[must_use]
-    #[inline]
     pub fn new(rotors: &Rotors) -> Self {
         let all = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse());
         Self { actuators: collected(all.map(|((rotor, column), share)| Actuator::new(rotor, column, share))) }
@@ -74,7 +71,6 @@ impl MinimumNorm {
     ///
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
-    #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
         let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
         check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
@@ -85,32 +81,27 @@ impl MinimumNorm {
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
-    #[inline]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         let sum = self.sum(thrusts);
         Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
     }
 
     /// The rotors, in their order.
-    #[inline]
     pub(super) fn actuators(&self) -> &[Actuator] {
         &self.actuators
     }
 
     /// B+ w.
-    #[inline]
     pub(super) fn preferred(&self, wrench: &Vector4<f32>) -> Thrusts {
         collected(self.actuators.iter().map(|actuator| actuator.share.dot(wrench)))
     }
 
     /// B f.
-    #[inline]
     pub(super) fn sum(&self, thrusts: &[f32]) -> Vector4<f32> {
         self.actuators.iter().zip(thrusts).map(|(actuator, thrust)| actuator.column * *thrust).sum()
     }
 
     /// Moves thrusts into their rotors' ranges; whether one was outside.
-    #[inline]
     pub(super) fn clip(&self, thrusts: &mut Thrusts) -> bool {
         let mut clipped = false;
         for (thrust, actuator) in thrusts.iter_mut().zip(&self.actuators) {
@@ -126,7 +117,6 @@ impl MinimumNorm {
 }
 
 /// (T, tau) as one vector.
-#[inline]
 pub(super) fn components(wrench: &Wrench) -> Vector4<f32> {
     Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z)
 }

@@ -23,12 +23,11 @@
 //! It does not know the rotors' lag, nor what they delivered last tick. It is for flights that nothing is proven about:
 //! certified ones never come to step 2 and are flown without it.
 
-use super::attainable::{Polygon, Slabs, generators, normal};
+use super::attainable::{Polygon, Slabs, generators};
 use super::collected;
-use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors};
+use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors, normal};
 use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
 use crate::error::InputError;
-use crate::math::{component_product, dot};
 use crate::state::Wrench;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector4};
@@ -58,7 +57,6 @@ pub struct Allocation {
 impl Allocation {
     /// Whether the wrench asked for is the wrench delivered (to rounding).
     #[must_use]
-    #[inline]
     pub fn is_exact(&self) -> bool {
         !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
     }
@@ -92,7 +90,6 @@ pub struct Mixer {
 impl Mixer {
     /// Prepares the mixer; configuration time.
     #[must_use]
-    #[inline]
     pub fn new(rotors: &Rotors) -> Self {
         let carriers = carriers(rotors);
         let carrying = || carriers.iter().map(|carrier| carrier.rotor);
@@ -122,7 +119,6 @@ impl Mixer {
     ///
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never are.
-    #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
         let asked = components(wrench);
         let Delivered { thrusts, achieved, clipped } = self.minimum_norm.allocate(wrench)?;
@@ -143,13 +139,11 @@ impl Mixer {
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
-    #[inline]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         self.minimum_norm.wrench(thrusts)
     }
 
     /// Step 2: the attainable wrench that stands in for `asked`.
-    #[inline]
     fn attainable(&self, asked: &Vector4<f32>) -> Vector4<f32> {
         let torque = self.roll_pitch.nearest(&Vector2::new(asked.y, asked.z));
         let thrust = within(asked.x, self.thrust.range(&Vector4::new(0.0, torque.x, torque.y, 0.0)));
@@ -158,7 +152,6 @@ impl Mixer {
     }
 
     /// Step 3: thrusts within their ranges for an attainable `wrench`.
-    #[inline]
     fn deliver(&self, wrench: &Vector4<f32>) -> Thrusts {
         let mut thrusts = self.minimum_norm.preferred(wrench);
         let mut rest = *wrench;
@@ -187,7 +180,6 @@ impl Mixer {
 }
 
 /// `value` moved into a range.
-#[inline]
 fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
     value.max(least).min(greatest)
 }
@@ -196,21 +188,20 @@ fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
 ///
 /// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
 /// handing its thrust over to them never magnifies an error.
-#[inline]
 fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
     let (mut best, mut largest) = (Vec::new(), 0.0);
     for choice in 0_u32..1 << rotors.len() {
         let chosen = |index: &usize| choice >> index & 1 == 1;
         let columns = rotors.effectiveness().iter().enumerate().filter(|(index, _)| chosen(index));
         let columns: Vec<Vector4<f64>, ROTORS_MAX> =
-            collected(columns.map(|(_, column)| component_product(column, &rotors.scale())));
+            collected(columns.map(|(_, column)| column.component_mul(&rotors.scale())));
         if let [a, b, c, d] = columns.as_slice() {
-            let volume = dot(&normal(b, c, d), a).abs();
+            let volume = normal(b, c, d).dot(a).abs();
             if volume > largest {
                 // The inverse's row for one column is normal to the other three.
                 let rows = [(a, normal(b, c, d)), (b, normal(a, c, d)), (c, normal(a, b, d)), (d, normal(a, b, c))];
                 let row = |(column, normal): &(&Vector4<f64>, Vector4<f64>)| {
-                    component_product(&(normal / dot(normal, column)), &rotors.scale()).map(|x| x as f32)
+                    (normal / normal.dot(column)).component_mul(&rotors.scale()).map(|x| x as f32)
                 };
                 let indices = (0..rotors.len()).filter(chosen);
                 best = collected(indices.zip(rows.iter().map(row)).map(|(rotor, row)| Carrier { rotor, row }));

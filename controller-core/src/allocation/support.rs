@@ -86,7 +86,6 @@ impl TorqueTerm {
     ///
     /// # Errors
     /// Gives the term's name as the field.
-    #[inline]
     pub fn new(name: &'static str, shape: Shape) -> Result<Self, ParameterError> {
         let sizes = match shape {
             Shape::Ball { radius } => Vector4::new(radius, 0.0, 0.0, 0.0),
@@ -102,14 +101,12 @@ impl TorqueTerm {
 
     /// The term's name.
     #[must_use]
-    #[inline]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
     /// h(d): the greatest d . tau over the set.
     #[must_use]
-    #[inline]
     pub fn support(&self, direction: &Vector3<f64>) -> f64 {
         let length = |v: Vector3<f64>| math::sqrt_f64(v.norm_squared());
         match &self.shape {
@@ -126,7 +123,6 @@ impl TorqueTerm {
 /// The form's matrix has a zero diagonal and a, b, c off it, so its eigenvalues solve x^3 - p x - q = 0 with
 /// p = a^2 + b^2 + c^2, q = 2 a b c. All roots are real and none exceeds 2 sqrt(p/3): from there Newton's method falls
 /// towards the largest without passing it, so that every step is an upper bound.
-#[inline]
 fn gyroscopic_gain(inertia: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
     let differences = Vector3::new(inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x);
     let form = differences.component_mul(direction) * 0.5;
@@ -156,7 +152,6 @@ impl<'a> Commands<'a> {
     ///
     /// # Errors
     /// Names `thrust` if its bounds are not finite or in the wrong order.
-    #[inline]
     pub fn new(least: f64, greatest: f64, torque: &'a [TorqueTerm]) -> Result<Self, ParameterError> {
         require(least.is_finite() && greatest.is_finite(), "thrust", Reason::NotFinite)?;
         require(least <= greatest, "thrust", Reason::NotIncreasing)?;
@@ -164,21 +159,18 @@ impl<'a> Commands<'a> {
     }
 
     /// The greatest row . (T, tau), and the part of it that is thrust.
-    #[inline]
     fn reach(&self, row: &Vector4<f64>) -> Reach {
         let thrust = (row.x * self.thrust.0).max(row.x * self.thrust.1);
         let torque = self.support(&torque_part(row));
         Reach { thrust, total: thrust + torque + ROUNDING * (thrust.abs() + torque) }
     }
 
-    #[inline]
     fn support(&self, direction: &Vector3<f64>) -> f64 {
         self.torque.iter().map(|term| term.support(direction)).sum()
     }
 }
 
 /// (tau_x, tau_y, tau_z) of a row over (T, tau).
-#[inline]
 fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
     Vector3::new(row.y, row.z, row.w)
 }
@@ -247,14 +239,12 @@ pub struct RotorDemand {
 impl RotorDemand {
     /// Whether the rotor can give all that is asked of it.
     #[must_use]
-    #[inline]
     pub fn fits(&self) -> bool {
         self.margin >= 0.0
     }
 
     /// What `commands` ask of rotor `index`, whose thrust is `row` of B+ times the wrench.
     #[must_use]
-    #[inline]
     pub fn new(index: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
         let (available_min, available_max) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
         let (up, down) = (commands.reach(row), commands.reach(&-row));
@@ -302,7 +292,6 @@ impl RotorDemand {
 }
 
 impl fmt::Display for RotorDemand {
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (end, available, demand) = match self.limit {
             Limit::Minimum => ("least", self.available_min, self.least),
@@ -330,7 +319,6 @@ impl fmt::Display for RotorDemand {
 
 /// What `commands` ask of each rotor, in the rotors' order.
 #[must_use]
-#[inline]
 pub fn demands(rotors: &Rotors, commands: &Commands) -> Vec<RotorDemand, ROTORS_MAX> {
     let all = rotors.iter().zip(rotors.pseudo_inverse()).enumerate();
     collected(all.map(|(index, (rotor, row))| RotorDemand::new(index, rotor, row, commands)))

@@ -23,7 +23,6 @@ impl Configuration {
     ///
     /// # Errors
     /// If a bound is not finite or negative, or M_p >= g - K_a3, where the law is undefined.
-    #[inline]
     pub fn new(
         vehicle: Vehicle,
         limits: Limits,
@@ -40,7 +39,6 @@ impl Configuration {
     ///
     /// # Errors
     /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends.
-    #[inline]
     pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
         let field = "control.thrust_floor";
         require_positive(floor, field)?;
@@ -53,7 +51,6 @@ impl Configuration {
     ///
     /// # Errors
     /// As [`Self::new`].
-    #[inline]
     pub fn with_gains(&self, gains: Gains) -> Result<Self, ParameterError> {
         let configuration = Self::new(self.vehicle, self.limits, gains, self.bounds)?;
         Ok(Self { rotors: self.rotors.clone(), ..configuration })
@@ -63,7 +60,6 @@ impl Configuration {
     ///
     /// # Errors
     /// As [`Self::new`], and as [`Self::with_thrust_floor`] if there is a floor.
-    #[inline]
     pub fn with_bounds(&self, bounds: ReferenceBounds) -> Result<Self, ParameterError> {
         let configuration = Self::new(self.vehicle, self.limits, self.gains, bounds)?;
         let configuration = Self { rotors: self.rotors.clone(), ..configuration };
@@ -72,7 +68,6 @@ impl Configuration {
 
     /// m (g - M_p - K_a3), N: the greatest floor the thrust projection may have.
     #[must_use]
-    #[inline]
     pub fn greatest_thrust_floor(&self) -> f32 {
         self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration)
     }
@@ -81,7 +76,6 @@ impl Configuration {
     ///
     /// # Errors
     /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it.
-    #[inline]
     pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
         let hover = self.vehicle.mass * self.vehicle.gravity;
         let greatest: f32 = rotors.iter().map(|rotor| rotor.thrust_max).sum();
@@ -93,42 +87,36 @@ impl Configuration {
 
     /// The vehicle.
     #[must_use]
-    #[inline]
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
 
     /// The user's limits.
     #[must_use]
-    #[inline]
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
     /// The gains.
     #[must_use]
-    #[inline]
     pub fn gains(&self) -> &Gains {
         &self.gains
     }
 
     /// Omega_r: the references this configuration is for.
     #[must_use]
-    #[inline]
     pub fn bounds(&self) -> &ReferenceBounds {
         &self.bounds
     }
 
     /// The floor of the thrust projection, N; none for the paper's law.
     #[must_use]
-    #[inline]
     pub fn thrust_floor(&self) -> Option<f32> {
         self.thrust_floor
     }
 
     /// The rotors, if the certificate is to reach them.
     #[must_use]
-    #[inline]
     pub fn rotors(&self) -> Option<&Rotors> {
         self.rotors.as_ref()
     }
@@ -157,7 +145,6 @@ impl Certified {
     /// # Errors
     /// [`Refused`] says which inequality fails and by how much.
     #[allow(clippy::result_large_err)] // as above, and it happens once, on the ground
-    #[inline]
     pub fn new(configuration: Configuration) -> Result<Self, Refused> {
         let certificate = Certificate::new(&configuration).map_err(Refused::Undefined)?;
         if certificate.holds() { Ok(Self { configuration, certificate }) } else { Err(Refused::Fails(certificate)) }
@@ -165,14 +152,12 @@ impl Certified {
 
     /// What was certified.
     #[must_use]
-    #[inline]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
     /// The proof.
     #[must_use]
-    #[inline]
     pub fn certificate(&self) -> &Certificate {
         &self.certificate
     }

@@ -19,35 +19,30 @@ pub struct Inequality {
 impl Inequality {
     /// `required < available`.
     #[must_use]
-    #[inline]
     pub fn new(name: &'static str, unit: &'static str, required: f64, available: f64) -> Self {
         Self { name, unit, required, available, strict: true }
     }
 
     /// The same with equality allowed.
     #[must_use]
-    #[inline]
     pub fn or_equal(self) -> Self {
         Self { strict: false, ..self }
     }
 
     /// Whether it holds; a NaN on either side does not.
     #[must_use]
-    #[inline]
     pub fn holds(&self) -> bool {
         self.required < self.available || (!self.strict && self.required == self.available)
     }
 
     /// The part of what is available that is left over; negative where the inequality fails.
     #[must_use]
-    #[inline]
     pub fn margin(&self) -> f64 {
         if self.available > 0.0 { 1.0 - self.required / self.available } else { f64::NEG_INFINITY }
     }
 }
 
 impl fmt::Display for Inequality {
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, unit, required, available, .. } = self;
         write!(f, "{name}: {required:.4} of {available:.4} {unit}")
@@ -55,7 +50,6 @@ impl fmt::Display for Inequality {
 }
 
 /// The inequality with the least margin of a list that is not empty.
-#[inline]
 pub(crate) fn tightest<'a>(inequalities: impl IntoIterator<Item = &'a Inequality>) -> Option<Inequality> {
     inequalities.into_iter().copied().reduce(|a, b| if b.margin() < a.margin() { b } else { a })
 }

@@ -18,7 +18,6 @@ use nalgebra::Vector3;
 
 /// Lemma 1's bounds for filters of bandwidth `k_f`, `k_s` fed with a feedback of level `m_p`.
 #[must_use]
-#[inline]
 pub fn desired_rates(
     k_f: f64,
     k_s: f64,

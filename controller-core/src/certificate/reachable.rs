@@ -43,7 +43,6 @@ pub struct Reachable {
 
 /// U_l of Lemma 1: half the L1 norm of the impulse response from ubar to u_f - u_s.
 #[must_use]
-#[inline]
 pub fn half_l1_norm(k_f: f64, k_s: f64) -> f64 {
     // (k_f / k_s)^(k_f / (k_s - k_f)) = exp(-ln(1 + x) / x) with x = k_s / k_f - 1.
     let x = k_s / k_f - 1.0;
@@ -53,7 +52,6 @@ pub fn half_l1_norm(k_f: f64, k_s: f64) -> f64 {
 impl Reachable {
     /// For filters of bandwidth `k_f`, `k_s` (1/s), feedback level `m_p` (m/s^2) and a reference within `bounds`.
     #[must_use]
-    #[inline]
     pub fn new(k_f: f64, k_s: f64, m_p: f64, gravity: f64, bounds: &ReferenceBounds) -> Self {
         let half_l1 = half_l1_norm(k_f, k_s);
         let axis_jerk = 2.0 * k_f * half_l1 * m_p;
@@ -74,7 +72,6 @@ impl Reachable {
 
     /// Greatest |u|.
     #[must_use]
-    #[inline]
     pub fn magnitude(&self) -> f64 {
         math::hypot(self.horizontal, self.vertical_greatest)
     }

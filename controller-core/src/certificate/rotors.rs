@@ -50,7 +50,6 @@ pub struct RotorReport {
 ///
 /// # Errors
 /// If the form's bounds are not finite; the constructors before it leave no way to that.
-#[inline]
 pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
     let Some(rotors) = configuration.rotors() else {
         return Ok(Vec::new());
@@ -69,7 +68,6 @@ pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorRe
     Ok(list(rotors, &commands, hover))
 }
 
-#[inline]
 fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
     let mut reports = Vec::new();
     for (index, ((rotor, row), (least, greatest))) in rotors.iter().zip(rotors.pseudo_inverse()).zip(&NAMES).enumerate()

@@ -58,7 +58,6 @@ pub struct DesiredRates {
 impl DesiredRates {
     /// The componentwise lesser of two bounds.
     #[must_use]
-    #[inline]
     pub fn min(&self, other: &Self) -> Self {
         Self {
             angular_velocity: self.angular_velocity.min(other.angular_velocity),
@@ -68,7 +67,6 @@ impl DesiredRates {
     }
 
     /// Whether any of these bounds is greater than the other's.
-    #[inline]
     fn exceed(&self, other: &Self) -> bool {
         let torque = self.feedforward_torque.iter().zip(other.feedforward_torque.as_slice());
         self.angular_velocity > other.angular_velocity
@@ -77,7 +75,6 @@ impl DesiredRates {
     }
 
     /// These bounds raised to hold for another cell too.
-    #[inline]
     fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
         Self {
             angular_velocity: self.angular_velocity.max(velocity),
@@ -89,7 +86,6 @@ impl DesiredRates {
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: what |omega_d'| <= a and |omega_d| <= v can ask for in any body frame.
 #[must_use]
-#[inline]
 pub fn feedforward_torque(inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Vector3<f64> {
     let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).abs();
     inertia * acceleration + differences * (0.5 * velocity * velocity)
@@ -104,7 +100,6 @@ struct Parts {
 
 impl Parts {
     /// The greatest of each part.
-    #[inline]
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { tilting: 0.0, yawing: 0.0 };
         all.iter().fold(nothing, |worst, parts| Self {
@@ -114,7 +109,6 @@ impl Parts {
     }
 
     /// |self + other|^2 at most.
-    #[inline]
     fn square_of_sum(&self, other: &Self) -> f64 {
         let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
         tilting * tilting + yawing * yawing
@@ -143,7 +137,6 @@ struct Shares {
 
 impl Shares {
     /// The greatest of each part.
-    #[inline]
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { stretch: 0.0, length: 0.0, product: 0.0, mixed: 0.0 };
         all.iter().fold(nothing, |worst, shares| Self {
@@ -170,7 +163,6 @@ struct Tilt {
 }
 
 impl Tilt {
-    #[inline]
     fn between(upright_end: f64, tilted_end: f64, vertical_least: f64) -> Self {
         let secant = math::hypot(1.0, tilted_end);
         let secant_least = math::hypot(1.0, upright_end);
@@ -188,7 +180,6 @@ impl Tilt {
     /// the slope, and whose vertical part is at most `vertical`.
     ///
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
-    #[inline]
     fn tangential(&self, horizontal: f64, vertical: f64, direction: &Direction) -> Tangential {
         let climbing = self.sin * vertical;
         let flattened = self.sin_least * horizontal * direction.cos_least;
@@ -199,21 +190,18 @@ impl Tilt {
     }
 
     /// L u'' for a direction of u''.
-    #[inline]
     fn linear_part(&self, reach: &Reachable, direction: &Direction) -> Parts {
         let Tangential { length, mixed } = self.tangential(reach.horizontal_snap, reach.vertical_snap, direction);
         Parts { tilting: length, yawing: self.tan * mixed }
     }
 
     /// omega_d for u' and |psi'| = `yaw_rate`.
-    #[inline]
     fn velocity(&self, jerk: &Tangential, yaw_rate: f64) -> Parts {
         let Tangential { length, mixed } = *jerk;
         Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
     }
 
     /// The shares of u' in the cell `split`, for p at most `longest`.
-    #[inline]
     fn shares(&self, reach: &Reachable, longest: f64, split: usize) -> Shares {
         let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
         let total = reach.jerk * reach.jerk;
@@ -227,7 +215,6 @@ impl Tilt {
     }
 
     /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their parts.
-    #[inline]
     fn quadratic_part(&self, heading: &HeadingCell, shares: &Shares) -> Parts {
         let HeadingCell { rate, acceleration } = *heading;
         let Shares { stretch, length, product, mixed } = *shares;
@@ -244,7 +231,6 @@ impl Tilt {
 
 /// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which an
 /// upper bound already says that they change nothing.
-#[inline]
 fn acceleration_square(
     tilt: &Tilt,
     linear: &[Parts; ANGLE_CELLS],
@@ -270,7 +256,6 @@ fn acceleration_square(
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
-#[inline]
 fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
     let x = (0.5 * total).max(least).min(most);
     math::sqrt_f64(x * (total - x).max(0.0))
@@ -287,7 +272,6 @@ struct Direction {
 impl Direction {
     /// The cells of [0, pi/2]; the other quadrants mirror it. From end to end the angle is turned on by one cell; what
     /// rounding does to that is far below [`OUTWARDS`], by which every value is moved to its safe side.
-    #[inline]
     fn quarter_turn() -> [Self; ANGLE_CELLS] {
         let (mut cos, mut sin) = (1.0, 0.0);
         core::array::from_fn(|_| {
@@ -309,7 +293,6 @@ struct HeadingCell {
 impl HeadingCell {
     /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end. The
     /// fastest first: they are the likeliest to matter.
-    #[inline]
     fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
@@ -325,7 +308,6 @@ impl HeadingCell {
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
-#[inline]
 pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();

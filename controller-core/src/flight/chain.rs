@@ -61,7 +61,6 @@ fn apart<T>(make: impl FnOnce() -> T) -> T {
 }
 
 /// A reference at rest.
-#[inline(never)] // once in an image
 fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
     let zero = Vector3::zeros();
     let position = *position;
@@ -69,7 +68,6 @@ fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
 }
 
 impl<'m> Chain<'m> {
-    #[inline]
     pub fn new(
         certified: &Certified,
         limits: &GovernorLimits,
@@ -90,7 +88,6 @@ impl<'m> Chain<'m> {
     }
 
     /// How many rotors there are.
-    #[inline]
     pub fn rotors(&self) -> usize {
         self.rotors
     }
@@ -99,7 +96,6 @@ impl<'m> Chain<'m> {
     ///
     /// # Errors
     /// The governor's; it goes on as before then.
-    #[inline]
     pub fn start(&mut self, position: &Vector3<f32>, heading: &Heading) -> Result<(), InputError> {
         self.governor.start(position, &Vector3::zeros(), heading)?;
         self.controller.reset();
@@ -110,7 +106,6 @@ impl<'m> Chain<'m> {
     }
 
     /// Turns to levelling: a hover at the last heading, the law reset.
-    #[inline]
     pub fn level(&mut self) {
         self.reference = resting(&self.reference.position, &self.reference.heading);
         self.controller.reset();
@@ -121,13 +116,11 @@ impl<'m> Chain<'m> {
     ///
     /// # Errors
     /// As [`Self::start`].
-    #[inline]
     pub fn regain(&mut self, pose: &Pose) -> Result<(), InputError> {
         self.governor.start(&pose.position, &pose.velocity, &self.reference.heading)
     }
 
     /// Brings the reference to rest.
-    #[inline]
     pub fn hold(&mut self) {
         self.governor.stop();
     }
@@ -136,13 +129,11 @@ impl<'m> Chain<'m> {
     ///
     /// # Errors
     /// Names the field the governor refuses.
-    #[inline]
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), &'static str> {
         self.governor.accept(setpoint).map_err(field)
     }
 
     /// Whether the last thrusts have been held for long enough.
-    #[inline]
     pub fn is_refused(&self) -> bool {
         self.refusals >= REFUSALS_MAX
     }
@@ -151,7 +142,6 @@ impl<'m> Chain<'m> {
     ///
     /// # Errors
     /// What the law or the allocation cannot use.
-    #[inline]
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         self.reference = self.governor.tick();
         self.step(state)
@@ -161,7 +151,6 @@ impl<'m> Chain<'m> {
     ///
     /// # Errors
     /// As [`Self::fly`].
-    #[inline]
     pub fn fly_level(
         &mut self,
         attitude: Quaternion<f32>,
@@ -171,7 +160,6 @@ impl<'m> Chain<'m> {
         self.step(&State { position, velocity, attitude, angular_velocity })
     }
 
-    #[inline]
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
         let Command { wrench, mrp } = self.controller.command(state, &self.reference)?;
@@ -190,7 +178,6 @@ impl<'m> Chain<'m> {
     }
 
     /// This tick's thrusts, N, in the rotors' order; the last ones if it was refused, none before the first.
-    #[inline]
     pub fn thrusts(&self) -> Option<&Thrusts> {
         self.thrusts.as_ref()
     }

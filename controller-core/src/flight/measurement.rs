@@ -17,13 +17,11 @@ pub const STAMP_LEAD_MAX: u64 = 1_000;
 pub const BODY_RATE_MAX: f32 = 100.0;
 
 /// Whether a time stamp can be of something that has happened.
-#[inline]
 fn is_in_time(time: u64, now: u64) -> bool {
     time <= now.saturating_add(STAMP_LEAD_MAX)
 }
 
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
-#[inline(never)] // once in an image: asked everywhere
 pub(super) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
     now.saturating_sub(time) <= age_max && is_in_time(time, now)
 }
@@ -40,14 +38,12 @@ pub(super) trait Measurement: Copy {
     fn check(&self) -> Result<(), &'static str>;
 
     /// Makes a unit quaternion of an attitude that passes for one.
-    #[inline]
     fn normalise(&mut self) {}
 }
 
 impl Measurement for ImuSample {
     const TIME: &'static str = "imu.time";
 
-    #[inline]
     fn check(&self) -> Result<(), &'static str> {
         let rates = (&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity");
         check_vectors(&[rates, (&self.specific_force, STATE_RANGE, "imu.specific_force")]).map_err(field)
@@ -57,14 +53,12 @@ impl Measurement for ImuSample {
 impl Measurement for Pose {
     const TIME: &'static str = "pose.time";
 
-    #[inline]
     fn check(&self) -> Result<(), &'static str> {
         let position = (&self.position, POSITION_RANGE, "pose.position");
         check_vectors(&[position, (&self.velocity, SPEED_RANGE, "pose.velocity")]).map_err(field)?;
         if is_rotation(&self.attitude) { Ok(()) } else { Err("pose.attitude") }
     }
 
-    #[inline]
     fn normalise(&mut self) {
         self.attitude *= 1.0 / math::sqrt(self.attitude.norm_squared());
     }
@@ -83,7 +77,6 @@ impl<T: Measurement> Newest<T> {
 
     /// Considers what is offered in the tick at `now`; the same measurement may be offered again and again, and one older
     /// than what is here is passed over. Returns it if it is new and usable.
-    #[inline]
     pub fn offer(&mut self, offered: &Option<Stamped<T>>, now: u64) -> Option<&Stamped<T>> {
         let offered = offered.as_ref()?;
         if self.usable.as_ref().is_some_and(|kept| offered.time <= kept.time) {
@@ -100,13 +93,11 @@ impl<T: Measurement> Newest<T> {
     }
 
     /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
-    #[inline]
     pub fn within(&self, age_max: u64, now: u64) -> Option<&Stamped<T>> {
         self.usable.as_ref().filter(|kept| is_fresh(kept.time, age_max, now))
     }
 
     /// The field for which the newest one offered cannot be used, if so.
-    #[inline]
     pub fn unusable(&self) -> Option<&'static str> {
         self.unusable
     }

@@ -34,7 +34,6 @@ pub(super) struct Start {
 }
 
 /// Only a disarmed vehicle takes requests, and none against a disarm command.
-#[inline]
 pub(super) fn to_leave(mode: Mode, disarm: bool) -> Result<(), Refusal> {
     match mode {
         _ if disarm => Err(Refusal::DisarmCommanded),
@@ -45,7 +44,6 @@ pub(super) fn to_leave(mode: Mode, disarm: bool) -> Result<(), Refusal> {
 }
 
 /// Arming: fresh and usable measurements, nearly upright, and somebody at the other end of the link.
-#[inline]
 pub(super) fn to_arm(
     imu: &Newest<ImuSample>,
     pose: &Newest<Pose>,
@@ -62,26 +60,22 @@ pub(super) fn to_arm(
 }
 
 /// A motor test: one rotor that exists, slowly, not for long.
-#[inline]
 pub(super) fn to_test(test: &MotorTest, rotors: usize) -> Result<(), Refusal> {
     require(test.rotor < rotors, Refusal::NoSuchRotor)?;
     require(test.level > 0.0 && test.level <= MOTOR_TEST_LEVEL_MAX, Refusal::MotorTestLevel)?;
     require(test.duration > 0 && test.duration <= MOTOR_TEST_MAX, Refusal::MotorTestDuration)
 }
 
-#[inline]
 fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {
     if condition { Ok(()) } else { Err(refusal) }
 }
 
 /// e3 . R e3: the cosine of the tilt.
-#[inline]
 fn upright(q: &Quaternion<f32>) -> f32 {
     1.0 - 2.0 * (q.i * q.i + q.j * q.j)
 }
 
 /// Which way body x points, seen from above; none straight up or down.
-#[inline]
 fn heading(q: &Quaternion<f32>) -> Option<Heading> {
     let forward = Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k));
     Heading::new(forward / math::sqrt(forward.norm_squared()), 0.0, 0.0).ok()

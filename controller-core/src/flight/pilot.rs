@@ -39,7 +39,6 @@ impl<'m> Pilot<'m> {
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
     /// arms, and says why.
     #[must_use]
-    #[inline]
     pub fn new(certification: Result<&Certified, &Refused>, limits: &GovernorLimits, memory: &'m mut Memory) -> Self {
         Self {
             chain: match certification {
@@ -57,20 +56,17 @@ impl<'m> Pilot<'m> {
 
     /// The mode after the last tick.
     #[must_use]
-    #[inline]
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
     /// Why it can never arm, if so.
     #[must_use]
-    #[inline]
     pub fn grounded(&self) -> Option<Grounded> {
         self.chain.as_ref().err().copied()
     }
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
-    #[inline]
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         self.measure(inputs);
         let silent = is_silent(inputs);
@@ -85,7 +81,6 @@ impl<'m> Pilot<'m> {
     }
 
     /// Takes the newest measurements, and carries the attitude on.
-    #[inline]
     fn measure(&mut self, inputs: &Inputs) {
         let now = inputs.now;
         self.imu.offer(&inputs.imu, now);
@@ -99,7 +94,6 @@ impl<'m> Pilot<'m> {
     }
 
     /// Whether a request is granted. Granting an arm request readies the chain for it.
-    #[inline]
     fn answer(&mut self, request: Request, inputs: &Inputs, silent: bool) -> Result<(), Refusal> {
         permission::to_leave(self.mode, inputs.disarm)?;
         match request {
@@ -117,7 +111,6 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the rules need to know in this tick.
-    #[inline]
     fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>, silent: bool) -> Conditions {
         let now = inputs.now;
         let elapsed = now.saturating_sub(self.since);
@@ -143,7 +136,6 @@ impl<'m> Pilot<'m> {
     }
 
     /// Does what entering a mode takes. What arming and regaining the pose take is done where they are found possible.
-    #[inline]
     fn enter(&mut self, transition: &Transition, inputs: &Inputs) {
         self.mode = transition.to;
         self.since = inputs.now;
@@ -154,7 +146,6 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    #[inline]
     fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
         match (&mut self.chain, self.mode) {
             (Ok(chain), Mode::Flying) => chain.accept(setpoint).map_err(Refusal::Setpoint),
@@ -163,7 +154,6 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the mode does in this tick.
-    #[inline]
     fn output(&mut self, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         if self.mode == Mode::MotorTest {
             return (Output::Test { rotor: self.test.rotor, level: self.test.level }, None);
@@ -189,7 +179,6 @@ impl<'m> Pilot<'m> {
 }
 
 /// Whether the ground station has been silent for too long.
-#[inline]
 fn is_silent(inputs: &Inputs) -> bool {
     !inputs.ground_station.is_some_and(|heard| is_fresh(heard, GROUND_STATION_SILENCE_MAX - 1, inputs.now))
 }

@@ -29,13 +29,11 @@ pub struct PropagatedAttitude {
 impl PropagatedAttitude {
     /// Starts from `attitude`, a unit quaternion that was true at `time` (us), with body rates in rad/s.
     #[must_use]
-    #[inline]
     pub fn new(attitude: Quaternion<f32>, angular_velocity: Vector3<f32>, time: u64) -> Self {
         Self { attitude, angular_velocity, time }
     }
 
     /// Carries the attitude on to `time` (us; an earlier one changes nothing but the rate).
-    #[inline]
     pub fn advance(&mut self, angular_velocity: Vector3<f32>, time: u64) {
         let seconds = time.saturating_sub(self.time) as f32 * 1e-6;
         let half_angle = (self.angular_velocity + angular_velocity) * (0.25 * seconds);
@@ -47,14 +45,12 @@ impl PropagatedAttitude {
 
     /// q, body to world, unit.
     #[must_use]
-    #[inline]
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }
 }
 
 /// The unit quaternion (cos |x|, sin |x| x/|x|) of the half angle x, rad.
-#[inline]
 fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
     /// Below this, |x|^2 and |x|^4 of the series suffice: the next term is under 2e-9.
     const SMALL: f32 = 0.01;

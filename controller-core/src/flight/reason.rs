@@ -59,7 +59,6 @@ impl Reason {
 
     /// The reason in words.
     #[must_use]
-    #[inline]
     pub const fn text(self) -> &'static str {
         match self {
             Self::ArmCommanded => "Armed",
@@ -79,7 +78,6 @@ impl Reason {
 }
 
 impl fmt::Display for Reason {
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.text())
     }
@@ -98,14 +96,12 @@ pub enum Grounded {
 }
 
 impl From<ParameterError> for Grounded {
-    #[inline]
     fn from(error: ParameterError) -> Self {
         Self::Parameter(error.field)
     }
 }
 
 impl From<&Refused> for Grounded {
-    #[inline]
     fn from(refused: &Refused) -> Self {
         match refused {
             Refused::Fails(certificate) => {
@@ -118,7 +114,6 @@ impl From<&Refused> for Grounded {
 }
 
 /// The input that an error is about.
-#[inline]
 pub(super) fn field(error: InputError) -> &'static str {
     match error {
         InputError::NotFinite { field } | InputError::OutOfRange { field } | InputError::NotARotation { field } => {
@@ -146,7 +141,6 @@ fn cut(name: &'static str, most: usize) -> &'static str {
 }
 
 impl fmt::Display for Grounded {
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.words().iter().try_for_each(|words| f.write_str(words))
     }
@@ -214,7 +208,6 @@ impl Refusal {
 }
 
 impl fmt::Display for Refusal {
-    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.words().iter().try_for_each(|words| f.write_str(words))
     }

@@ -55,7 +55,6 @@ impl Mode {
 
     /// Whether the law drives the motors.
     #[must_use]
-    #[inline]
     pub fn is_armed(self) -> bool {
         matches!(self, Self::Flying | Self::Holding | Self::Levelling)
     }
@@ -118,14 +117,12 @@ impl Conditions {
 
     /// These and, if `holds`, one more.
     #[must_use]
-    #[inline]
     pub const fn with(self, condition: Condition, holds: bool) -> Self {
         Self(self.0 | (holds as u16) << condition as u16)
     }
 
     /// Whether `condition` is one of them.
     #[must_use]
-    #[inline]
     pub const fn contain(self, condition: Condition) -> bool {
         self.0 >> condition as u16 & 1 == 1
     }
@@ -144,7 +141,6 @@ pub struct Row {
     pub reason: Reason,
 }
 
-#[inline]
 const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row {
     Row { from, condition, to, reason }
 }
@@ -198,7 +194,6 @@ pub struct Transition {
 
 /// What the table says in `mode` under `conditions`: a transition, or none where the mode stays.
 #[must_use]
-#[inline]
 pub fn transition(mode: Mode, conditions: Conditions) -> Option<Transition> {
     TABLE
         .iter()

@@ -12,7 +12,6 @@
 use crate::math;
 
 /// w(d): both in units of the deceleration available per tick squared (and tick).
-#[inline(never)] // once in an image
 pub(super) fn approach_speed(distance: f32) -> f32 {
     let whole = (0.5 * (math::sqrt(1.0 + 8.0 * distance) - 1.0)) as i32 as f32;
     whole + (distance - 0.5 * whole * (whole + 1.0)) / (whole + 1.0)

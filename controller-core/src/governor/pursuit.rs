@@ -26,34 +26,29 @@ struct Cylinder {
 impl Cylinder {
     const NONE: Self = Self { per_horizontal: 0.0, per_vertical: 0.0 };
 
-    #[inline]
     fn new(horizontal: f32, vertical: f32) -> Self {
         Self { per_horizontal: 1.0 / horizontal, per_vertical: 1.0 / vertical }
     }
 
     /// ||y||: at most one inside.
-    #[inline]
     fn measure(&self, y: &Vector3<f32>) -> f32 {
         (math::sqrt(y.x * y.x + y.y * y.y) * self.per_horizontal).max(y.z.abs() * self.per_vertical)
     }
 
     /// `y` brought inside along its own direction; as it is if inside. Rounds towards zero.
-    #[inline]
     fn limited(&self, y: &Vector3<i64>) -> Vector3<i64> {
         shortened(y, self.measure(&single(y)), 1.0)
     }
 }
 
 /// `y` as single precision has it.
-#[inline]
 fn single(y: &Vector3<i64>) -> Vector3<f32> {
     y.map(|component| component as f32)
 }
 
 /// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
-#[inline]
 fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
-    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(|x| x as i64) }
 }
 
 /// The law, in length units and ticks.
@@ -68,7 +63,6 @@ impl Pursuit {
     pub const NONE: Self = Self { accelerations: Cylinder::NONE, speeds: Cylinder::NONE };
 
     /// Speeds in m/s.
-    #[inline]
     pub fn new(windows: &Windows, horizontal_speed: f32, vertical_speed: f32, period: f32) -> Self {
         let unit = windows.per_metre * period;
         Self {
@@ -78,7 +72,6 @@ impl Pursuit {
     }
 
     /// The acceleration that takes velocity `u` to `wanted`, as far as one tick may.
-    #[inline]
     pub fn towards_velocity(&self, wanted: &Vector3<i64>, u: &Vector3<i64>) -> Vector3<i32> {
         self.accelerations.limited(&(self.speeds.limited(wanted) - u)).map(|component| component as i32)
     }
@@ -86,7 +79,6 @@ impl Pursuit {
     /// The velocity wanted to reach a target `error` away that moves with `feed` and accelerates with `acceleration` (units per
     /// tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what following the
     /// target leaves.
-    #[inline]
     pub fn approach(&self, error: &Vector3<i64>, feed: &Vector3<i64>, acceleration: &Vector3<f32>) -> Vector3<i64> {
         let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
         let distance = self.accelerations.measure(&single(error)) / share;

@@ -65,7 +65,6 @@ pub(super) struct Parts {
 
 impl Setpoint {
     /// Its parts, where every one of them is finite and in range.
-    #[inline]
     pub(super) fn checked(&self) -> Result<Parts, InputError> {
         let still = Vector3::zeros();
         let (position, velocity, acceleration) = match self.motion {

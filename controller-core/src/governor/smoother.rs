@@ -15,7 +15,6 @@
 
 use super::HISTORY;
 use super::windows::Windows;
-use crate::math;
 use nalgebra::Vector3;
 
 /// Position and derivatives at a knot of the spline: of one axis, or of all three.
@@ -48,7 +47,6 @@ impl Axis {
     const AT_REST: Self = Self { commanded: 0, speed: 0, trail: 0, difference: [0; 4] };
 
     /// Always in steady motion, with averages that span `total` ticks together.
-    #[inline(never)] // once in an image, not once an axis
     fn steady(position: i64, speed: i64, product: i64, total: i64) -> Self {
         Self {
             // The trail, rounded to the nearest unit, and the two ticks that the control points are ahead.
@@ -60,7 +58,6 @@ impl Axis {
         }
     }
 
-    #[inline(never)] // once in an image, not once an axis
     fn push(&mut self, acceleration: i32, comb: i32, product: i64) {
         let [first, second, third, fourth] = &mut self.difference;
         *fourth += i64::from(comb);
@@ -72,7 +69,6 @@ impl Axis {
         self.trail += self.speed * product - *first;
     }
 
-    #[inline]
     fn knot(&self, product: i64, scales: &Derivatives<f32>) -> Derivatives<f32> {
         let [first, second, third, fourth] = self.difference;
         let behind = self.trail + 2 * first - second;
@@ -81,8 +77,10 @@ impl Axis {
         // The central third difference.
         let around = third - 0.5 * fourth;
         let bend = 0.25 * here + fourth / 120.0;
+        // A product of zero: never designed, so nothing trails.
+        let behind = (behind - bend as i64).checked_div(product).unwrap_or(0);
         Derivatives {
-            position: (self.commanded - divided(behind - math::whole(bend), product)) as f32 * scales.position,
+            position: (self.commanded - behind) as f32 * scales.position,
             velocity: (first - second - 0.5 * here + around / 12.0) * scales.velocity,
             acceleration: (here + fourth / 6.0) * scales.acceleration,
             jerk: around * scales.jerk,
@@ -117,7 +115,6 @@ impl Smoother {
     };
 
     /// Prepares for `windows`.
-    #[inline]
     pub fn design(&mut self, windows: &Windows, period: f32) {
         let [first, second, third] = windows.lengths;
         self.product = windows.product();
@@ -144,7 +141,6 @@ impl Smoother {
     }
 
     /// Starts as if always in steady motion: the knot at hand has `position` (units) and `speed` (units a tick).
-    #[inline]
     pub fn start(&mut self, position: &Vector3<i64>, speed: &Vector3<i64>) {
         self.history.fill(Vector3::zeros());
         let steady = |position: i64, speed: i64| Axis::steady(position, speed, self.product, self.total);
@@ -152,7 +148,6 @@ impl Smoother {
     }
 
     /// Advances by one tick of commanded acceleration, in units per tick squared.
-    #[inline]
     pub fn push(&mut self, acceleration: &Vector3<i32>) {
         self.newest = (self.newest + 1) % HISTORY;
         if let Some(slot) = self.history.get_mut(self.newest) {
@@ -171,27 +166,23 @@ impl Smoother {
     }
 
     /// The commanded position x_0, units.
-    #[inline]
     pub fn commanded(&self) -> Vector3<i64> {
         let [x, y, z] = &self.axes;
         Vector3::new(x.commanded, y.commanded, z.commanded)
     }
 
     /// The commanded velocity u, units a tick.
-    #[inline]
     pub fn speed(&self) -> Vector3<i64> {
         let [x, y, z] = &self.axes;
         Vector3::new(x.speed, y.speed, z.speed)
     }
 
     /// Whether nothing moves, nor will unless commanded.
-    #[inline]
     pub fn at_rest(&self) -> bool {
         self.axes.iter().all(|axis| *axis == Axis { commanded: axis.commanded, ..Axis::AT_REST })
     }
 
     /// The knot at hand: one behind the newest control point but one, the last with all differences known.
-    #[inline]
     pub fn knot(&self) -> Knot {
         let [x, y, z] = &self.axes;
         let knot = |axis: &Axis| axis.knot(self.product, &self.scales);
@@ -204,19 +195,6 @@ impl Smoother {
             snap: Vector3::new(x.snap, y.snap, z.snap),
         }
     }
-}
-
-/// `sum` / `count` to a unit or to 2^-44 of it, whichever is more: each pass of single precision leaves 2^-22 of what there was.
-#[inline(never)] // once in an image
-pub(super) fn divided(sum: i64, count: i64) -> i64 {
-    let share = 1.0 / count as f32;
-    let (mut quotient, mut rest) = (0, sum);
-    for _ in 0..2 {
-        let part = math::whole(rest as f32 * share);
-        quotient += part;
-        rest -= part * count;
-    }
-    quotient
 }
 
 #[cfg(test)]
@@ -275,17 +253,6 @@ mod tests {
             assert!((knot.position.y - 0.02 * tick as f32).abs() < 1e-5, "{} at {tick}", knot.position.y);
             assert!((knot.velocity.y - 2.0).abs() < 1e-6 && knot.acceleration.norm() == 0.0);
             smoother.push(&Vector3::zeros());
-        }
-    }
-
-    #[test]
-    fn a_quotient_is_off_by_a_unit_or_by_next_to_nothing() {
-        let mut random = Random::new(7);
-        for _ in 0..100_000 {
-            let sum = (random.signed() * 2.0_f32.powf(62.0 * random.unit())) as i64;
-            let count = (2.0_f32.powf(23.0 * random.unit())) as i64;
-            let miss = (divided(sum, count) - sum / count).abs();
-            assert!(miss <= 1 + ((sum / count).abs() >> 44), "{sum} by {count}: off by {miss}");
         }
     }
 

@@ -39,11 +39,6 @@ impl Random {
 
 const PERIOD: f32 = 0.01;
 
-fn hover(heading: Heading) -> Reference {
-    let zero = Vector3::zeros();
-    Reference { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading }
-}
-
 /// Memory for one test.
 fn memory() -> &'static mut Memory {
     Box::leak(Box::new(Memory::EMPTY))
@@ -53,26 +48,16 @@ fn governor() -> &'static mut Governor {
     Governor::new(&TYPICAL, &GovernorLimits::default(), PERIOD, memory()).unwrap()
 }
 
-/// The same, ready to take over.
-fn take_over() -> TakeOver<'static> {
-    TakeOver::new(&TYPICAL, &GovernorLimits::default(), PERIOD, memory()).unwrap()
-}
-
 fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
     Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
 }
 
 /// Seconds until at rest, and the last reference.
 fn run(governor: &mut Governor) -> (f32, Reference) {
-    until_rest(|| (governor.tick(), governor.at_rest()))
-}
-
-/// The same of whatever gives a reference, and whether it is at rest, at each tick.
-fn until_rest(mut tick: impl FnMut() -> (Reference, bool)) -> (f32, Reference) {
     for ticks in 1..20_000 {
-        let (reference, at_rest) = tick();
+        let reference = governor.tick();
         assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
-        if at_rest {
+        if governor.at_rest() {
             return (ticks as f32 * PERIOD, reference);
         }
     }
@@ -231,40 +216,6 @@ fn a_start_out_of_range_is_refused_by_name_and_the_governor_goes_on() {
     assert_eq!(far, Err(InputError::OutOfRange { field: "initial.position" }));
     let unknown = governor.start(&zero, &Vector3::repeat(f32::NAN), &Heading::FORWARD);
     assert_eq!(unknown, Err(InputError::NotFinite { field: "initial.velocity" }));
-    assert_eq!(governor, untouched);
-}
-
-#[test]
-fn a_reference_in_motion_is_taken_over_where_it_is_and_stopped() {
-    let mut start = hover(Heading::new(Vector2::new(0.6, -0.8), 0.9, -0.5).unwrap());
-    start.position = Vector3::new(3.0, -2.0, 7.0);
-    start.velocity = Vector3::new(8.0, 1.0, -0.5);
-    start.acceleration = Vector3::new(-1.0, 1.0, 0.2);
-    start.jerk = Vector3::new(0.5, 1.0, -0.1);
-    start.snap = Vector3::new(1.0, -2.0, 0.3);
-    let mut governor = take_over();
-    governor.restart(&start).unwrap();
-    let first = governor.tick();
-    assert!((first.position - start.position - start.velocity * PERIOD).norm() < 1e-3);
-    assert!((first.acceleration - start.acceleration).norm() < 0.02 && (first.snap - start.snap).norm() < 1.0);
-    assert!((first.heading.acceleration() + 0.5).abs() < 0.05);
-    let (time, _) = until_rest(|| (governor.tick(), governor.at_rest()));
-    assert!(time < 12.0);
-}
-
-#[test]
-fn a_reference_about_to_leave_its_bounds_is_refused_and_the_governor_goes_on() {
-    let (mut governor, mut untouched) = (take_over(), take_over());
-    for governor in [&mut governor, &mut untouched] {
-        governor.accept(&go_to(1.0, 0.0, 0.0)).unwrap();
-    }
-    let mut outward = hover(Heading::FORWARD);
-    outward.acceleration.x = 2.5;
-    outward.jerk.x = 1.0;
-    assert!(matches!(governor.restart(&outward), Err(TakeOverError::NoWayOn { .. })));
-    let turning = hover(Heading::new(Vector2::new(1.0, 0.0), 1.3, 0.6).unwrap());
-    let refused = Err(TakeOverError::NoWayOn { field: "initial.heading.acceleration" });
-    assert_eq!(governor.restart(&turning), refused);
     assert_eq!(governor, untouched);
 }
 

@@ -7,15 +7,13 @@
 //!
 //! Bounds: |nu''|^2 = psi''^2 + psi'^4 is convex in (psi', psi''), so where each commanded pair (u, u') satisfies
 //! u'^2 + u^4 <= K_nu''^2, the averages do. With R = min(K_nu', 0.857 sqrt(K_nu'')), B = sqrt(K_nu''^2 - R^4): that share
-//! makes a half turn, pi/R + R/B, as short as this budget permits. A start faster than R slows down with the B its own
-//! rate leaves.
+//! makes a half turn, pi/R + R/B, as short as this budget permits.
 //!
 //! A turn is 2^44 integer units: phases wrap where the circle does, sums are exact, and the way to an angle is the
 //! shorter one.
 
 use super::GovernorLimits;
 use super::braking::{BRAKING_SHARE, approach_speed};
-use super::smoother::divided;
 use super::windows::{ROUNDING_ROOM, ticks};
 use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
@@ -25,10 +23,10 @@ use nalgebra::Vector2;
 
 /// log2 of the units in a turn, and what is left of a 64-bit phase.
 const TURN_BITS: u32 = 44;
-pub(super) const SPARE_BITS: u32 = 64 - TURN_BITS;
+const SPARE_BITS: u32 = 64 - TURN_BITS;
 
 /// Units in a radian.
-pub(super) const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
+const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
 
 /// Longest average, ticks.
 const TURN_HISTORY: usize = 64;
@@ -58,10 +56,9 @@ pub(super) struct Turning {
     /// By how many ticks a steady turn comes out late.
     delay: f32,
     period: f32,
-    /// R and B in units a tick (squared), and the B in force while above R.
+    /// R and B in units a tick (squared).
     fastest: i64,
     strongest: i64,
-    strongest_above: i64,
     commanded: i64,
     rate: i64,
     /// N (x_0 - Psi), and N times the newest first and second difference of Psi.
@@ -80,7 +77,6 @@ impl Turning {
         period: 0.0,
         fastest: 0,
         strongest: 0,
-        strongest_above: 0,
         commanded: 0,
         rate: 0,
         trail: 0,
@@ -89,7 +85,6 @@ impl Turning {
     };
 
     /// Prepares for `bounds` that are positive.
-    #[inline]
     pub fn design(
         &mut self,
         bounds: &ReferenceBounds,
@@ -110,56 +105,28 @@ impl Turning {
         Ok(())
     }
 
-    /// Lets the next start turn at `rate` (units a tick), be it faster than R: then it slows down by `strongest`, units per
-    /// tick squared. Not if that took longer than a minute or so, since it then cannot be said to be brought to rest.
-    #[inline]
-    pub fn allow(&mut self, rate: i64, strongest: i64) -> bool {
-        let allowed = rate.abs() <= self.fastest || strongest >= self.strongest / 64;
-        if allowed {
-            self.strongest_above = strongest;
-        }
-        allowed
-    }
-
-    /// The average's length, ticks.
-    #[inline]
-    pub fn length(&self) -> usize {
-        self.length
-    }
-
-    /// Starts as if it had always turned at `rate` (units a tick, even) and is at `phase` (units) now.
-    #[inline]
-    pub fn start(&mut self, phase: i64, rate: i64) {
-        let length = self.length as i64;
-        // What a turn that always was steady trails behind. Halving is exact: the rate is even.
-        let behind = (rate >> 1) * (length - 1);
+    /// Starts at rest at `phase`, units.
+    pub fn start(&mut self, phase: i64) {
         self.history.fill(0);
-        self.rate = rate;
-        self.trail = behind * length;
-        self.first = rate * length;
-        self.second = 0;
-        self.commanded = phase.wrapping_add(rate).wrapping_add(behind);
+        (self.rate, self.trail, self.first, self.second) = (0, 0, 0, 0);
+        self.commanded = phase;
     }
 
     /// Advances by one tick towards `goal`.
-    #[inline]
     pub fn tick(&mut self, goal: &TurnGoal) {
         self.push(self.command(goal));
     }
 
     /// The commanded acceleration towards `goal`, units per tick squared.
-    #[inline]
     fn command(&self, goal: &TurnGoal) -> i64 {
         // Far from 64 bits: a rate is below 2^58 for every setpoint, and half a turn is 2^43.
         let wanted = goal.rate + goal.phase.map_or(0, |phase| self.approach(phase));
-        let strongest = if self.rate.abs() > self.fastest { self.strongest_above } else { self.strongest };
         // Not `clamp`, which may panic.
         let wanted = wanted.min(self.fastest).max(-self.fastest);
-        (wanted - self.rate).min(strongest).max(-strongest)
+        (wanted - self.rate).min(self.strongest).max(-self.strongest)
     }
 
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
-    #[inline]
     fn approach(&self, phase: i64) -> i64 {
         let error = phase.wrapping_sub(self.commanded).wrapping_shl(SPARE_BITS) >> SPARE_BITS;
         let strongest = BRAKING_SHARE * self.strongest as f32;
@@ -167,10 +134,9 @@ impl Turning {
         if distance.abs() <= 1.0 {
             return error;
         }
-        math::whole(strongest * approach_speed(distance.abs()).copysign(distance))
+        (strongest * approach_speed(distance.abs()).copysign(distance)) as i64
     }
 
-    #[inline]
     fn push(&mut self, acceleration: i64) {
         self.newest = (self.newest + 1) % TURN_HISTORY;
         let oldest = (self.newest + TURN_HISTORY - self.length) % TURN_HISTORY;
@@ -187,22 +153,20 @@ impl Turning {
     }
 
     /// Whether nothing turns and `goal` asks for nothing else.
-    #[inline]
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
         let still = self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0;
         still && self.command(goal) == 0
     }
 
     /// By how many ticks a steady turn comes out late.
-    #[inline]
     pub fn delay(&self) -> f32 {
         self.delay
     }
 
     /// The heading at hand.
-    #[inline]
     pub fn heading(&self) -> Heading {
-        let behind = divided(6 * (self.trail + self.first) - self.second, 6 * self.length as i64);
+        // A length of zero: never designed, so nothing trails.
+        let behind = (6 * (self.trail + self.first) - self.second).checked_div(6 * self.length as i64).unwrap_or(0);
         let phase = self.commanded.wrapping_sub(behind);
         let unit = 1.0 / (PER_RADIAN * self.length as f32 * self.period);
         let rate = (2 * self.first - self.second) as f32 * (0.5 * unit);
@@ -211,30 +175,27 @@ impl Turning {
 }
 
 /// The B that a rate (rad/s) leaves, units per tick squared.
-#[inline]
-pub(super) fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
+fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
     let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
     let left = (second * second - rate * rate * rate * rate).max(0.0);
-    math::whole(math::sqrt(left) * period * period * PER_RADIAN)
+    (math::sqrt(left) * period * period * PER_RADIAN) as i64
 }
 
 /// An angle (rad) as a phase in units, to 2^-34 turns for any angle that a setpoint may have.
 ///
 /// In fixed point: the angle in 2^-32 rad is exact (or smaller than that), and so is, on the circle, its product with the
 /// whole part of the 2^64-ths of a turn in it.
-#[inline]
 pub(super) fn phase(angle: f32) -> i64 {
     /// 2^32 / (2 pi): its whole part, and 2^22 times the rest.
     const WHOLE: i64 = 683_565_275;
     const REST: i64 = 2_417_729;
-    let fine = math::whole(angle * 4_294_967_296.0);
+    let fine = (angle * 4_294_967_296.0) as i64;
     fine.wrapping_mul(WHOLE).wrapping_add((fine >> 22).wrapping_mul(REST)) >> SPARE_BITS
 }
 
 /// Where a heading points, in units, to single precision.
 ///
 /// From the middle of its quadrant, each step takes delta to delta - sin delta: 0.79, 0.078, 8e-5 rad, nothing.
-#[inline]
 pub(super) fn phase_of(heading: &Heading) -> i64 {
     let target = heading.direction();
     let eighths = if target.x >= 0.0 { 1 } else { 3 };
@@ -244,22 +205,20 @@ pub(super) fn phase_of(heading: &Heading) -> i64 {
     }
     for _ in 0..3 {
         let here = direction(phase);
-        phase += math::whole((here.x * target.y - here.y * target.x) * PER_RADIAN);
+        phase += ((here.x * target.y - here.y * target.x) * PER_RADIAN) as i64;
     }
     phase
 }
 
 /// The unit vector that a phase in units points along.
-#[inline]
 fn direction(phase: i64) -> Vector2<f32> {
     let (sin, cos) = math::sin_cos_turns((phase as u64) << SPARE_BITS);
     Vector2::new(cos, sin)
 }
 
 /// A rate (rad/s) in units a tick; an angle with `period` one.
-#[inline]
 pub(super) fn units(rate: f32, period: f32) -> i64 {
-    math::whole(rate * period * PER_RADIAN)
+    (rate * period * PER_RADIAN) as i64
 }
 
 #[cfg(test)]

@@ -48,7 +48,6 @@ impl Windows {
     pub const NONE: Self = Self { lengths: [0; 3], horizontal: 0.0, vertical: 0.0, per_metre: 0.0 };
 
     /// The windows for `bounds`, all of them positive, at `period` seconds a tick.
-    #[inline]
     pub fn design(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         let third = (2 * ticks(0.5 * limits.snap_ramp, period)).max(2);
         require(third <= HISTORY / 4, "governor.snap_ramp", Reason::NotAbove((HISTORY / 4) as f32 * period))?;
@@ -66,7 +65,6 @@ impl Windows {
     }
 
     /// Window lengths for a share of the acceleration bounds, if they fit the history.
-    #[inline]
     fn lengths(bounds: &ReferenceBounds, share: f32, period: f32, third: usize) -> Option<[usize; 3]> {
         let (horizontal, vertical) = (bounds.horizontal_acceleration, bounds.vertical_acceleration);
         let diameter = 2.0 * share * math::sqrt(horizontal * horizontal + vertical * vertical);
@@ -78,7 +76,6 @@ impl Windows {
     }
 
     /// Chooses the length unit: as fine as the integers allow.
-    #[inline]
     fn scaled(bounds: &ReferenceBounds, share: f32, period: f32, lengths: [usize; 3]) -> Result<Self, ParameterError> {
         let horizontal = bounds.horizontal_acceleration * share * period * period;
         let vertical = bounds.vertical_acceleration * share * period * period;
@@ -105,21 +102,12 @@ impl Windows {
         Ok(Self { lengths, horizontal: whole(horizontal), vertical: whole(vertical), per_metre })
     }
 
-    /// T_1 in ticks: how long a full reversal of acceleration takes.
-    #[inline]
-    pub fn first(&self) -> usize {
-        let [first, _, _] = self.lengths;
-        first
-    }
-
     /// The product of the lengths: what sums are divided by to become averages.
-    #[inline]
     pub fn product(&self) -> i64 {
         self.lengths.iter().map(|&length| length as i64).product()
     }
 
     /// By how many ticks a steady motion comes out late.
-    #[inline]
     pub fn delay(&self) -> f32 {
         let total: usize = self.lengths.iter().sum();
         // A window of N ticks delays by (N-1)/2; the spline's newest control point lies two ticks ahead of its output.
@@ -127,7 +115,6 @@ impl Windows {
     }
 
     /// The spread (variance, in ticks squared) of the averages' weights, the quintic spline's included.
-    #[inline]
     pub fn variance(&self) -> f32 {
         self.lengths.iter().map(|&length| (length as f32 * length as f32 - 1.0) / 12.0).sum::<f32>() + 0.5
     }
@@ -137,7 +124,6 @@ impl Windows {
 const FITTING_STEPS: usize = 280;
 
 /// The least whole number of ticks that lasts `duration` seconds, at least one.
-#[inline(never)] // once in an image
 pub(super) fn ticks(duration: f32, period: f32) -> usize {
     let exact = duration / period * (1.0 + ROUNDING_ROOM);
     let whole = exact as usize;

@@ -48,7 +48,6 @@ impl Phase {
 }
 
 /// An angle in radians as 2^-64 turns, modulo a full one.
-#[inline]
 #[must_use]
 pub fn turns(angle: f64) -> u64 {
     let turns = angle / TAU;
@@ -58,11 +57,10 @@ pub fn turns(angle: f64) -> u64 {
 }
 
 /// A swing of a few turns, in radians, as 2^-64 turns: cheap enough for a tick, exact to 2^-32 turns.
-#[inline]
 pub(crate) fn swing(angle: f32) -> u64 {
     /// 2^32 / (2 pi).
     const PER_RADIAN: f32 = 683_565_275.576_431_6;
-    (math::whole(angle * PER_RADIAN) as u64).wrapping_shl(32)
+    ((angle * PER_RADIAN) as i64 as u64).wrapping_shl(32)
 }
 
 #[cfg(test)]
