@@ -1,12 +1,12 @@
 //! From a scenario file to Rust source: the vehicle, gains, rotors and reference bounds that the firmware flies.
 //!
 //! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. The numbers are
-//! written with all their digits and read back bit for bit; with the rotors goes the inverse of what they do, which the board
-//! checks rather than works out. Nothing of the certificate is carried over: the board works it out again at boot.
+//! written with all their digits and read back bit for bit. Nothing that is worked out from them is carried over: the board
+//! works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -41,7 +41,6 @@ pub fn scenario(target: &Path) -> Result<(), String> {
     if rotors.len() != ROTORS {
         return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
     }
-    Rotors::with_inverse(rotors, rotors.pseudo_inverse()).map_err(|error| format!("{name}: {error}"))?;
     warn(&name, &scenario.configuration);
     fs::write(target, source(&scenario, rotors)).map_err(|error| format!("{}: {error}", target.display()))
 }
@@ -59,9 +58,7 @@ fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let (gains, bounds) = (configuration.gains(), configuration.bounds());
-    let line = |source: String| format!("        {source},\n");
-    let inverse: String = rotors.pseudo_inverse().iter().map(|row| line(row_source(row))).collect();
-    let rotors: String = rotors.iter().map(|rotor| line(rotor_source(rotor))).collect();
+    let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let floor = configuration.thrust_floor();
     let floor = floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:?})"));
     format!(
@@ -75,11 +72,8 @@ fn built() -> Result<Configuration, ParameterError> {{
     let limits = Limits::new(limits, &vehicle)?;
     let gains = Gains::new({gains:?}, &vehicle)?;
     let bounds = {bounds:?};
-    let rotors = [
-{rotors}    ];
-    let inverse = [
-{inverse}    ];
-    let rotors = Rotors::with_inverse(&rotors, &inverse)?;
+    let rotors = Rotors::new(&[
+{rotors}    ])?;
     Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
 }}
 ",
@@ -104,10 +98,6 @@ fn rotor_source(rotor: &Rotor) -> String {
         "Rotor {{ position: {position}, spin: Spin::{spin}, thrust_coefficient: {thrust_coefficient:?}, \
          drag_coefficient: {drag_coefficient:?}, thrust_min: {thrust_min:?}, thrust_max: {thrust_max:?} }}"
     )
-}
-
-fn row_source(row: &Vector4<f64>) -> String {
-    format!("Vector4::new({:?}, {:?}, {:?}, {:?})", row.x, row.y, row.z, row.w)
 }
 
 fn vector(v: &Vector3<f32>) -> String {

@@ -18,7 +18,6 @@
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
-//! | [`time`] | times divided |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs` list them by
 //! priority and run them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
@@ -43,4 +42,3 @@ pub mod parameters;
 pub mod replay;
 pub mod shared;
 pub mod status;
-pub mod time;

@@ -212,7 +212,7 @@ pub enum Axis {
 /// The extremes of one rotor's thrust over a set of commands, and what it has. All in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorDemand {
-    /// The rotor, from 0.
+    /// The rotor, from 1.
     pub rotor: usize,
     /// Least thrust asked for.
     pub least: f64,
@@ -243,9 +243,9 @@ impl RotorDemand {
         self.margin >= 0.0
     }
 
-    /// What `commands` ask of rotor `index`, whose thrust is `row` of B+ times the wrench.
+    /// What `commands` ask of rotor `number`, whose thrust is `row` of B+ times the wrench.
     #[must_use]
-    pub fn new(index: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
+    pub fn new(number: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
         let (available_min, available_max) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
         let (up, down) = (commands.reach(row), commands.reach(&-row));
         let (above, below) = (available_max - up.total, -down.total - available_min);
@@ -276,7 +276,7 @@ impl RotorDemand {
             }
         }
         Self {
-            rotor: index,
+            rotor: number,
             least: -down.total,
             greatest: up.total,
             available_min,
@@ -321,5 +321,5 @@ impl fmt::Display for RotorDemand {
 #[must_use]
 pub fn demands(rotors: &Rotors, commands: &Commands) -> Vec<RotorDemand, ROTORS_MAX> {
     let all = rotors.iter().zip(rotors.pseudo_inverse()).enumerate();
-    collected(all.map(|(index, (rotor, row))| RotorDemand::new(index, rotor, row, commands)))
+    collected(all.map(|(index, (rotor, row))| RotorDemand::new(index + 1, rotor, row, commands)))
 }

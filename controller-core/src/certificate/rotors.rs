@@ -23,9 +23,8 @@ use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm};
 use crate::error::ParameterError;
 use heapless::Vec;
 
-/// Names of the inequalities, by rotor.
+/// Names of the inequalities, by rotor; rotors are numbered from 1.
 const NAMES: [(&str, &str); ROTORS_MAX] = [
-    ("R rotor 0 least", "R rotor 0 greatest"),
     ("R rotor 1 least", "R rotor 1 greatest"),
     ("R rotor 2 least", "R rotor 2 greatest"),
     ("R rotor 3 least", "R rotor 3 greatest"),
@@ -33,6 +32,7 @@ const NAMES: [(&str, &str); ROTORS_MAX] = [
     ("R rotor 5 least", "R rotor 5 greatest"),
     ("R rotor 6 least", "R rotor 6 greatest"),
     ("R rotor 7 least", "R rotor 7 greatest"),
+    ("R rotor 8 least", "R rotor 8 greatest"),
 ];
 
 /// What the law asks of one rotor.
@@ -72,7 +72,7 @@ fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, RO
     let mut reports = Vec::new();
     for (index, ((rotor, row), (least, greatest))) in rotors.iter().zip(rotors.pseudo_inverse()).zip(&NAMES).enumerate()
     {
-        let demand = RotorDemand::new(index, rotor, row, commands);
+        let demand = RotorDemand::new(index + 1, rotor, row, commands);
         let share = row.x * hover;
         let report = RotorReport {
             demand,
