@@ -32,7 +32,7 @@ fn tests() -> BTreeSet<String> {
         "controller-core/tests",
         "host-sim/src",
         "scenario/src",
-        "host-sim/tests",
+        
         "firmware/src",
         "tests",
     ] {

@@ -8,7 +8,7 @@ use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
 use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::rngs::ChaCha8Rng;
 
 /// The vehicle's pose as a message.
 fn pose(flight: &Flight) -> MavMessage {

@@ -7,7 +7,7 @@ use controller_core::state::State;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use rand::{RngExt, SeedableRng};
-pub use rand_chacha::ChaCha8Rng;
+pub use rand::rngs::ChaCha8Rng;
 
 /// The generator of one test.
 pub fn generator(seed: u64) -> ChaCha8Rng {
