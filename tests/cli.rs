@@ -1,8 +1,7 @@
 //! The binary as a user meets it: exit statuses, messages, files, and the law in lock-step.
 
-mod binary;
-
-use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
+use crate::support::binary;
+use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};

@@ -1,8 +1,7 @@
 //! `certify` and `tune` as a user meets them: exit statuses, one clear line for each refusal, no file half-written.
 
-mod binary;
-
-use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
+use crate::support::binary;
+use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
 use host_sim::scenario::Scenario;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

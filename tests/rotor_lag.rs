@@ -4,10 +4,9 @@
 //! The paper's vehicle and Table I at 100 Hz, hovering, with rotors so strong that none saturates: only their lag and the
 //! delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.
 
-use host_sim::certify::loop_model;
 use host_sim::flight::Flight;
-use host_sim::sampled_loop::Axis;
 use host_sim::scenario::{PAPER, Scenario};
+use scenario::sampled_loop::Axis;
 
 /// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3 rad.
 const START_DEG: f64 = 0.01;
@@ -46,7 +45,7 @@ position = [0.0, 0.0, 0.0]
 
 /// The greatest spectral radius of the six loops, and whose it is.
 fn predicted(scenario: &Scenario) -> (f64, Axis) {
-    let model = loop_model(scenario).unwrap();
+    let model = scenario.loops().unwrap();
     let radii = Axis::ALL.map(|axis| (model.spectral_radius(axis), axis));
     radii.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }

@@ -1,19 +1,19 @@
 //! The steps of docs/sharp-bound.md, checked one by one at random situations.
 
-mod adversary_search;
-mod random;
-
-use adversary_search::configurations::around_table_1;
-use adversary_search::{COORDINATES, Domain, Situation};
+use crate::support::adversary_search;
+use crate::support::adversary_search::configurations::around_table_1;
+use crate::support::adversary_search::{COORDINATES, Domain, Situation};
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::certificate::reachable::{Reachable, half_l1_norm};
-use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate};
+use controller_core::certificate::sharp::{ANGLE_CELLS, HEADING_CELLS, SPLIT_CELLS, TILT_CELLS};
+use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate, Form};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::mrp;
 use controller_core::position::{FilterState, FilterTransition};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 fn situation(rng: &mut ChaCha8Rng) -> Situation {
     let configuration = around_table_1(rng, 3.0);
@@ -256,6 +256,38 @@ fn bound_at(reach: &Reachable, bounds: &ReferenceBounds, used: Gain, at: [f64; 4
     }
 }
 
+/// docs/sharp-bound.md.
+fn document() -> String {
+    std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/sharp-bound.md")).unwrap()
+}
+
+/// The cell of the document's table row that begins with `row`.
+fn cell(document: &str, row: &str, column: usize) -> String {
+    let line = document.lines().find(|line| line.starts_with(&format!("| {row}")));
+    let line = line.unwrap_or_else(|| panic!("docs/sharp-bound.md has no row {row}"));
+    // A bar between backslash and bar is a norm's.
+    let cells: Vec<_> = line.split(" | ").map(|cell| cell.trim_matches(['|', ' ', '*']).to_owned()).collect();
+    cells[column].clone()
+}
+
+#[test]
+fn the_derivation_states_the_codes_own_bounds_and_cells() {
+    let document = document();
+    let certificate = Certificate::new(&adversary_search::configurations::paper()).unwrap();
+    let rates = |form: &Form| [form.rates.angular_velocity, form.rates.angular_acceleration];
+    let rows = ["$\\lvert\\omega_d", "$\\lvert\\dot\\omega_d", "roll torque", "pitch torque", "yaw torque"];
+    for (column, form) in [(1, &certificate.printed), (3, &certificate.sharp)] {
+        let values = rates(form).into_iter().chain(form.torque.iter().copied());
+        for (row, value) in rows.iter().zip(values) {
+            let stated = cell(&document, row, column);
+            let digits = stated.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+            assert_eq!(stated, format!("{value:.digits$}"), "{row}, column {column}");
+        }
+    }
+    let cells = format!("${TILT_CELLS}\\times{ANGLE_CELLS}\\times{SPLIT_CELLS}\\times{HEADING_CELLS}$ cells");
+    assert!(document.contains(&cells), "docs/sharp-bound.md does not speak of {cells}");
+}
+
 #[test]
 fn every_step_of_the_derivation_gains() {
     const GRID: u32 = 24;
@@ -268,16 +300,19 @@ fn every_step_of_the_derivation_gains() {
     let printed = certificate.printed.rates.angular_acceleration;
     let sharp = certificate.sharp.rates.angular_acceleration;
 
+    let document = document();
+    let stated = |row: &str, value: f64| assert_eq!(cell(&document, row, 1), format!("{value:.2}"), "{row}");
+    stated("Lemma 1 as printed", printed);
     let mut before = printed;
     println!("Lemma 1 as printed: {printed:.2}");
     for (used, name) in [
-        (Gain::ExactExpression, "exact expression"),
-        (Gain::MagnitudeGrowsWithTilt, "n grows with the tilt"),
-        (Gain::OneBudgetForTheRate, "p and r share |u'|"),
-        (Gain::OneBudgetForTheHeading, "psi' and psi'' share K_nu''"),
-        (Gain::CouplingByTheSineOfChi, "[v] in place of |v|"),
-        (Gain::ShapeOfTheSnap, "the shape of u''"),
-        (Gain::PartsApart, "tilting and yawing apart"),
+        (Gain::ExactExpression, "the exact expression"),
+        (Gain::MagnitudeGrowsWithTilt, "$n$ grows with the tilt"),
+        (Gain::OneBudgetForTheRate, "$p$ and $r$ share"),
+        (Gain::OneBudgetForTheHeading, "$\\dot\\psi$ and $\\ddot\\psi$ share"),
+        (Gain::CouplingByTheSineOfChi, "$[v]="),
+        (Gain::ShapeOfTheSnap, "the shape of $\\ddot u$"),
+        (Gain::PartsApart, "tilting and yawing parts kept apart"),
     ] {
         let share = |i: u32| f64::from(i) / f64::from(GRID);
         let quarter = |i: u32| share(i) * std::f64::consts::FRAC_PI_2;
@@ -289,10 +324,12 @@ fn every_step_of_the_derivation_gains() {
             }
         }
         println!("{name}: {greatest:.2}");
+        stated(name, greatest);
         assert!(greatest < before, "{name} gains nothing: {greatest} after {before}");
         before = greatest;
     }
     println!("over cells, every quantity at its worst end: {sharp:.2}");
+    stated("the same over cells", sharp);
     // What the cells cost: they bound the supremum that the grid samples, from the other side.
     assert!(sharp >= before && sharp <= 1.02 * before, "{sharp} over cells, {before} on the grid");
 }

@@ -2,8 +2,8 @@
 //! What the boards allocate with clips nothing of what their certificates allow.
 //! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
 
-mod random;
-
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::allocation::support::ROUNDING;
 use controller_core::allocation::{MinimumNorm, Mixer, Rotors};
 use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate};
@@ -15,7 +15,6 @@ use host_sim::scenario::Scenario;
 use host_sim::tune::candidate::recovery;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 use std::path::Path;
 
 const VEHICLES: [&str; 2] = ["hummingbird", "study"];

@@ -97,7 +97,7 @@ enum Derivation {
 }
 
 impl Certificate {
-    /// Works out every inequality for `configuration`. The amount of work is fixed.
+    /// Works out every inequality for `configuration`, in a bounded amount of work.
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.

@@ -3,7 +3,6 @@
 //! Only the sharp form and the rotors decide. The margins of the sampled loop are reported below them: a certificate is
 //! about limits, not about how well a vehicle flies, but whoever reads it wants to know both.
 
-use crate::sampled_loop::{LoopModel, Timing};
 use crate::scenario::Scenario;
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::inequality::Inequality;
@@ -107,7 +106,7 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
     let configuration = &scenario.configuration;
     let head = ["sampled loop, small motions", "spectral radius", "gain margin", "delay margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for report in loop_model(scenario)?.reports() {
+    for report in scenario.loops()?.reports() {
         let (gain, delay) = report.margins.map_or(("none".to_owned(), "none".to_owned()), |margins| {
             (short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay)))
         });
@@ -124,18 +123,6 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
         short(f64::from(configuration.vehicle().mass))
     );
     Ok(aligned(&rows) + &timing)
-}
-
-/// The sampled loops of a scenario's vehicle, gains, rotors and delay.
-///
-/// # Errors
-/// If the timing is outside the model's range.
-pub fn loop_model(scenario: &Scenario) -> Result<LoopModel, ParameterError> {
-    let configuration = &scenario.configuration;
-    let period = scenario.timing.period();
-    let rotor_lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
-    let timing = Timing { period, rotor_lag, delay_samples: scenario.delay() / period };
-    LoopModel::new(configuration.vehicle(), configuration.gains(), timing)
 }
 
 #[cfg(test)]

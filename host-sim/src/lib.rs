@@ -5,11 +5,10 @@
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
 //! | [`ground`] | something to stand on, for flights that start and end there |
-//! | [`scenario`] | files to validated types; a crate of its own, which the firmware's build reads them with too |
+//! | [`scenario`] | files to validated types and a verdict on them; a crate of its own, which the firmware's build uses too |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`claims`] | what was claimed against what was flown |
 //! | [`log`], [`plots`] | log.csv and the figures |
-//! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
 
 pub mod actuators;
@@ -24,7 +23,6 @@ pub mod log;
 pub mod plant;
 pub mod plots;
 pub mod progress;
-pub mod sampled_loop;
 pub mod table;
 pub mod tune;
 

@@ -13,9 +13,9 @@
 //! delay = 0.01                          # from a tick to the moment its wrench acts, s; whole plant steps
 //! ```
 
-use super::refused;
-use super::section::{FieldError, Section, vector_at};
-use super::timing::Timing;
+use crate::sampled_loop::GREATEST_DELAY;
+use crate::section::{FieldError, Section, vector_at};
+use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
@@ -63,7 +63,7 @@ pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
             thrust_max: thrust(fastest),
         });
     }
-    let rotors = Rotors::new(&list).map_err(|error| refused(root, &in_file(error)))?;
+    let rotors = Rotors::new(&list).map_err(|error| root.refused(&in_file(error)))?;
     let lag = read_time(&section, "lag")?;
     Ok(Some(RotorSetup { rotors, lag }))
 }
@@ -100,13 +100,18 @@ pub fn mounted(root: &Section, configuration: Configuration, rotors: &Rotors) ->
 /// Reads `[sampling]`: the delay in plant steps.
 ///
 /// # Errors
-/// If it is negative, too long, or no whole number of plant steps.
+/// If it is negative, longer than the sampled loops can be judged with, or no whole number of plant steps.
 pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
     let Some(section) = root.optional_section("sampling")? else {
         return Ok(0);
     };
     section.allow(&["delay"])?;
     let delay = read_time(&section, "delay")?;
+    let greatest = f64::from(GREATEST_DELAY) * timing.period();
+    if delay > greatest {
+        let problem = format!("must be at most {GREATEST_DELAY} control periods, {greatest} s, found {delay}");
+        return Err(FieldError::new(section.path_of("delay"), problem));
+    }
     let steps = delay / timing.step();
     let whole = steps.round();
     if (steps - whole).abs() > 1e-6 {

@@ -12,8 +12,7 @@
 //!
 //! All six are needed, and none may be less than the scenario's own reference takes.
 
-use super::refused;
-use super::section::{FieldError, Section};
+use crate::section::{FieldError, Section};
 use controller_core::reference::ReferenceBounds;
 
 /// Reads `[reference_bounds]`; `own` are those of the scenario's reference.
@@ -50,7 +49,7 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
         heading_rate,
         heading_second_derivative,
     };
-    bounds.validated().map_err(|error| refused(root, &error))
+    bounds.validated().map_err(|error| root.refused(&error))
 }
 
 /// `bounds` as the section of a scenario file.

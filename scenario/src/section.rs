@@ -3,6 +3,7 @@
 //! Every section lists its keys when it is opened, so a misspelt key is reported as such, with the nearest known one,
 //! before the key it stands for is reported missing. Numbers must be finite and fit single precision.
 
+use controller_core::error::ParameterError;
 use nalgebra::Vector3;
 use std::fmt;
 use toml::{Table, Value};
@@ -75,6 +76,14 @@ impl<'a> Section<'a> {
         let mut parents = parents.into_iter().flat_map(|path| path.split('.'));
         let table = parents.try_fold(self.table, |table, key| element(table, key)?.as_table())?;
         element(table, last).map(Value::to_string)
+    }
+
+    /// A refusal by one of the law's constructors, which know the file's dotted paths; `self` is the whole file, for the
+    /// value it has there.
+    #[must_use]
+    pub fn refused(&self, error: &ParameterError) -> FieldError {
+        let found = self.lookup(error.field).map_or(String::new(), |value| format!(", found {value}"));
+        FieldError::new(error.field, format!("{}{found}", error.reason))
     }
 
     /// Whether `key` is there.

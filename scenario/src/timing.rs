@@ -3,7 +3,7 @@
 //! Time is counted in integer microseconds. The control period is a whole number of them and of plant steps, so that a
 //! tick never falls between two steps.
 
-use super::section::{FieldError, Section};
+use crate::section::{FieldError, Section};
 
 /// The clock of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]

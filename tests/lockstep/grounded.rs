@@ -1,6 +1,6 @@
 //! A configuration whose certificate fails: it boots and answers, and never arms.
 
-use crate::flight::Flight;
+use super::flight::Flight;
 use controller_core::certificate::configuration::{Certified, Configuration, Refused};
 use controller_core::flight::{Mode, Pilot};
 use controller_core::governor::{GovernorLimits, Memory};

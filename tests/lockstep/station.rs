@@ -1,7 +1,7 @@
 //! The ground station and the pose source: MAVLink written and read by the public crate, not by the firmware's own code.
 
-use crate::clock::SimClock;
-use crate::line::Line;
+use super::clock::SimClock;
+use super::line::Line;
 use controller_core::flight::Pose;
 use firmware::hardware::Clock;
 use mavlink::dialects::common::*;

@@ -1,6 +1,6 @@
 //! The vehicle as the firmware's peripherals meet it: rotors that lag, a body that falls, sensors and motors.
 
-use crate::clock::SimClock;
+use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::flight::{ImuSample, Pose};

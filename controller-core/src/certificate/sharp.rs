@@ -21,9 +21,9 @@
 //! orthogonal; tall n goes with tilt, n >= u_z,min / cos gamma.
 //!
 //! The supremum over (gamma; direction of w; split of u'; psi') is taken over cells that cover the whole range, each
-//! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. All counts are constants.
-//! Cells whose bound, every part at its worst at once, does not exceed what was found already are not looked into: rounding
-//! is monotone, so the result is the same to the last bit.
+//! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. The number of cells is constant. Cells whose bound, every part at its worst
+//! at once, does not exceed what was found already are not looked into: rounding is monotone, so the result is the same to
+//! the last bit.
 
 use super::reachable::Reachable;
 use crate::math;
@@ -31,18 +31,18 @@ use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
 /// Cells of tan gamma between upright and the greatest tilt.
-const TILT_CELLS: u32 = 48;
+pub const TILT_CELLS: usize = 48;
 /// Cells of a quarter turn, for the direction of a horizontal vector.
-const ANGLE_CELLS: usize = 24;
+pub const ANGLE_CELLS: usize = 24;
 /// Cosine and sine of one such cell, pi/48.
 const CELL_COS: f64 = 0.997_858_923_238_603_5;
 const CELL_SIN: f64 = 0.065_403_129_230_143_07;
 /// More than 24 turns by one cell are off by.
 const OUTWARDS: f64 = 1e-14;
 /// Cells of p between zero and its greatest value, for the split of u'.
-const SPLIT_CELLS: usize = 24;
+pub const SPLIT_CELLS: usize = 24;
 /// Cells of |psi'|.
-const HEADING_CELLS: usize = 80;
+pub const HEADING_CELLS: usize = 80;
 
 /// Bounds on the desired attitude's motion, and on the torque it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -319,7 +319,7 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
         DesiredRates { angular_velocity: 0.0, angular_acceleration: 0.0, feedforward_torque: Vector3::zeros() };
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
-        let ends = [cell, cell + 1].map(|end| steepest * f64::from(end) / f64::from(TILT_CELLS));
+        let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
 
         let mut velocity_square: f64 = 0.0;

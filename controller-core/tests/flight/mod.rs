@@ -3,7 +3,7 @@
 // Every test crate that includes this module uses a part of it.
 #![allow(dead_code)]
 
-#[path = "../../../tests/body/mod.rs"]
+#[path = "../../../tests/support/body.rs"]
 mod body;
 
 pub use body::Body;

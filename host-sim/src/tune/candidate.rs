@@ -13,11 +13,9 @@
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
 use super::Requirements;
-use crate::certify::loop_model;
 use crate::claims::Flown;
 use crate::flight::Flight;
 use crate::plant::{BodyState, attitude_from_euler};
-use crate::sampled_loop::Axis;
 use crate::scenario::Scenario;
 use crate::scenario::timing::Timing;
 use controller_core::certificate::Certificate;
@@ -26,6 +24,7 @@ use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::hover::Hover;
 use nalgebra::Vector3;
+use scenario::sampled_loop::Axis;
 use std::sync::Arc;
 
 /// Coordinates of the search space.
@@ -138,7 +137,7 @@ impl Judge {
             return Err((4, missing, format!("certificate: {name}")));
         }
 
-        let loops = loop_model(&scenario).map_err(|_| undefined)?;
+        let loops = scenario.loops().map_err(|_| undefined)?;
         for axis in Axis::ALL {
             let radius = loops.spectral_radius(axis);
             if radius >= 1.0 {

@@ -8,7 +8,7 @@
 use super::candidate::{DIMENSIONS, Judge, Point, Verdict};
 use super::frontier::Frontier;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::rngs::ChaCha8Rng;
 use rayon::prelude::*;
 
 /// Members of the population.

@@ -71,6 +71,7 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("lag", "lagg = 0.005", "rotors.lagg", "did you mean \"lag\"?"),
         ("delay", "delay = 0.0105", "sampling.delay", "whole number of plant steps, found 0.0105 s (nearest:"),
         ("delay", "delay = -0.01", "sampling.delay", "from 0 to 1 s"),
+        ("delay", "delay = 0.65", "sampling.delay", "at most 64 control periods, 0.64 s, found 0.65"),
         ("delay", "delay = nan", "sampling.delay", "finite"),
         ("delay", "dealy = 0.01", "sampling.dealy", "did you mean \"delay\"?"),
         ("[sampling]", "[samplings]", "samplings", "did you mean \"sampling\"?"),

@@ -33,7 +33,7 @@ use law::{Law, PositionGains, TorqueGains};
 const LONGEST_PERIOD: f32 = 0.1;
 
 /// The greatest delay looked at, samples: the delay line is part of the matrix.
-const GREATEST_DELAY: f32 = 64.0;
+pub const GREATEST_DELAY: f32 = 64.0;
 
 /// When commands are computed and how they reach the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,9 +5,6 @@
 //! admits and any body-rate error. Situations are coded as points of a cube, so that the search knows nothing of the
 //! sets' shapes; what a situation amounts to is worked out by the law's own code in `controller-core`.
 
-// Every test crate that includes this module uses a part of it.
-#![allow(dead_code)]
-
 pub mod configurations;
 pub mod search;
 

@@ -4,9 +4,9 @@
 //! theta = tan(angle / 4),  tau = -(1 + theta^2) / 4 s(k_theta theta) - s(k_omega rate),  s(x) = M x / sqrt(M^2 + x^2)
 //! ```
 
-use crate::common::{IDEAL, body_axis, model, vehicle};
+use super::common::{IDEAL, body_axis, model, vehicle};
 use controller_core::gains::GainParameters;
-use host_sim::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, Timing};
 use std::collections::VecDeque;
 
 const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];

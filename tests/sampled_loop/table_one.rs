@@ -1,9 +1,9 @@
 //! What the analysis says about the paper's own gains at 100 Hz.
 
-use crate::common::{IDEAL, boundary, model, vehicle};
+use super::common::{IDEAL, boundary, model, vehicle};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::gains::{GainParameters, Gains};
-use host_sim::sampled_loop::{Axis, LoopModel, Timing};
+use scenario::sampled_loop::{Axis, LoopModel, Timing};
 
 fn radius(axis: Axis, timing: Timing) -> f64 {
     model(GainParameters::TABLE_1, timing).spectral_radius(axis)

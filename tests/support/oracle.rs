@@ -7,9 +7,6 @@
 //!
 //! World z up, body-to-world rotations, SI units, scalar-first quaternions as 4-vectors.
 
-// Every test crate that includes this module uses a part of it.
-#![allow(dead_code)]
-
 pub mod desired;
 pub mod lifting;
 pub mod rounding;
@@ -59,8 +56,6 @@ pub struct Situation {
 /// The position law and what the filters make of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Translation {
-    pub z_1: Vector3<f64>,
-    pub z_2: Vector3<f64>,
     /// ubar_p.
     pub feedback: Vector3<f64>,
     /// u, u', u'' with the heading: all that R_d depends on.
@@ -123,7 +118,7 @@ impl Law {
             u_ddot: u_f_ddot + s.snap,
             heading: s.heading,
         };
-        Translation { z_1, z_2, feedback, command }
+        Translation { feedback, command }
     }
 
     /// Everything but the torque, which needs a lift of `error`.

@@ -2,7 +2,7 @@
 //!
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
-use crate::common::{IDEAL, body_axis, model, vehicle};
+use super::common::{IDEAL, body_axis, model, vehicle};
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
@@ -10,8 +10,8 @@ use controller_core::position::FilterState;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
-use host_sim::sampled_loop::{Axis, Timing};
 use nalgebra::{DMatrix, DVector, Quaternion, Vector3};
+use scenario::sampled_loop::{Axis, Timing};
 
 /// One axis: what is measured (position, velocity, tilt, rate; only those the axis has move) and remembered.
 #[derive(Debug, Clone, Copy, Default)]

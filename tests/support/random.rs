@@ -1,8 +1,5 @@
 //! Random vehicles, gains, states and references for the tests, reproducible from a seed.
 
-// Every test crate that includes this module uses a part of it.
-#![allow(dead_code)]
-
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
@@ -10,7 +7,7 @@ use controller_core::state::State;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use rand::{RngExt, SeedableRng};
-pub use rand_chacha::ChaCha8Rng;
+pub use rand::rngs::ChaCha8Rng;
 
 /// The generator of one test.
 pub fn generator(seed: u64) -> ChaCha8Rng {

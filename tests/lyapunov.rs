@@ -5,21 +5,16 @@
 //! across jumps ([`attitude`]). With inputs held at 100 Hz neither is monotone: [`held_inputs`] prints how often each rises.
 
 mod attitude;
-#[path = "../body/mod.rs"]
-mod body;
 mod held_inputs;
-#[path = "../oracle/mod.rs"]
-mod oracle;
 mod position;
-#[path = "../random/mod.rs"]
-mod random;
 
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::gains::Gains;
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::vehicle::Vehicle;
 use nalgebra::Vector3;
-use random::ChaCha8Rng;
 
 /// Control period, s.
 const PERIOD: f64 = 0.01;

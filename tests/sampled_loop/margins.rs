@@ -1,9 +1,9 @@
 //! Margins: exactly there, and not earlier, an eigenvalue of the written-out loop leaves the unit circle.
 
-use crate::common::{IDEAL, model, vehicle};
-use crate::oracle;
+use super::common::{IDEAL, model, vehicle};
+use super::oracle;
 use controller_core::gains::GainParameters;
-use host_sim::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, Timing};
 
 /// Even numbers in [0, 1) from a fixed seed.
 struct Random(u64);

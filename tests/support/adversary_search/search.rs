@@ -1,7 +1,7 @@
 //! The search itself: random restarts, each climbed by a pattern search with shrinking steps.
 
 use super::{COORDINATES, Code, Domain, Situation};
-use crate::random::ChaCha8Rng;
+use crate::support::random::ChaCha8Rng;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::sharp::feedforward_torque;
 use nalgebra::Vector3;

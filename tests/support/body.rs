@@ -1,8 +1,5 @@
 //! The paper's rigid body, eq. (FullDynamics), in f64: just enough of a vehicle to close the loop in a test.
 
-// Every test crate that includes this module uses a part of it.
-#![allow(dead_code)]
-
 use controller_core::state::{State, Wrench};
 use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, SVector, Vector3};

@@ -2,8 +2,8 @@
 
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::vehicle::{Vehicle, VehicleParameters};
-use host_sim::sampled_loop::{Axis, LoopModel, Timing};
 use nalgebra::Vector3;
+use scenario::sampled_loop::{Axis, LoopModel, Timing};
 
 /// 100 Hz, ideal rotors, no delay.
 pub const IDEAL: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };

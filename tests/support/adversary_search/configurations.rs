@@ -1,6 +1,6 @@
 //! Configurations to attack: the paper's, and random ones around it.
 
-use crate::random::{self, ChaCha8Rng};
+use crate::support::random::{self, ChaCha8Rng};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
