@@ -27,15 +27,9 @@ fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
 /// The names of all tests in the repository.
 fn tests() -> BTreeSet<String> {
     let mut files = Vec::new();
-    for folder in [
-        "controller-core/src",
-        "controller-core/tests",
-        "host-sim/src",
-        "scenario/src",
-        
-        "firmware/src",
-        "tests",
-    ] {
+    for folder in
+        ["controller-core/src", "controller-core/tests", "host-sim/src", "scenario/src", "firmware/src", "tests"]
+    {
         sources(&Path::new(ROOT).join(folder), &mut files);
     }
     let name =

@@ -7,8 +7,8 @@ use controller_core::flight::rules::POSE_AGE_MAX;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
-use rand::{Rng, RngExt, SeedableRng};
 use rand::rngs::ChaCha8Rng;
+use rand::{Rng, RngExt, SeedableRng};
 
 /// The vehicle's pose as a message.
 fn pose(flight: &Flight) -> MavMessage {

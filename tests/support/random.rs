@@ -6,8 +6,8 @@ use controller_core::reference::Reference;
 use controller_core::state::State;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::{Quaternion, Vector2, Vector3};
-use rand::{RngExt, SeedableRng};
 pub use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 
 /// The generator of one test.
 pub fn generator(seed: u64) -> ChaCha8Rng {

@@ -7,8 +7,8 @@
 
 use super::candidate::{DIMENSIONS, Judge, Point, Verdict};
 use super::frontier::Frontier;
-use rand::{RngExt, SeedableRng};
 use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 /// Members of the population.
