@@ -8,6 +8,7 @@
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
+//! | [`ending`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
@@ -32,6 +33,7 @@ pub mod configuration;
 pub mod control;
 pub mod deadline;
 pub mod dshot;
+pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
