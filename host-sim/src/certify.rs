@@ -3,10 +3,12 @@
 //! Only the sharp form and the rotors decide. The margins of the sampled loop are reported below them: a certificate is
 //! about limits, not about how well a vehicle flies, but whoever reads it wants to know both.
 
+mod blame;
+
+use crate::sampled_loop::{LoopModel, Timing};
 use crate::scenario::Scenario;
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::inequality::Inequality;
-use controller_core::certificate::rotors::RotorReport;
 use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
 
@@ -32,6 +34,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     if !certificate.rotors.is_empty() {
         text += "\n";
         text += &rotors(&certificate);
+        text += &blame::sentence(&scenario.configuration, &certificate)?;
     }
     text += "\n";
     text += &loops(scenario)?;
@@ -97,16 +100,14 @@ fn rotors(certificate: &Certificate) -> String {
         row.extend(required(inequality));
         rows.push(row);
     }
-    let tightest = |report: &&RotorReport| report.least.margin().min(report.greatest.margin());
-    let worst = certificate.rotors.iter().min_by(|a, b| tightest(a).total_cmp(&tightest(b)));
-    aligned(&rows) + &worst.map_or(String::new(), |report| format!("{}\n", report.demand))
+    aligned(&rows)
 }
 
 fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
     let configuration = &scenario.configuration;
     let head = ["sampled loop, small motions", "spectral radius", "gain margin", "delay margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for report in scenario.loops()?.reports() {
+    for report in loop_model(scenario)?.reports() {
         let (gain, delay) = report.margins.map_or(("none".to_owned(), "none".to_owned()), |margins| {
             (short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay)))
         });
@@ -123,6 +124,18 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
         short(f64::from(configuration.vehicle().mass))
     );
     Ok(aligned(&rows) + &timing)
+}
+
+/// The sampled loops of a scenario's vehicle, gains, rotors and delay.
+///
+/// # Errors
+/// If the timing is outside the model's range.
+pub fn loop_model(scenario: &Scenario) -> Result<LoopModel, ParameterError> {
+    let configuration = &scenario.configuration;
+    let period = scenario.timing.period();
+    let rotor_lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
+    let timing = Timing { period, rotor_lag, delay_samples: scenario.delay() / period };
+    LoopModel::new(configuration.vehicle(), configuration.gains(), timing)
 }
 
 #[cfg(test)]

@@ -163,9 +163,9 @@ fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
         within("thrust, sharp bound".to_owned(), flown.thrust, interval(sharp)),
     ];
     claims.extend(torques("sharp bound", &flown.torque, sharp.torque.as_ref()));
-    for (report, flown) in certificate.rotors.iter().zip(&flown.rotors) {
+    for (number, (report, flown)) in (1..).zip(certificate.rotors.iter().zip(&flown.rotors)) {
         let demand = &report.demand;
-        claims.push(within(format!("rotor {}, sharp bound", demand.rotor), *flown, (demand.least, demand.greatest)));
+        claims.push(within(format!("rotor {number}, sharp bound"), *flown, (demand.least, demand.greatest)));
     }
     claims
 }

@@ -21,13 +21,6 @@
 //!
 //! J times a ball of radius r is the ellipsoid with semi-axes J_kk r.
 //!
-//! **Whom to blame.** From its share of the middle thrust (T_lo + T_hi) / 2, a rotor is displaced by half the thrust's
-//! interval and by the terms of C; these add up to the extreme. The one that displaces it most towards the limit it comes
-//! closest to is named; where the share alone is beyond the limit, it is the thrust. Which axis costs most is
-//! a separate question: how much less the rotor would have to do if the law asked for no torque about
-//! that axis. For real quadrotors it is yaw: a newton metre of it costs several times the thrust that one of roll does
-//! (k_eta / k_m against 1 / arm; 4.9 times for a 0.5 kg vehicle with 10 inch rotors).
-//!
 //! For four rotors this is exact: a set of wrenches fits the rotors if and only if every [`RotorDemand::fits`]. For more it
 //! is sufficient only: the mixer also reaches wrenches for which B+ leaves a range. T and tau count as independent.
 //! Results are rounded outwards by [`ROUNDING`], which covers the f32 of the mixer's tick.
@@ -36,7 +29,6 @@ use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
-use core::fmt;
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
@@ -158,62 +150,24 @@ impl<'a> Commands<'a> {
         Ok(Self { thrust: (least, greatest), torque })
     }
 
-    /// The greatest row . (T, tau), and the part of it that is thrust.
-    fn reach(&self, row: &Vector4<f64>) -> Reach {
+    /// The greatest row . (T, tau), rounded outwards.
+    fn greatest(&self, row: &Vector4<f64>) -> f64 {
         let thrust = (row.x * self.thrust.0).max(row.x * self.thrust.1);
-        let torque = self.support(&torque_part(row));
-        Reach { thrust, total: thrust + torque + ROUNDING * (thrust.abs() + torque) }
-    }
-
-    fn support(&self, direction: &Vector3<f64>) -> f64 {
-        self.torque.iter().map(|term| term.support(direction)).sum()
+        let direction = torque_part(row);
+        let torque: f64 = self.torque.iter().map(|term| term.support(&direction)).sum();
+        thrust + torque + ROUNDING * (thrust.abs() + torque)
     }
 }
 
 /// (tau_x, tau_y, tau_z) of a row over (T, tau).
-fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
+#[must_use]
+pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
     Vector3::new(row.y, row.z, row.w)
-}
-
-struct Reach {
-    thrust: f64,
-    total: f64,
-}
-
-/// An end of a rotor's range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Limit {
-    /// Its least thrust.
-    Minimum,
-    /// Its greatest thrust.
-    Maximum,
-}
-
-/// What brings a rotor towards its limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cause {
-    /// The thrust command.
-    Thrust,
-    /// The torque term of this name.
-    Torque(&'static str),
-}
-
-/// A torque axis of the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// About x.
-    Roll,
-    /// About y.
-    Pitch,
-    /// About z.
-    Yaw,
 }
 
 /// The extremes of one rotor's thrust over a set of commands, and what it has. All in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorDemand {
-    /// The rotor, from 1.
-    pub rotor: usize,
     /// Least thrust asked for.
     pub least: f64,
     /// Greatest thrust asked for.
@@ -222,104 +176,30 @@ pub struct RotorDemand {
     pub available_min: f64,
     /// Greatest thrust it can give.
     pub available_max: f64,
-    /// What is left at the limit it comes closest to; negative if the demand goes beyond.
-    pub margin: f64,
-    /// That limit.
-    pub limit: Limit,
-    /// What displaces it most from its share of the middle thrust towards that limit.
-    pub blame: Cause,
-    /// By how much.
-    pub blamed: f64,
-    /// The axis whose torque costs it most on the way to that limit.
-    pub weak_axis: Axis,
-    /// How much less that limit would be pressed without torque about that axis.
-    pub relief: f64,
 }
 
 impl RotorDemand {
+    /// What `commands` ask of `rotor`, whose thrust is `row` of B+ times the wrench.
+    #[must_use]
+    pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
+        Self {
+            least: -commands.greatest(&-row),
+            greatest: commands.greatest(row),
+            available_min: f64::from(rotor.thrust_min),
+            available_max: f64::from(rotor.thrust_max),
+        }
+    }
+
     /// Whether the rotor can give all that is asked of it.
     #[must_use]
     pub fn fits(&self) -> bool {
-        self.margin >= 0.0
-    }
-
-    /// What `commands` ask of rotor `number`, whose thrust is `row` of B+ times the wrench.
-    #[must_use]
-    pub fn new(number: usize, rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
-        let (available_min, available_max) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
-        let (up, down) = (commands.reach(row), commands.reach(&-row));
-        let (above, below) = (available_max - up.total, -down.total - available_min);
-        let (limit, margin, sign) =
-            if above <= below { (Limit::Maximum, above, 1.0) } else { (Limit::Minimum, below, -1.0) };
-        let towards = torque_part(row) * sign;
-        let (share, spread) = (0.5 * (up.thrust - down.thrust), 0.5 * (up.thrust + down.thrust));
-        let beyond = (share - available_max).max(available_min - share);
-        let worse = |worst: (Cause, f64), term: &TorqueTerm| {
-            let part = term.support(&towards);
-            if part > worst.1 { (Cause::Torque(term.name), part) } else { worst }
-        };
-        let (blame, blamed) = if beyond > 0.0 {
-            (Cause::Thrust, beyond)
-        } else {
-            commands.torque.iter().fold((Cause::Thrust, spread), worse)
-        };
-        let with_all_axes = commands.support(&towards);
-        let (mut weak_axis, mut relief) = (Axis::Roll, f64::NEG_INFINITY);
-        for (axis, place) in [(Axis::Roll, 0), (Axis::Pitch, 1), (Axis::Yaw, 2)] {
-            let mut rest = towards;
-            if let Some(component) = rest.get_mut(place) {
-                *component = 0.0;
-            }
-            let without = with_all_axes - commands.support(&rest);
-            if without > relief {
-                (weak_axis, relief) = (axis, without);
-            }
-        }
-        Self {
-            rotor: number,
-            least: -down.total,
-            greatest: up.total,
-            available_min,
-            available_max,
-            margin,
-            limit,
-            blame,
-            blamed,
-            weak_axis,
-            relief,
-        }
-    }
-}
-
-impl fmt::Display for RotorDemand {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (end, available, demand) = match self.limit {
-            Limit::Minimum => ("least", self.available_min, self.least),
-            Limit::Maximum => ("greatest", self.available_max, self.greatest),
-        };
-        let verdict = if self.fits() { "with a margin of" } else { "too much by" };
-        write!(
-            f,
-            "rotor {}: asked for {demand:.3} N, {end} available {available:.3} N, {verdict} {:.3} N; most of it from ",
-            self.rotor,
-            self.margin.abs()
-        )?;
-        match self.blame {
-            Cause::Thrust => write!(f, "thrust")?,
-            Cause::Torque(name) => write!(f, "{name}")?,
-        }
-        let axis = match self.weak_axis {
-            Axis::Roll => "roll",
-            Axis::Pitch => "pitch",
-            Axis::Yaw => "yaw",
-        };
-        write!(f, " ({:.3} N); the weak axis is {axis} ({:.3} N)", self.blamed, self.relief)
+        self.least >= self.available_min && self.greatest <= self.available_max
     }
 }
 
 /// What `commands` ask of each rotor, in the rotors' order.
 #[must_use]
 pub fn demands(rotors: &Rotors, commands: &Commands) -> Vec<RotorDemand, ROTORS_MAX> {
-    let all = rotors.iter().zip(rotors.pseudo_inverse()).enumerate();
-    collected(all.map(|(index, (rotor, row))| RotorDemand::new(index + 1, rotor, row, commands)))
+    let all = rotors.iter().zip(rotors.pseudo_inverse());
+    collected(all.map(|(rotor, row)| RotorDemand::new(rotor, row, commands)))
 }

@@ -18,12 +18,12 @@
 use super::configuration::Configuration;
 use super::inequality::Inequality;
 use super::{ARITHMETIC_ALLOWANCE, Form};
-use crate::allocation::geometry::{ROTORS_MAX, Rotors};
-use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm};
+use crate::allocation::geometry::ROTORS_MAX;
+use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
 use crate::error::ParameterError;
 use heapless::Vec;
 
-/// Names of the inequalities, by rotor; rotors are numbered from 1.
+/// Names of the inequalities, by rotor.
 const NAMES: [(&str, &str); ROTORS_MAX] = [
     ("R rotor 1 least", "R rotor 1 greatest"),
     ("R rotor 2 least", "R rotor 2 greatest"),
@@ -38,7 +38,7 @@ const NAMES: [(&str, &str); ROTORS_MAX] = [
 /// What the law asks of one rotor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorReport {
-    /// Its extremes, what it has, and which term is to blame.
+    /// Its extremes, and what it has.
     pub demand: RotorDemand,
     /// How far below hovering the law may take it, against the room there, N.
     pub least: Inequality,
@@ -46,41 +46,44 @@ pub struct RotorReport {
     pub greatest: Inequality,
 }
 
-/// The reports of all rotors of `configuration` under the bounds of `form`; empty if it has none.
+/// The sets that the law's torque is a sum of, under the bounds of `form`.
 ///
 /// # Errors
 /// If the form's bounds are not finite; the constructors before it leave no way to that.
-pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
-    let Some(rotors) = configuration.rotors() else {
-        return Ok(Vec::new());
-    };
+pub fn torque_terms(configuration: &Configuration, form: &Form) -> Result<[TorqueTerm; 3], ParameterError> {
     let inertia = configuration.vehicle().inertia.map(f64::from);
     let raised = 1.0 + ARITHMETIC_ALLOWANCE;
     let rate = form.rates.angular_velocity * raised;
     let semi_axes = inertia * (form.rates.angular_acceleration * raised);
-    let terms = [
+    Ok([
         TorqueTerm::new("attitude and body-rate feedback", Shape::Ball { radius: form.feedback_torque * raised })?,
         TorqueTerm::new("desired angular acceleration", Shape::Ellipsoid { semi_axes })?,
         TorqueTerm::new("gyroscopic torque", Shape::Gyroscopic { inertia, rate })?,
-    ];
-    let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
-    let hover = f64::from(configuration.vehicle().mass) * f64::from(configuration.vehicle().gravity);
-    Ok(list(rotors, &commands, hover))
+    ])
 }
 
-fn list(rotors: &Rotors, commands: &Commands, hover: f64) -> Vec<RotorReport, ROTORS_MAX> {
+/// The reports of all rotors of `configuration` under the bounds of `form`; empty if it has none.
+///
+/// # Errors
+/// As [`torque_terms`].
+pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
     let mut reports = Vec::new();
-    for (index, ((rotor, row), (least, greatest))) in rotors.iter().zip(rotors.pseudo_inverse()).zip(&NAMES).enumerate()
+    let Some(rotors) = configuration.rotors() else {
+        return Ok(reports);
+    };
+    let terms = torque_terms(configuration, form)?;
+    let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
+    let hover = f64::from(configuration.vehicle().mass) * f64::from(configuration.vehicle().gravity);
+    for ((demand, row), (least, greatest)) in demands(rotors, &commands).iter().zip(rotors.pseudo_inverse()).zip(&NAMES)
     {
-        let demand = RotorDemand::new(index + 1, rotor, row, commands);
         let share = row.x * hover;
         let report = RotorReport {
-            demand,
+            demand: *demand,
             least: Inequality::new(least, "N", share - demand.least, share - demand.available_min).or_equal(),
             greatest: Inequality::new(greatest, "N", demand.greatest - share, demand.available_max - share).or_equal(),
         };
         // As many reports as rotors: it fits.
         let _ = reports.push(report);
     }
-    reports
+    Ok(reports)
 }
