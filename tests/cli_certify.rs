@@ -2,7 +2,7 @@
 
 use crate::support::binary;
 use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
-use host_sim::scenario::Scenario;
+use scenario::Scenario;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,7 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files that the
 //! Markdown pages link to, and the scenario examples.
 
-use host_sim::scenario::Scenario;
+use scenario::Scenario;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 
 use firmware::replay::{PERIOD_US, Replay, TICKS, record};
 use host_sim::flight::Flight;
-use host_sim::scenario::Scenario;
+use scenario::Scenario;
 
 /// The number as published; `.ci/emulated` reads the same file.
 const PUBLISHED: &str = include_str!("paper_flight.sha256");

@@ -1,17 +1,13 @@
 //! The paper's experiment, flown: every figure that Section VI claims, and the sharper ones this project aims at.
 
 use controller_core::certificate::Certificate;
-use host_sim::claims::{Flown, all_hold, claims, table};
+use host_sim::claims::{all_hold, claims, table};
 use host_sim::flight::Flight;
-use host_sim::scenario::Scenario;
+use host_sim::flown::Flown;
+use scenario::Scenario;
 
 fn flown(scenario: &Scenario) -> Flown {
-    let mut flight = Flight::new(scenario).unwrap();
-    let mut flown = Flown::new(scenario);
-    for _ in 0..scenario.timing.ticks {
-        flown.observe(&flight.tick().unwrap());
-    }
-    flown
+    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
 }
 
 #[test]

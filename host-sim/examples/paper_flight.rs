@@ -3,7 +3,7 @@
 
 use firmware::replay::{RECORD, Replay, TICKS, record};
 use host_sim::flight::Flight;
-use host_sim::scenario::Scenario;
+use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
 

@@ -5,12 +5,11 @@
 
 mod blame;
 
-use crate::sampled_loop::{LoopModel, Timing};
-use crate::scenario::Scenario;
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
+use scenario::Scenario;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
 const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
@@ -107,7 +106,7 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
     let configuration = &scenario.configuration;
     let head = ["sampled loop, small motions", "spectral radius", "gain margin", "delay margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for report in loop_model(scenario)?.reports() {
+    for report in scenario.loops()?.reports() {
         let (gain, delay) = report.margins.map_or(("none".to_owned(), "none".to_owned()), |margins| {
             (short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay)))
         });
@@ -115,27 +114,14 @@ fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
         let radius = format!("{:.4}", report.spectral_radius);
         rows.push(vec![report.axis.name().to_owned(), radius, gain, delay, verdict.to_owned()]);
     }
-    let lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
     let timing = format!(
         "at {} Hz, rotor lag {} ms, delay {} ms, for vehicle {} kg\n",
         short(1e6 / scenario.timing.period_us as f64),
-        short(1e3 * lag),
+        short(1e3 * scenario.rotor_lag),
         short(1e3 * scenario.delay()),
         short(f64::from(configuration.vehicle().mass))
     );
     Ok(aligned(&rows) + &timing)
-}
-
-/// The sampled loops of a scenario's vehicle, gains, rotors and delay.
-///
-/// # Errors
-/// If the timing is outside the model's range.
-pub fn loop_model(scenario: &Scenario) -> Result<LoopModel, ParameterError> {
-    let configuration = &scenario.configuration;
-    let period = scenario.timing.period();
-    let rotor_lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
-    let timing = Timing { period, rotor_lag, delay_samples: scenario.delay() / period };
-    LoopModel::new(configuration.vehicle(), configuration.gains(), timing)
 }
 
 #[cfg(test)]

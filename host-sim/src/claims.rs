@@ -8,12 +8,12 @@
 //! ```
 //!
 //! The paper's own scenario claims the figures of Section VI besides. For any other, tracking is reported without a
-//! verdict. "Steady state" is the last quarter of the flight: of the paper's 40 s, the last 10.
+//! verdict.
 
-use crate::flight::Tick;
-use crate::scenario::Scenario;
+use crate::flown::Flown;
 use crate::table::{aligned, short};
 use controller_core::certificate::{Certificate, Form};
+use scenario::Scenario;
 use std::fmt::Write;
 
 /// Section VI: thrust, N.
@@ -24,37 +24,6 @@ pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
 pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
-/// Extremes of no value at all.
-const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-
-/// The extremes of a flight, gathered tick by tick.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Flown {
-    steady_from_us: u64,
-    last_sign: Option<f32>,
-    start_height: Option<f64>,
-    /// Ticks seen.
-    pub ticks: u64,
-    /// Least and greatest commanded thrust, N.
-    pub thrust: (f64, f64),
-    /// Greatest commanded |torque| about each body axis, N m.
-    pub torque: [f64; 3],
-    /// Least and greatest thrust commanded of each rotor, N; empty without rotors.
-    pub rotors: Vec<(f64, f64)>,
-    /// Greatest component of u_f and u_s, m/s^2.
-    pub filter: f64,
-    /// Ticks at which the plant clipped a command.
-    pub clipped: u64,
-    /// Changes of m*.
-    pub lift_changes: u64,
-    /// Greatest position error in steady state, m.
-    pub steady_position_error: f64,
-    /// Greatest norm of the modified Rodrigues parameters in steady state.
-    pub steady_mrp_error: f64,
-    /// Start minus lowest height, m.
-    pub height_lost: f64,
-}
-
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
@@ -66,57 +35,6 @@ pub struct Claim {
     pub flown: String,
     /// Whether it holds; none where nothing is required.
     pub holds: Option<bool>,
-}
-
-impl Flown {
-    /// Nothing seen yet of a flight of `scenario`.
-    #[must_use]
-    pub fn new(scenario: &Scenario) -> Self {
-        let timing = &scenario.timing;
-        Self {
-            steady_from_us: (timing.ticks - timing.ticks / 4) * timing.period_us,
-            last_sign: None,
-            start_height: None,
-            ticks: 0,
-            thrust: NOTHING_YET,
-            torque: [0.0; 3],
-            rotors: Vec::new(),
-            filter: 0.0,
-            clipped: 0,
-            lift_changes: 0,
-            steady_position_error: 0.0,
-            steady_mrp_error: 0.0,
-            height_lost: 0.0,
-        }
-    }
-
-    /// Takes one tick into account.
-    pub fn observe(&mut self, tick: &Tick) {
-        let (wrench, diagnostics) = (&tick.wrench, &tick.diagnostics);
-        let thrust = f64::from(wrench.thrust);
-        self.ticks += 1;
-        self.thrust = (self.thrust.0.min(thrust), self.thrust.1.max(thrust));
-        for (greatest, torque) in self.torque.iter_mut().zip(wrench.torque.iter()) {
-            *greatest = greatest.max(f64::from(torque.abs()));
-        }
-        self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
-        // While the first command is on its way there is none.
-        self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), NOTHING_YET);
-        for (extremes, thrust) in self.rotors.iter_mut().zip(&tick.rotor_thrusts) {
-            let thrust = f64::from(*thrust);
-            *extremes = (extremes.0.min(thrust), extremes.1.max(thrust));
-        }
-        self.clipped += u64::from(tick.clipping.any());
-        self.lift_changes += u64::from(self.last_sign.is_some_and(|sign| sign != diagnostics.lift_sign));
-        self.last_sign = Some(diagnostics.lift_sign);
-        let height = tick.state.position.z;
-        self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
-        if tick.time_us >= self.steady_from_us {
-            let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
-            self.steady_position_error = self.steady_position_error.max(position_error);
-            self.steady_mrp_error = self.steady_mrp_error.max(f64::from(diagnostics.mrp.norm()));
-        }
-    }
 }
 
 /// The claims about a flight of `scenario` that showed `flown`.
@@ -232,13 +150,8 @@ mod tests {
     use super::*;
     use crate::flight::Flight;
 
-    fn flown(scenario: &Scenario, ticks: u64) -> Flown {
-        let mut flight = Flight::new(scenario).unwrap();
-        let mut flown = Flown::new(scenario);
-        for _ in 0..ticks {
-            flown.observe(&flight.tick().unwrap());
-        }
-        flown
+    fn flown(scenario: &Scenario) -> Flown {
+        Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
     }
 
     #[test]
@@ -254,7 +167,7 @@ mod tests {
         let mut other = paper.clone();
         other.initial.position.x += 1.0;
         let count = |scenario: &Scenario| {
-            let claims = claims(scenario, &flown(scenario, 10));
+            let claims = claims(scenario, &Flown::new(scenario));
             claims.iter().filter(|claim| claim.claim.contains("published")).count()
         };
         assert_eq!((count(&paper), count(&renamed), count(&other)), (4, 4, 0));
@@ -263,49 +176,34 @@ mod tests {
     #[test]
     fn each_claim_can_fail() {
         let paper = Scenario::paper().unwrap();
-        let good = flown(&paper, paper.timing.ticks);
+        let good = flown(&paper);
         assert!(all_hold(&claims(&paper, &good)), "{}", table(&claims(&paper, &good)));
-        let broken = [
-            Flown { steady_position_error: 1.1e-3, ..good.clone() },
-            Flown { steady_mrp_error: 1.1e-4, ..good.clone() },
-            Flown { thrust: (3.5, 6.0), ..good.clone() },
-            Flown { thrust: (3.6, 6.2), ..good.clone() },
-            Flown { torque: [0.3, 0.1, 0.1], ..good.clone() },
-            Flown { torque: [0.1, 0.34, 0.1], ..good.clone() },
-            Flown { torque: [0.1, 0.1, 0.49], ..good.clone() },
-            Flown { filter: 2.000_001, ..good.clone() },
-            Flown { clipped: 1, ..good.clone() },
+        let broken: [fn(&mut Flown); 9] = [
+            |flown| flown.steady_position_error = 1.1e-3,
+            |flown| flown.steady_mrp_error = 1.1e-4,
+            |flown| flown.thrust = (3.5, 6.0),
+            |flown| flown.thrust = (3.6, 6.2),
+            |flown| flown.torque = [0.3, 0.1, 0.1],
+            |flown| flown.torque = [0.1, 0.34, 0.1],
+            |flown| flown.torque = [0.1, 0.1, 0.49],
+            |flown| flown.filter = 2.000_001,
+            |flown| flown.clipped = 1,
         ];
-        for flown in broken {
+        for spoil in broken {
+            let mut flown = good.clone();
+            spoil(&mut flown);
             assert!(!all_hold(&claims(&paper, &flown)), "{flown:?}");
         }
     }
 
     #[test]
     fn what_a_weak_vehicle_cannot_deliver_is_counted_and_fails() {
-        let text = crate::scenario::PAPER.replace("thrust_max = 7.0", "thrust_max = 4.9");
+        let text = scenario::PAPER.replace("thrust_max = 7.0", "thrust_max = 4.9");
         let weak = Scenario::parse(&text, "weak").unwrap();
-        let seen = flown(&weak, weak.timing.ticks);
+        let seen = flown(&weak);
         assert!(seen.clipped > 100, "{seen:?}");
         let failed: Vec<String> =
             claims(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
         assert_eq!(failed, ["thrust, vehicle's limit", "ticks with a clipped command"]);
-    }
-
-    #[test]
-    fn steady_state_is_the_last_quarter() {
-        let paper = Scenario::paper().unwrap();
-        let (before, after) = (flown(&paper, 3000), flown(&paper, 3001));
-        assert_eq!((before.steady_position_error, before.steady_mrp_error), (0.0, 0.0));
-        assert!(after.steady_position_error > 0.0);
-        // It fell from 10 m, upside down, by what Table I's gains cannot prevent.
-        assert!((22.0..25.0).contains(&before.height_lost), "{}", before.height_lost);
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        for (value, text) in [(0.206, "0.206"), (6.187_53, "6.188"), (2.0, "2"), (1.234e-5, "1.23e-5"), (0.0, "0")] {
-            assert_eq!(short(value), text);
-        }
     }
 }

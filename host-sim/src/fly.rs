@@ -1,14 +1,16 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
-use crate::claims::{self, Claim, Flown};
+use crate::claims::{self, Claim};
 use crate::flight::{Flight, FlightError};
+use crate::flown::Flown;
 use crate::log::{self, WholeFile};
+use crate::plots;
+use crate::plots::canvas::PlotError;
 use crate::plots::record::Record;
-use crate::plots::{self, PlotError};
 use crate::progress::Progress;
-use crate::scenario::Scenario;
 use controller_core::certificate::configuration::Certified;
 use controller_core::error::ParameterError;
+use scenario::Scenario;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

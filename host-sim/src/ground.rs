@@ -11,9 +11,10 @@
 //!
 //! There is no sliding, no tipping over an edge and no ground effect, and a fall breaks nothing.
 
-use crate::plant::{BodyState, Plant};
+use crate::plant::Plant;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use scenario::body::BodyState;
 use scenario::body::attitude_from_euler;
 
 /// How far a vehicle may lean when it touches the ground for its legs to put it upright, rad: 30 degrees.

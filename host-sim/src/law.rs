@@ -12,13 +12,13 @@
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
 use crate::flight::controller;
-use crate::scenario::Scenario;
 use controller_core::controller::Controller;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
+use scenario::Scenario;
 use std::io::{self, BufRead, Write};
 
 /// The 33 numbers by the names that messages use.

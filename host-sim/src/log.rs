@@ -38,7 +38,7 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     singles(out, &[qd.w, qd.i, qd.j, qd.k])?;
     singles(out, d.desired_angular_velocity.as_slice())?;
     singles(out, d.desired_angular_acceleration.as_slice())?;
-    writeln!(out, ",{}", u8::from(tick.clipping.any()))
+    writeln!(out, ",{}", u8::from(tick.clipped))
 }
 
 fn doubles(out: &mut impl Write, values: &[f64]) -> io::Result<()> {

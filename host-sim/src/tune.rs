@@ -2,7 +2,7 @@
 //!
 //! What is asked, in this order:
 //!
-//! 1. a constraint: every inequality of the certificate, down to the rotors, with [`Requirements::margin`] to spare; the
+//! 1. a constraint: every inequality of the certificate, down to the rotors, with [`requirements::Requirements::margin`] to spare; the
 //!    sampled loops stable with gain and delay margins; the vehicle recovers from upside down and holds still; the file's
 //!    own reference is flown without a clipped command and within the errors asked for;
 //! 2. the least height lost from the paper's first attitude, roll -179 degrees, at rest, on a hover reference at the same
@@ -17,9 +17,9 @@ pub mod candidate;
 pub mod evolution;
 pub mod frontier;
 pub mod output;
+pub mod requirements;
 
 use crate::progress::Progress;
-use crate::scenario::Scenario;
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
@@ -27,28 +27,11 @@ use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use evolution::{Evolution, Goal};
 use frontier::Frontier;
+use requirements::Requirements;
+use scenario::Scenario;
 
 /// How much more height than the best the answer may lose, relative, to win position gain.
 pub const HEIGHT_SLACK: f64 = 0.05;
-
-/// What every accepted candidate meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Requirements {
-    /// Least relative margin of every inequality.
-    pub margin: f64,
-    /// Least gain margin of every sampled loop, as a factor.
-    pub gain_margin: f64,
-    /// Least delay margin of every sampled loop, s.
-    pub delay_margin: f64,
-    /// Greatest position error of the file's own flight in its last quarter, m.
-    pub position_error: f64,
-    /// Greatest norm of its modified Rodrigues parameters there.
-    pub mrp_error: f64,
-    /// How long a recovery from upside down may take, s; its last quarter must be still.
-    pub recovery: f64,
-    /// Whether the thrust projection may be used.
-    pub projection: bool,
-}
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -24,22 +24,15 @@ use toml::Value;
 /// Longest lag and delay, s: slower actuators fly no multirotor.
 const LONGEST: f64 = 1.0;
 
-/// Rotors and how fast they follow.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RotorSetup {
-    /// Geometry, coefficients, ranges.
-    pub rotors: Rotors,
-    /// First-order lag of their speeds, s; zero for none.
-    pub lag: f64,
-}
-
-/// Reads `[rotors]`.
+/// Reads `[rotors]`: carries `configuration` to the rotors, and returns it with the first-order lag of their speeds, s.
+/// Without the section there is neither.
 ///
 /// # Errors
-/// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench.
-pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
+/// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench, `rotors.speed` if
+/// the vehicle cannot hover between its ends.
+pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<(Configuration, f64), FieldError> {
     let Some(section) = root.optional_section("rotors")? else {
-        return Ok(None);
+        return Ok((configuration, 0.0));
     };
     section.allow(&["position", "spin", "thrust_coefficient", "drag_coefficient", "speed", "lag"])?;
     let positions = section.elements("position", "a list of positions [x, y, z]")?;
@@ -65,7 +58,7 @@ pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
     }
     let rotors = Rotors::new(&list).map_err(|error| root.refused(&in_file(error)))?;
     let lag = read_time(&section, "lag")?;
-    Ok(Some(RotorSetup { rotors, lag }))
+    Ok((mounted(root, configuration, rotors)?, lag))
 }
 
 /// The field of the file that a refused field of one rotor comes from: all have the same coefficients and speeds.
@@ -79,15 +72,12 @@ fn in_file(error: ParameterError) -> ParameterError {
     ParameterError { field, ..error }
 }
 
-/// Carries `configuration` to the rotors.
-///
-/// # Errors
-/// Names `rotors.speed` if the vehicle cannot hover between its ends.
-pub fn mounted(root: &Section, configuration: Configuration, rotors: &Rotors) -> Result<Configuration, FieldError> {
+/// Carries `configuration` to the rotors; refuses those that cannot hover it.
+fn mounted(root: &Section, configuration: Configuration, rotors: Rotors) -> Result<Configuration, FieldError> {
     let hover = configuration.vehicle().mass * configuration.vehicle().gravity;
-    configuration.with_rotors(rotors.clone()).map_err(|error| {
-        let together = |thrust: fn(&Rotor) -> f32| rotors.iter().map(thrust).sum::<f32>();
-        let (least, greatest) = (together(|rotor| rotor.thrust_min), together(|rotor| rotor.thrust_max));
+    let together = |thrust: fn(&Rotor) -> f32| rotors.iter().map(thrust).sum::<f32>();
+    let (least, greatest) = (together(|rotor| rotor.thrust_min), together(|rotor| rotor.thrust_max));
+    configuration.with_rotors(rotors).map_err(|error| {
         let found = root.lookup(error.field).unwrap_or_default();
         let problem = format!(
             "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} rad/s: \

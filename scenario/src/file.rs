@@ -1,12 +1,11 @@
 //! A whole scenario file: its sections, read into one flight that can be flown.
 
-use crate::actuation::{self, RotorSetup};
 use crate::body::BodyState;
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use crate::{bounds, initial, vehicle};
+use crate::{actuation, bounds, initial, vehicle};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::reference::Trajectory;
@@ -41,10 +40,11 @@ pub struct Scenario {
     pub name: String,
     /// Duration, control period, plant step.
     pub timing: Timing,
-    /// Vehicle, limits, gains, the reference's bounds, thrust floor: what a certificate would be about.
+    /// Vehicle, limits, gains, the reference's bounds, thrust floor, rotors: what a certificate would be about. Without
+    /// rotors thrust and torque act directly.
     pub configuration: Configuration,
-    /// Its rotors and their lag; none: thrust and torque act directly.
-    pub rotors: Option<RotorSetup>,
+    /// First-order lag of the rotors' speeds, s; zero for none.
+    pub rotor_lag: f64,
     /// From a tick to the moment its wrench acts, plant steps.
     pub delay_steps: u64,
     /// Where it starts.
@@ -93,16 +93,12 @@ impl Scenario {
         let reference = ReferenceKind::read(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let bounds = bounds::read_bounds(root, &trajectory.bounds())?;
-        let rotors = actuation::read_rotors(root)?;
         let delay_steps = actuation::read_delay(root, &timing)?;
         let configuration = vehicle::read_configuration(root, &bounds)?;
-        let configuration = match &rotors {
-            None => configuration,
-            Some(setup) => actuation::mounted(root, configuration, &setup.rotors)?,
-        };
+        let (configuration, rotor_lag) = actuation::read_rotors(root, configuration)?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
-        Ok(Self { name, timing, configuration, rotors, delay_steps, initial, reference, trajectory })
+        Ok(Self { name, timing, configuration, rotor_lag, delay_steps, initial, reference, trajectory })
     }
 
     /// From a tick to the moment its wrench acts, s.
@@ -117,8 +113,7 @@ impl Scenario {
     /// If the timing is outside the model's range; no file that was read leads there.
     pub fn loops(&self) -> Result<LoopModel, ParameterError> {
         let period = self.timing.period();
-        let rotor_lag = self.rotors.as_ref().map_or(0.0, |setup| setup.lag);
-        let timing = sampled_loop::Timing { period, rotor_lag, delay_samples: self.delay() / period };
+        let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples: self.delay() / period };
         LoopModel::new(self.configuration.vehicle(), self.configuration.gains(), timing)
     }
 
@@ -127,7 +122,7 @@ impl Scenario {
     pub fn flies_like(&self, other: &Self) -> bool {
         self.timing == other.timing
             && self.configuration == other.configuration
-            && self.rotors == other.rotors
+            && self.rotor_lag == other.rotor_lag
             && self.delay_steps == other.delay_steps
             && self.initial == other.initial
             && self.reference == other.reference

@@ -9,7 +9,7 @@
 //!
 //! Together they are what can be said without flying. Neither is a proof that a recovery succeeds.
 
-use crate::Scenario;
+use crate::file::Scenario;
 use crate::sampled_loop::LoopReport;
 use crate::stability::{Lack, LoopMargin};
 use controller_core::certificate::Certificate;

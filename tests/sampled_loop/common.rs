@@ -1,16 +1,18 @@
 //! Table I, and how to put other numbers in its place.
 
 use controller_core::gains::{GainParameters, Gains};
-use controller_core::vehicle::{Vehicle, VehicleParameters};
-use nalgebra::Vector3;
+use controller_core::vehicle::Vehicle;
+use scenario::Scenario;
 use scenario::sampled_loop::{Axis, LoopModel, Timing};
+use std::sync::LazyLock;
 
 /// 100 Hz, ideal rotors, no delay.
 pub const IDEAL: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
 
+static PAPER: LazyLock<Scenario> = LazyLock::new(|| Scenario::paper().unwrap());
+
 pub fn vehicle() -> Vehicle {
-    let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
-    Vehicle::new(VehicleParameters { mass: 0.46, inertia, gravity: 9.81 }).unwrap()
+    *PAPER.configuration.vehicle()
 }
 
 pub fn model(gains: GainParameters, timing: Timing) -> LoopModel {

@@ -8,6 +8,10 @@ use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::{Quaternion, Vector2, Vector3};
 pub use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use scenario::Scenario;
+use std::sync::LazyLock;
+
+static PAPER: LazyLock<Scenario> = LazyLock::new(|| Scenario::paper().unwrap());
 
 /// The generator of one test.
 pub fn generator(seed: u64) -> ChaCha8Rng {
@@ -16,8 +20,7 @@ pub fn generator(seed: u64) -> ChaCha8Rng {
 
 /// The vehicle of the paper's Section VI.
 pub fn paper_vehicle() -> Vehicle {
-    let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
-    Vehicle::new(VehicleParameters { mass: 0.460, inertia, gravity: 9.81 }).unwrap()
+    *PAPER.configuration.vehicle()
 }
 
 /// Table I, validated for `vehicle`.

@@ -88,7 +88,7 @@ mod tests {
     const ROW: Vector4<f64> = Vector4::new(0.25, -2.08, 2.08, 10.24);
 
     fn form(least: f64, greatest: f64) -> Form {
-        let paper = crate::scenario::Scenario::paper().unwrap();
+        let paper = scenario::Scenario::paper().unwrap();
         let certificate = Certificate::new(&paper.configuration).unwrap();
         Form { thrust: Interval { least, greatest }, ..certificate.sharp }
     }

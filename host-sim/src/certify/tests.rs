@@ -1,7 +1,7 @@
 //! The report's lines, for a certified, a refused, and a rotor-bound configuration.
 
 use super::*;
-use crate::scenario::PAPER;
+use scenario::PAPER;
 
 const STUDY: &str = include_str!("../../../vehicles/study.toml");
 

@@ -1,5 +1,6 @@
 use super::*;
 use scenario::Scenario;
+use std::sync::LazyLock;
 
 const STEP: f64 = 1e-3;
 
@@ -12,8 +13,9 @@ fn on_the_ground() -> (Ground, Plant, f64) {
 }
 
 fn energy(plant: &Plant, weight: f64) -> f64 {
+    static PAPER: LazyLock<Scenario> = LazyLock::new(|| Scenario::paper().unwrap());
     let state = plant.state();
-    let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
+    let inertia = PAPER.configuration.vehicle().inertia.map(f64::from);
     let spin = state.angular_velocity.component_mul(&inertia).dot(&state.angular_velocity);
     0.5 * (weight / 9.81 * state.velocity.norm_squared() + spin) + weight * state.position.z
 }

@@ -12,19 +12,19 @@
 //! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
-use super::Requirements;
-use crate::claims::Flown;
+use super::requirements::Requirements;
 use crate::flight::Flight;
-use crate::plant::{BodyState, attitude_from_euler};
-use crate::scenario::Scenario;
-use crate::scenario::timing::Timing;
-use controller_core::certificate::Certificate;
+use crate::flown::Flown;
+use controller_core::certificate::configuration::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::hover::Hover;
 use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::body::{BodyState, attitude_from_euler};
 use scenario::sampled_loop::Axis;
+use scenario::timing::Timing;
 use std::sync::Arc;
 
 /// Coordinates of the search space.
@@ -128,14 +128,19 @@ impl Judge {
         let undefined = (5, 1.0, "the law is undefined for these gains".to_owned());
         let scenario = self.scenario(point).ok_or(undefined.clone())?;
 
-        let certificate = Certificate::new(&scenario.configuration).map_err(|_| undefined.clone())?;
+        let judged = Certified::new(scenario.configuration.clone());
+        let certificate = match &judged {
+            Ok(certified) => certified.certificate(),
+            Err(Refused::Fails(certificate)) => certificate,
+            Err(Refused::Undefined(_)) => return Err(undefined),
+        };
         verdict.tightest = certificate.tightest();
         let missing: f64 =
             certificate.inequalities().map(|inequality| (needed.margin - inequality.margin()).max(0.0)).sum();
-        if missing > 0.0 {
+        let (Ok(certified), true) = (&judged, missing == 0.0) else {
             let name = verdict.tightest.map_or("", |inequality| inequality.name);
             return Err((4, missing, format!("certificate: {name}")));
-        }
+        };
 
         let loops = scenario.loops().map_err(|_| undefined)?;
         for axis in Axis::ALL {
@@ -161,8 +166,7 @@ impl Judge {
             }
         }
 
-        let recovery = Scenario { configuration: scenario.configuration.clone(), ..self.recovery.clone() };
-        let flown = fly(&recovery).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
+        let flown = fly(&self.recovery, certified).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
         verdict.height_lost = flown.height_lost;
         let restless =
             (flown.steady_position_error / STILL_POSITION - 1.0).max(flown.steady_mrp_error / STILL_MRP - 1.0);
@@ -171,7 +175,7 @@ impl Judge {
             return Err((1, restless, "recovery: not still at the end, or a clipped command".to_owned()));
         }
 
-        let flown = fly(&scenario).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
+        let flown = fly(&scenario, certified).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
         let beyond = (flown.steady_position_error / needed.position_error - 1.0)
             .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
             .max(flown.clipped as f64);
@@ -201,13 +205,7 @@ pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
     recovery
 }
 
-/// Flies a whole scenario; none if it cannot be flown to its end.
-#[must_use]
-pub fn fly(scenario: &Scenario) -> Option<Flown> {
-    let mut flight = Flight::new(scenario).ok()?;
-    let mut flown = Flown::new(scenario);
-    for _ in 0..scenario.timing.ticks {
-        flown.observe(&flight.tick().ok()?);
-    }
-    Some(flown)
+/// Flies what is certified as `scenario` says; none if it cannot be flown to its end.
+fn fly(scenario: &Scenario, certified: &Certified) -> Option<Flown> {
+    Flown::over(scenario, Flight::certified(scenario, certified).ok()?).ok()
 }

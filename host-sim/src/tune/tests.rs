@@ -1,7 +1,7 @@
 //! A small search from beginning to end, and each requirement on its own.
 
 use super::*;
-use crate::scenario::PAPER;
+use scenario::PAPER;
 
 const EASY: Requirements = Requirements {
     margin: 0.0,

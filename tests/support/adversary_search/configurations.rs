@@ -7,6 +7,7 @@ use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 use rand::RngExt;
+use scenario::Scenario;
 
 /// Limits nobody reaches, for questions that are not about limits.
 pub fn without_limits(vehicle: Vehicle, gains: Gains, bounds: ReferenceBounds) -> Configuration {
@@ -25,20 +26,9 @@ pub fn limited(
     Configuration::new(vehicle, Limits::new(limits, &vehicle).unwrap(), gains, bounds).unwrap()
 }
 
-/// The paper's experiment, Section VI: vehicle, Table I, and the bounds of its reference.
+/// The paper's experiment, Section VI: vehicle, limits, Table I, and the bounds of its reference.
 pub fn paper() -> Configuration {
-    let vehicle = random::paper_vehicle();
-    let frequency = std::f64::consts::TAU / 15.0;
-    let swing = std::f64::consts::PI * frequency;
-    let bounds = ReferenceBounds {
-        horizontal_acceleration: frequency.powi(2) as f32,
-        vertical_acceleration: frequency.powi(2) as f32,
-        jerk: (2.0_f64.sqrt() * frequency.powi(3)) as f32,
-        snap: (2.0_f64.sqrt() * frequency.powi(4)) as f32,
-        heading_rate: swing as f32,
-        heading_second_derivative: (swing * swing) as f32,
-    };
-    limited(vehicle, random::paper_gains(&vehicle), bounds, 7.0, &Vector3::repeat(0.5))
+    Scenario::paper().unwrap().configuration
 }
 
 /// A vehicle of 0.1 to 10 times the paper's mass, gains within a factor of `spread` of Table I, and a reference that asks
