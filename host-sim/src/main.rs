@@ -161,11 +161,12 @@ The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for
 the vehicle on by one control period, and is answered by ODOMETRY and HIL_SENSOR with the time of the command. Vehicle time
 counts from the first command.
 
-With QEMU (this firmware's emulated board; its second serial port is for the ground station):
+With QEMU, from the top of the repository (this firmware's emulated board; its second serial port is for the ground station):
+  cargo build --profile board -p firmware --target thumbv7em-none-eabihf --no-default-features --features mps2 --bin mps2
   qemu-system-arm -M mps2-an386 -display none -monitor none -icount shift=0,sleep=off \\
-    -serial tcp:127.0.0.1:5760,server=on,nodelay=on -serial tcp:127.0.0.1:5761,server=on \\
-    -semihosting-config enable=on,target=native -kernel target/arm/thumbv7em-none-eabihf/release/mps2
-  host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
+    -serial tcp:127.0.0.1:5760,server=on,nodelay=on -serial tcp:127.0.0.1:5761,server=on,wait=off,nodelay=on \\
+    -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
+  cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600";
 
 fn main() -> ExitCode {

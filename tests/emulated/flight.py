@@ -1,6 +1,6 @@
 """Flies the whole firmware on emulated Cortex-M boards with a real MAVLink client, and holds it to the flight rules.
 
-Usage: flight.py MACHINE RUN...   with RUN one of: flight, vanishing-client, failing-pose
+Usage: flight.py MACHINE RUN...   with RUN one of: as-printed, flight, vanishing-client, failing-pose
 
 Every time is the vehicle's. Figures that are printed were measured in that run.
 """
@@ -8,6 +8,7 @@ Every time is the vehicle's. Figures that are printed were measured in that run.
 import os
 import sys
 
+from printed import as_printed
 from rig import Rig
 
 START = (1.0, 0.0, 0.0)
@@ -117,7 +118,7 @@ def failing_pose(machine):
 
 
 MACHINES = ["mps2-an386", "mps2-an500"]
-RUNS = {"flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
+RUNS = {"as-printed": as_printed, "flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
 
 
 def main():
