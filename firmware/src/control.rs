@@ -68,7 +68,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     /// One tick, from what the other tasks have put down to what the motors are told.
-    #[inline(never)]
+    #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
         let asked = self.shared.requests.take();
         let inputs = self.inputs(now, asked);

@@ -64,7 +64,6 @@ impl Schedule {
 }
 
 /// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
-#[inline(never)]
 fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     let has_come = now >= *due;
     if has_come {
