@@ -9,7 +9,7 @@
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
-//! | the program and the pages | [`cli`], [`cli_certify`], [`documentation`] |
+//! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`documentation`] |
 
 mod adversary;
 mod attitude_sign;
@@ -18,6 +18,8 @@ mod bounds;
 mod certified_flights;
 mod cli;
 mod cli_certify;
+mod cli_output;
+mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
 mod governor_campaign;

@@ -96,6 +96,12 @@ impl Actuators {
         Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting }
     }
 
+    /// The rotors' thrusts at this moment, N, after lag; none without rotors.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        self.rotors.as_ref().map_or_else(Vec::new, |(_, rotors)| rotors.thrusts())
+    }
+
     /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///

@@ -7,13 +7,16 @@
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
 //! ```
 //!
-//! The paper's own scenario claims the figures of Section VI besides. For any other, tracking is reported without a
-//! verdict.
+//! It claims besides that its sampled loops are stable with [`LoopMargin::LEAST`], and that it reached its reference, position and
+//! attitude, within the first 90 % of its duration and stayed near it ([`crate::flown`] says how near). The paper's own
+//! scenario claims the figures of Section VI as well; for any other, how closely it tracked is reported without a verdict.
 
-use crate::flown::Flown;
+use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
 use controller_core::certificate::{Certificate, Form};
 use scenario::Scenario;
+use scenario::stability::LoopMargin;
+use scenario::verdict::Verdict;
 use std::fmt::Write;
 
 /// Section VI: thrust, N.
@@ -22,6 +25,8 @@ pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
 pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
 /// Section VI: steady-state position error, m.
 pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+/// By when a flight must have reached its reference, as a fraction of its duration.
+pub const REACHED_BY: f64 = 0.9;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
 pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// One line of the table.
@@ -37,12 +42,16 @@ pub struct Claim {
     pub holds: Option<bool>,
 }
 
-/// The claims about a flight of `scenario` that showed `flown`.
+/// The claims about a flight of `scenario`, of which `verdict` says whether it may fly, and which showed `flown`.
 #[must_use]
-pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
+pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let published = scenario.is_papers();
-    let steady = format!("steady state (last {} s)", short(scenario.timing.duration() / 4.0));
+    let duration = scenario.timing.duration();
+    let steady = format!("steady state (last {} s)", short(duration / 4.0));
     let mut claims = vec![
+        loops(verdict),
+        near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration),
+        near(format!("within {NEAR_MRP} of its attitude (MRP) for good"), flown.attitude_reached(), duration),
         at_most(
             format!("position error, {steady}"),
             flown.steady_position_error,
@@ -55,9 +64,7 @@ pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
         claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST));
         claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE));
     }
-    if let Ok(certificate) = Certificate::new(&scenario.configuration) {
-        claims.extend(bounds(&certificate, flown));
-    }
+    claims.extend(bounds(verdict.certificate(), flown));
     let limits = scenario.configuration.limits();
     let thrust_max = Some(f64::from(limits.thrust_max));
     claims.push(at_most("thrust, vehicle's limit".to_owned(), flown.thrust.1, thrust_max, " N"));
@@ -70,6 +77,40 @@ pub fn claims(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
         at_most("height lost".to_owned(), flown.height_lost, None, " m"),
     ]);
     claims
+}
+
+/// Whether small motions die out, with something to spare.
+fn loops(verdict: &Verdict) -> Claim {
+    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let margins = verdict.loops().iter().filter_map(|report| report.margins);
+    let least = margins.fold((f64::INFINITY, f64::INFINITY), |(gain, delay), margins| {
+        (margins.gain_up.min(gain), margins.delay.min(delay))
+    });
+    let spare = |gain: f64, delay: f64| format!("gain {}, delay {} ms", short(gain), short(1e3 * delay));
+    let lacking = verdict.lacking();
+    Claim {
+        claim: "sampled loops, least margins".to_owned(),
+        required: format!(">= {}", spare(gain, delay)),
+        flown: lacking.map_or_else(|| spare(least.0, least.1), |lack| lack.to_string()),
+        holds: Some(lacking.is_none()),
+    }
+}
+
+/// Whether a flight reached its reference, position and attitude, in time and for good.
+#[must_use]
+pub fn reached(scenario: &Scenario, flown: &Flown) -> bool {
+    let latest = REACHED_BY * scenario.timing.duration();
+    [flown.position_reached(), flown.attitude_reached()].iter().all(|since| since.is_some_and(|since| since <= latest))
+}
+
+fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
+    let latest = REACHED_BY * duration;
+    Claim {
+        claim,
+        required: format!("<= {} s", short(latest)),
+        flown: since.map_or_else(|| "never".to_owned(), |since| format!("{} s", short(since))),
+        holds: Some(since.is_some_and(|since| since <= latest)),
+    }
 }
 
 /// What the certificate bounds. Its bounds hold for every configuration, whether or not they fit the limits.
@@ -150,6 +191,10 @@ mod tests {
     use super::*;
     use crate::flight::Flight;
 
+    fn judged(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
+        claims(scenario, &Verdict::of(scenario).unwrap(), flown)
+    }
+
     fn flown(scenario: &Scenario) -> Flown {
         Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
     }
@@ -167,7 +212,7 @@ mod tests {
         let mut other = paper.clone();
         other.initial.position.x += 1.0;
         let count = |scenario: &Scenario| {
-            let claims = claims(scenario, &Flown::new(scenario));
+            let claims = judged(scenario, &Flown::new(scenario));
             claims.iter().filter(|claim| claim.claim.contains("published")).count()
         };
         assert_eq!((count(&paper), count(&renamed), count(&other)), (4, 4, 0));
@@ -177,7 +222,7 @@ mod tests {
     fn each_claim_can_fail() {
         let paper = Scenario::paper().unwrap();
         let good = flown(&paper);
-        assert!(all_hold(&claims(&paper, &good)), "{}", table(&claims(&paper, &good)));
+        assert!(all_hold(&judged(&paper, &good)), "{}", table(&judged(&paper, &good)));
         let broken: [fn(&mut Flown); 9] = [
             |flown| flown.steady_position_error = 1.1e-3,
             |flown| flown.steady_mrp_error = 1.1e-4,
@@ -192,7 +237,7 @@ mod tests {
         for spoil in broken {
             let mut flown = good.clone();
             spoil(&mut flown);
-            assert!(!all_hold(&claims(&paper, &flown)), "{flown:?}");
+            assert!(!all_hold(&judged(&paper, &flown)), "{flown:?}");
         }
     }
 
@@ -203,7 +248,8 @@ mod tests {
         let seen = flown(&weak);
         assert!(seen.clipped > 100, "{seen:?}");
         let failed: Vec<String> =
-            claims(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
-        assert_eq!(failed, ["thrust, vehicle's limit", "ticks with a clipped command"]);
+            judged(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
+        let late = "within 0.2 m of the reference for good";
+        assert_eq!(failed, [late, "thrust, vehicle's limit", "ticks with a clipped command"]);
     }
 }

@@ -44,6 +44,8 @@ pub struct Tick {
     pub diagnostics: Diagnostics,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
+    /// Each rotor's thrust at the tick, N, after lag; empty without rotors.
+    pub rotors: Vec<f64>,
     /// Thrust commanded of each rotor, N; empty without rotors.
     pub rotor_thrusts: Thrusts,
 }
@@ -159,7 +161,7 @@ impl Flight {
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let time_us = self.tick * self.period_us;
         let fail = |cause| FlightError { time_us, cause };
-        let state = *self.plant.state();
+        let (state, rotors) = (*self.plant.state(), self.actuators.thrusts());
         let reference = self.trajectory.at(time_us);
         let (wrench, diagnostics) =
             self.controller.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
@@ -168,7 +170,7 @@ impl Flight {
             .hold(&mut self.plant, &wrench, self.steps_per_tick)
             .map_err(|error| fail(Cause::Actuation(error)))?;
         self.tick += 1;
-        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipped, rotor_thrusts })
+        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipped, rotors, rotor_thrusts })
     }
 }
 
@@ -187,6 +189,26 @@ mod tests {
     fn what_is_certified_flies_with_the_boards_allocation_and_nothing_else_does() {
         assert!(flies_as_boards_do(STUDY));
         assert!(!flies_as_boards_do(&STUDY.replace("thrust_max = 7.0", "thrust_max = 5.0")));
+    }
+
+    #[test]
+    fn rotors_start_at_hover_and_follow_their_commands_behind_them() {
+        let study = Scenario::parse(STUDY, "f").unwrap();
+        let mut flight = Flight::new(&study).unwrap();
+        let vehicle = study.configuration.vehicle();
+        let first = flight.tick().unwrap();
+        assert!((first.rotors.iter().sum::<f64>() - f64::from(vehicle.mass * vehicle.gravity)).abs() < 1e-5);
+        // A second later, each is between where it was and what it was last told.
+        let mut before = first;
+        for _ in 0..100 {
+            let tick = flight.tick().unwrap();
+            for ((was, is), told) in before.rotors.iter().zip(&tick.rotors).zip(&before.rotor_thrusts) {
+                let told = f64::from(*told);
+                assert!((was.min(told)..=was.max(told)).contains(is), "{was} {is} {told}");
+            }
+            before = tick;
+        }
+        assert!(Flight::new(&Scenario::paper().unwrap()).unwrap().tick().unwrap().rotors.is_empty());
     }
 
     #[test]

@@ -1,10 +1,16 @@
 //! What a flight showed, gathered tick by tick: the extremes that claims and searches judge.
 //!
-//! "Steady state" is the last quarter of a flight: of the paper's 40 s, the last 10.
+//! "Steady state" is the last quarter of a flight: of the paper's 40 s, the last 10. A flight has *reached* its reference once
+//! it is near it and stays near it until the end: in position within [`NEAR_POSITION`], in attitude, heading included,
+//! within [`NEAR_MRP`].
 
 use crate::flight::{Flight, FlightError, Tick};
 use scenario::Scenario;
 
+/// How near to its reference's position a vehicle must stay, m: less than a quadrotor's own size.
+pub const NEAR_POSITION: f64 = 0.2;
+/// How near to the desired attitude, norm of the modified Rodrigues parameters: 11 degrees.
+pub const NEAR_MRP: f64 = 0.05;
 /// Extremes of no value at all.
 const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
@@ -12,6 +18,9 @@ const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flown {
     steady_from_us: u64,
+    /// Until when the vehicle was, or may have been, away from its reference in position and in attitude, us.
+    away_until_us: (u64, u64),
+    period_us: u64,
     last_sign: Option<f32>,
     start_height: Option<f64>,
     /// Ticks seen.
@@ -43,6 +52,8 @@ impl Flown {
         let timing = &scenario.timing;
         Self {
             steady_from_us: (timing.ticks - timing.ticks / 4) * timing.period_us,
+            away_until_us: (0, 0),
+            period_us: timing.period_us,
             last_sign: None,
             start_height: None,
             ticks: 0,
@@ -79,11 +90,34 @@ impl Flown {
         self.last_sign = Some(diagnostics.lift_sign);
         let height = tick.state.position.z;
         self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
-        if tick.time_us >= self.steady_from_us {
-            let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
-            self.steady_position_error = self.steady_position_error.max(position_error);
-            self.steady_mrp_error = self.steady_mrp_error.max(f64::from(diagnostics.mrp.norm()));
+        let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
+        let mrp_error = f64::from(diagnostics.mrp.norm());
+        if position_error > NEAR_POSITION {
+            self.away_until_us.0 = tick.time_us + self.period_us;
         }
+        if mrp_error > NEAR_MRP {
+            self.away_until_us.1 = tick.time_us + self.period_us;
+        }
+        if tick.time_us >= self.steady_from_us {
+            self.steady_position_error = self.steady_position_error.max(position_error);
+            self.steady_mrp_error = self.steady_mrp_error.max(mrp_error);
+        }
+    }
+
+    /// When the vehicle reached its reference's position for good, s; none if it was away from it at the last tick.
+    #[must_use]
+    pub fn position_reached(&self) -> Option<f64> {
+        self.reached(self.away_until_us.0)
+    }
+
+    /// When it reached the desired attitude for good, s; none likewise.
+    #[must_use]
+    pub fn attitude_reached(&self) -> Option<f64> {
+        self.reached(self.away_until_us.1)
+    }
+
+    fn reached(&self, away_until_us: u64) -> Option<f64> {
+        (away_until_us < self.ticks * self.period_us).then_some(away_until_us as f64 / 1e6)
     }
 
     /// Flies a whole `flight` of `scenario` from its start.
@@ -120,5 +154,25 @@ mod tests {
         assert!(after.steady_position_error > 0.0);
         // It fell from 10 m, upside down, by what Table I's gains cannot prevent.
         assert!((22.0..25.0).contains(&before.height_lost), "{}", before.height_lost);
+    }
+
+    #[test]
+    fn a_vehicle_that_leaves_its_reference_has_not_reached_it() {
+        let paper = Scenario::paper().unwrap();
+        let mut flight = Flight::new(&paper).unwrap();
+        let mut flown = Flown::new(&paper);
+        assert_eq!((flown.position_reached(), flown.attitude_reached()), (None, None));
+        for _ in 0..paper.timing.ticks {
+            flown.observe(&flight.tick().unwrap());
+        }
+        assert!(flown.position_reached().is_some() && flown.attitude_reached().is_some());
+        let mut tick = flight.tick().unwrap();
+        tick.state.position.z += 0.21;
+        flown.observe(&tick);
+        assert!(flown.position_reached().is_none() && flown.attitude_reached().is_some());
+        tick = flight.tick().unwrap();
+        tick.diagnostics.mrp.x = 0.06;
+        flown.observe(&tick);
+        assert_eq!((flown.position_reached(), flown.attitude_reached()), (Some(40.01), None));
     }
 }

@@ -51,12 +51,6 @@ impl Ground {
         (ground, standing(position, upright(start)))
     }
 
-    /// Whether the vehicle stands on it.
-    #[must_use]
-    pub fn is_stood_on(&self) -> bool {
-        self.standing
-    }
-
     /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.
     pub fn act(&mut self, plant: &mut Plant, thrust: f64, torque: &Vector3<f64>) -> Option<Touchdown> {
         if self.standing && thrust * up(plant.state()).z <= self.weight {

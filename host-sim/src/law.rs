@@ -19,6 +19,7 @@ use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use scenario::Scenario;
+use std::fmt;
 use std::io::{self, BufRead, Write};
 
 /// The 33 numbers by the names that messages use.
@@ -60,6 +61,26 @@ const FIELDS: [&str; 33] = [
 
 /// Longest dt, s.
 const GREATEST_PERIOD: f64 = 0.1;
+
+/// Why lines could not be served to their end.
+#[derive(Debug)]
+pub enum ServeError {
+    /// The input cannot be read.
+    Input(io::Error),
+    /// The output cannot be written.
+    Output(io::Error),
+}
+
+impl fmt::Display for ServeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(error) => write!(f, "standard input: cannot be read: {error}"),
+            Self::Output(error) => write!(f, "standard output: cannot be written: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ServeError {}
 
 /// The law behind a text interface.
 pub struct LawServer {
@@ -104,9 +125,9 @@ impl LawServer {
     ///
     /// # Errors
     /// If the input cannot be read or the output not written, but for a closed pipe.
-    pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> io::Result<()> {
+    pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> Result<(), ServeError> {
         let mut line = Vec::new();
-        while input.read_until(b'\n', &mut line)? > 0 {
+        while input.read_until(b'\n', &mut line).map_err(ServeError::Input)? > 0 {
             let answered = match self.answer(&String::from_utf8_lossy(&line)) {
                 Ok(Wrench { thrust, torque }) => {
                     writeln!(output, "{thrust:?} {:?} {:?} {:?}", torque.x, torque.y, torque.z)
@@ -115,7 +136,7 @@ impl LawServer {
             };
             match answered.and_then(|()| output.flush()) {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-                other => other?,
+                other => other.map_err(ServeError::Output)?,
             }
             line.clear();
         }

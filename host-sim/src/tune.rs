@@ -3,8 +3,9 @@
 //! What is asked, in this order:
 //!
 //! 1. a constraint: every inequality of the certificate, down to the rotors, with [`requirements::Requirements::margin`] to spare; the
-//!    sampled loops stable with gain and delay margins; the vehicle recovers from upside down and holds still; the file's
-//!    own reference is flown without a clipped command and within the errors asked for;
+//!    sampled loops stable with gain and delay margins, at least those without which nothing may fly; the vehicle recovers
+//!    from upside down and holds still; the file's own reference is flown without a clipped command and within the errors
+//!    asked for;
 //! 2. the least height lost from the paper's first attitude, roll -179 degrees, at rest, on a hover reference at the same
 //!    point ([`candidate::recovery`]);
 //! 3. within [`HEIGHT_SLACK`] of that best, the greatest k_p.
@@ -19,6 +20,7 @@ pub mod frontier;
 pub mod output;
 pub mod requirements;
 
+use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
@@ -55,25 +57,31 @@ pub struct Tuned {
     pub judged: u64,
 }
 
-/// Searches gains for `scenario`. None if no candidate met the requirements; the closest verdict is then the error's.
+/// Searches gains for `scenario`; an interrupt ends the search with the best found so far.
 ///
 /// # Errors
-/// The verdict of the best candidate, if none is feasible.
-pub fn tune(scenario: &Scenario, requirements: Requirements, effort: Effort) -> Result<Tuned, Box<Verdict>> {
+/// If no candidate met the requirements: the verdict of the one that came closest.
+pub fn tune(
+    scenario: &Scenario,
+    requirements: Requirements,
+    effort: Effort,
+    interrupt: &Interrupt,
+) -> Result<Tuned, Box<Verdict>> {
     let judge = Judge::new(scenario, requirements);
     let mut frontier = Frontier::default();
     let mut progress = Progress::new("tuning", u64::from(2 * effort.generations));
-    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier);
-    for generation in 0..effort.generations {
-        evolution.generation(&judge, Goal::Height, &mut frontier);
+    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier, interrupt);
+    let wanted = |generation: &u32| *generation < effort.generations && interrupt.signal().is_none();
+    for generation in (0..).take_while(wanted) {
+        evolution.generation(&judge, Goal::Height, &mut frontier, interrupt);
         progress.show(u64::from(generation));
     }
     let Some(best) = evolution.best(Goal::Height) else {
         return Err(Box::new(evolution.closest()));
     };
     let goal = Goal::PositionGain { height_at_most: best.1.height_lost * (1.0 + HEIGHT_SLACK) };
-    for generation in 0..effort.generations {
-        evolution.generation(&judge, goal, &mut frontier);
+    for generation in (0..).take_while(wanted) {
+        evolution.generation(&judge, goal, &mut frontier, interrupt);
         progress.show(u64::from(effort.generations + generation));
     }
     drop(progress);

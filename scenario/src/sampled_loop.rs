@@ -172,13 +172,6 @@ impl LoopModel {
         self.chain(axis).spectral_radius()
     }
 
-    /// Undamped natural frequency of the attitude loop about body axis `axis` (0, 1 or 2) in continuous time, rad/s:
-    /// sqrt(k_theta / (16 J)).
-    #[must_use]
-    pub fn attitude_frequency(&self, axis: usize) -> f64 {
-        (f64::from(self.gains.k_theta) / (16.0 * self.inertia[axis])).sqrt()
-    }
-
     fn chain(&self, axis: Axis) -> SampledLoop {
         let Timing { period, rotor_lag, delay_samples } = self.timing;
         let law = match axis {

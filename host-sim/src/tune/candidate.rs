@@ -13,6 +13,7 @@
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
 use super::requirements::Requirements;
+use crate::claims::reached;
 use crate::flight::Flight;
 use crate::flown::Flown;
 use controller_core::certificate::configuration::{Certified, Refused};
@@ -24,6 +25,7 @@ use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};
 use scenario::sampled_loop::Axis;
+use scenario::stability::{Lack, Shortfall};
 use scenario::timing::Timing;
 use std::sync::Arc;
 
@@ -55,6 +57,13 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Of a candidate that nobody judged.
+    #[must_use]
+    pub fn missing() -> Self {
+        let (failed, height_lost) = (Some("not judged".to_owned()), f64::INFINITY);
+        Self { violation: f64::INFINITY, failed, height_lost, position_gain: 0.0, tightest: None }
+    }
+
     /// Whether every requirement is met.
     #[must_use]
     pub fn accepted(&self) -> bool {
@@ -144,24 +153,21 @@ impl Judge {
 
         let loops = scenario.loops().map_err(|_| undefined)?;
         for axis in Axis::ALL {
-            let radius = loops.spectral_radius(axis);
-            if radius >= 1.0 {
-                return Err((3, radius - 1.0 + 1.0, format!("sampled loop unstable: {}", axis.name())));
+            let spectral_radius = loops.spectral_radius(axis);
+            if spectral_radius >= 1.0 {
+                let lack = Lack { axis, missed: spectral_radius - 1.0, what: Shortfall::Unstable { spectral_radius } };
+                return Err((3, lack.missed, lack.to_string()));
             }
         }
-        for report in loops.reports() {
-            let (gain, delay) = report.margins.map_or((1.0, 0.0), |margins| (margins.gain_up, margins.delay));
-            let missing = (needed.gain_margin / gain - 1.0).max((needed.delay_margin - delay) / needed.delay_margin);
-            if missing > 0.0 {
-                return Err((2, missing, format!("sampled loop margin: {}", report.axis.name())));
-            }
+        if let Some(lack) = needed.loops.first_lacking(&loops.reports()) {
+            return Err((2, lack.missed, lack.to_string()));
         }
-        let loops = loops.with_position_feedback(needed.gain_margin);
+        let loops = loops.with_position_feedback(needed.loops.gain);
         for axis in Axis::ALL {
             let radius = loops.spectral_radius(axis);
             if radius >= 1.0 {
                 let what =
-                    format!("sampled loop unstable with {} times k_p and k_v: {}", needed.gain_margin, axis.name());
+                    format!("sampled loop {}: unstable with {} times k_p and k_v", axis.name(), needed.loops.gain);
                 return Err((2, radius - 1.0, what));
             }
         }
@@ -180,11 +186,11 @@ impl Judge {
             .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
             .max(flown.clipped as f64);
         if beyond > 0.0 {
-            return Err((
-                0,
-                beyond,
-                "the file's flight: errors beyond those asked for, or a clipped command".to_owned(),
-            ));
+            let what = "the file's flight: errors beyond those asked for, or a clipped command";
+            return Err((0, beyond, what.to_owned()));
+        }
+        if !reached(&scenario, &flown) {
+            return Err((0, 1.0, "the file's flight: its reference is not reached in time".to_owned()));
         }
         Ok(())
     }

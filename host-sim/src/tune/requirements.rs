@@ -1,14 +1,14 @@
 //! What is asked of gains that a search may present.
 
+use scenario::stability::LoopMargin;
+
 /// What every accepted candidate meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirements {
     /// Least relative margin of every inequality.
     pub margin: f64,
-    /// Least gain margin of every sampled loop, as a factor.
-    pub gain_margin: f64,
-    /// Least delay margin of every sampled loop, s.
-    pub delay_margin: f64,
+    /// Least margin of every sampled loop; not below [`LoopMargin::LEAST`].
+    pub loops: LoopMargin,
     /// Greatest position error of the file's own flight in its last quarter, m.
     pub position_error: f64,
     /// Greatest norm of its modified Rodrigues parameters there.
