@@ -198,7 +198,8 @@ fn commands_are_answered_with_number_and_result() {
 
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {
-    let say: [(fn(&Local), u32); 3] = [
+    type Say = fn(&Local);
+    let say: [(Say, u32); 3] = [
         (|shared| shared.answer(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, Ok(())), COMMAND_ACK_DATA::ID),
         (|shared| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
         (|shared| shared.announce(Event::new(Severity::Information, "now")), STATUSTEXT_DATA::ID),
