@@ -80,7 +80,7 @@ pub enum Output {
     Thrusts(Thrusts),
     /// One motor turns, the others stop.
     Test {
-        /// Which, from 0.
+        /// Its index in the rotors' order.
         rotor: usize,
         /// Part of the command's range, at most [`rules::MOTOR_TEST_LEVEL_MAX`].
         level: f32,

@@ -13,7 +13,7 @@ const TILT_COSINE: f32 = 0.866_025_4;
 /// One motor to be turned slowly for a while, to see which it is and which way it turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorTest {
-    /// Which, from 0, in the rotors' order.
+    /// Its index in the rotors' order.
     pub rotor: usize,
     /// Part of the command's range, in (0, [`MOTOR_TEST_LEVEL_MAX`]].
     pub level: f32,
