@@ -21,15 +21,9 @@ use std::fmt;
 /// What the certificate and the sampled loops say about one scenario.
 #[derive(Debug, Clone)]
 pub struct Verdict {
-    proof: Proof,
+    /// The certificate, and with it the key to flight where it holds.
+    proof: Result<Box<Certified>, Box<Certificate>>,
     loops: [LoopReport; 6],
-}
-
-/// The certificate, and with it the key to flight where it holds.
-#[derive(Debug, Clone)]
-enum Proof {
-    Holds(Box<Certified>),
-    Fails(Box<Certificate>),
 }
 
 /// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin.
@@ -48,8 +42,8 @@ impl Verdict {
     /// If a number is beyond what the certificate or the loops can work with; no file that was read leads there.
     pub fn of(scenario: &Scenario) -> Result<Self, ParameterError> {
         let proof = match Certified::new(scenario.configuration.clone()) {
-            Ok(certified) => Proof::Holds(Box::new(certified)),
-            Err(Refused::Fails(certificate)) => Proof::Fails(Box::new(certificate)),
+            Ok(certified) => Ok(Box::new(certified)),
+            Err(Refused::Fails(certificate)) => Err(Box::new(certificate)),
             Err(Refused::Undefined(error)) => return Err(error),
         };
         Ok(Self { proof, loops: scenario.loops()?.reports() })
@@ -65,19 +59,13 @@ impl Verdict {
     /// The certificate, whether it holds or not.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
-        match &self.proof {
-            Proof::Holds(certified) => certified.certificate(),
-            Proof::Fails(certificate) => certificate,
-        }
+        self.proof.as_ref().map_or_else(|certificate| &**certificate, |certified| certified.certificate())
     }
 
     /// The certified configuration, if the certificate holds.
     #[must_use]
     pub fn certified(&self) -> Option<&Certified> {
-        match &self.proof {
-            Proof::Holds(certified) => Some(certified),
-            Proof::Fails(_) => None,
-        }
+        self.proof.as_ref().ok().map(|certified| &**certified)
     }
 
     /// The sampled loops.
