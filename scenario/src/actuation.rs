@@ -63,7 +63,7 @@ pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<(Conf
 
 /// The field of the file that a refused field of one rotor comes from: all have the same coefficients and speeds.
 fn in_file(error: ParameterError) -> ParameterError {
-    let field = match error.field.split('[').next() {
+    let field = match error.field.split(',').next() {
         Some("rotors.thrust_coefficient") => "rotors.thrust_coefficient",
         Some("rotors.drag_coefficient") => "rotors.drag_coefficient",
         Some("rotors.thrust_min" | "rotors.thrust_max") => "rotors.speed",

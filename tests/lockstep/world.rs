@@ -3,7 +3,8 @@
 use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::flight::{ImuSample, Pose};
+use controller_core::flight::ImuSample;
+use controller_core::state::State;
 use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, Watchdog};
 use host_sim::plant::Plant;
 use nalgebra::Vector3;
@@ -100,10 +101,9 @@ impl World {
         }
     }
 
-    /// Position, velocity and attitude as a motion capture system would give them.
-    pub fn pose(&self) -> Pose {
-        let state = self.0.body.borrow().plant.state().measured();
-        Pose { position: state.position, velocity: state.velocity, attitude: state.attitude }
+    /// The state, of which a motion capture system would give position, velocity and attitude.
+    pub fn pose(&self) -> State {
+        self.0.body.borrow().plant.state().measured()
     }
 
     /// What the motors were last told.

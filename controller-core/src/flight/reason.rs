@@ -1,7 +1,6 @@
 //! Reasons in words: for every transition, and for everything that is refused.
 //!
-//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit. The words
-//! come in pieces, so that a board can put them together without the formatting of `core`.
+//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
 
 use crate::certificate::configuration::Refused;
 use crate::error::{InputError, ParameterError};
@@ -123,26 +122,13 @@ pub(super) fn field(error: InputError) -> &'static str {
     }
 }
 
-impl Grounded {
-    /// The reason in words, to be read in one go.
-    #[must_use]
-    pub fn words(&self) -> [&'static str; 3] {
-        match self {
-            Self::Inequality(name) => ["Not certified: ", cut(name, 35), ""],
-            Self::Parameter(field) => ["Cannot fly with ", cut(field, 34), ""],
-            Self::NoRotors => ["Cannot fly: the configuration has no rotors", "", ""],
-        }
-    }
-}
-
-/// The name's first characters, at most so many: names are ASCII.
-fn cut(name: &'static str, most: usize) -> &'static str {
-    name.get(..most).unwrap_or(name)
-}
-
 impl fmt::Display for Grounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words().iter().try_for_each(|words| f.write_str(words))
+        match self {
+            Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
+            Self::Parameter(field) => write!(f, "Cannot fly with {field:.34}"),
+            Self::NoRotors => f.write_str("Cannot fly: the configuration has no rotors"),
+        }
     }
 }
 
@@ -162,7 +148,7 @@ pub enum Refusal {
     ImuStale,
     /// No pose under [`super::rules::POSE_AGE_MAX`] old.
     PoseStale,
-    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or no rotation.
+    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or of a time to come.
     Unusable(&'static str),
     /// Body z is 30 degrees or more from up.
     Tilted,
@@ -182,15 +168,13 @@ pub enum Refusal {
     Setpoint(&'static str),
 }
 
-impl Refusal {
-    /// The reason in words, to be read in one go.
-    #[must_use]
-    pub fn words(&self) -> [&'static str; 3] {
-        let whole = match self {
-            Self::Grounded(grounded) => return grounded.words(),
-            Self::Unusable(field) => return ["Refused: ", cut(field, 32), " unusable"],
-            Self::Reference(field) => return ["Refused: no start at this ", cut(field, 24), ""],
-            Self::Setpoint(field) => return ["Setpoint refused: ", cut(field, 32), ""],
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Grounded(grounded) => return grounded.fmt(f),
+            Self::Unusable(field) => return write!(f, "Refused: {field:.32} unusable"),
+            Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
+            Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
@@ -202,14 +186,7 @@ impl Refusal {
             Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
             Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
             Self::NotFlying => "Setpoint refused: not flying",
-        };
-        [whole, "", ""]
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words().iter().try_for_each(|words| f.write_str(words))
+        })
     }
 }
 

@@ -15,7 +15,6 @@ use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
-use core::panic::PanicInfo;
 use cortex_m_semihosting::hprintln;
 use firmware::boards::mps2::exit;
 use firmware::configuration;
@@ -59,11 +58,6 @@ type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     exit::end(measure())
-}
-
-#[panic_handler]
-fn panicked(info: &PanicInfo<'_>) -> ! {
-    exit::fail(info)
 }
 
 /// Everything, as a table; whether it could be measured at all.

@@ -1,14 +1,12 @@
 //! The IMU task on a sensor that faults, hangs or says what is no number.
 
-mod support;
-
+use crate::support::Simulated;
+use crate::support::receiver::{Local, texts};
 use controller_core::flight::ImuSample;
 use core::future::pending;
 use firmware::hardware::{Clock, Fault, Imu};
 use firmware::imu::{PATIENCE, run};
 use nalgebra::Vector3;
-use support::Simulated;
-use support::receiver::{Local, texts};
 
 /// What a sensor says a millisecond after it is asked.
 #[derive(Clone, Copy)]

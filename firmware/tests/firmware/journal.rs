@@ -1,10 +1,8 @@
 //! The journal under power cuts: after any of them, the value before or the new one, and room for the next.
 
-mod support;
-
+use crate::support::chip::{Chip, RECORDS, SECTOR, Torn, Words};
 use firmware::parameters::journal::Journal;
 use std::cell::RefCell;
-use support::chip::{Chip, RECORDS, Torn, Words};
 
 /// Every way in which a word can be left behind.
 const TORN: [Torn; 3] = [Torn::Bits, Torn::Unreadable, Torn::Blank];
@@ -108,7 +106,7 @@ fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
 fn blank_flash_holds_nothing_and_anything_else_is_told() {
     let chip = Chip::erased();
     assert!(Journal::open(Words::<4>(&chip), &mut [0.0]).1.is_ok());
-    for byte in 0..2 * support::chip::SECTOR {
+    for byte in 0..2 * SECTOR {
         let chip = chip.clone();
         chip.borrow_mut().bytes[byte] = 0;
         let mut values = [7.0];

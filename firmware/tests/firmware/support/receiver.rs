@@ -4,7 +4,7 @@ use super::v2;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
-use firmware::shared::{Report, Shared};
+use firmware::shared::{Report, Shared, Text};
 use mavlink::MessageData;
 
 /// What a single-threaded test shares.
@@ -43,7 +43,7 @@ impl<'a> Fed<'a> {
 
 /// Events announced so far, taken away.
 pub fn texts(shared: &Local) -> Vec<String> {
-    std::iter::from_fn(|| shared.events.take()).map(|event| event.text.as_str().to_owned()).collect()
+    std::iter::from_fn(|| shared.events.take()).map(|event| Text::new(event).as_str().to_owned()).collect()
 }
 
 /// Control's report, in this mode.

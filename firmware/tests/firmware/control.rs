@@ -1,14 +1,12 @@
 //! The control task's time: when ticks begin, and which of them feed the watchdog.
 
-mod support;
-
+use crate::support::Simulated;
+use crate::support::receiver::Local;
 use controller_core::flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
-use support::Simulated;
-use support::receiver::Local;
 
 /// Motors before which the processor is busy with something else, for so long, once.
 struct Busy<'a> {

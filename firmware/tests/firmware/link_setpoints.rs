@@ -1,13 +1,11 @@
 //! Setpoints in: type masks, frames, checks.
 
-mod support;
-
+use crate::support::receiver::{Fed, Local, texts};
+use crate::support::{patched, v1};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use core::f32::consts::FRAC_PI_2;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::Vector3;
-use support::receiver::{Fed, Local, texts};
-use support::{patched, v1};
 
 /// The mask that sets all aside but these.
 fn only(used: Mask) -> Mask {

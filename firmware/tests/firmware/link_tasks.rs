@@ -1,9 +1,8 @@
 //! The link's two tasks on lines that deliver in pieces, fail, end or take nothing more.
 
-#![expect(deprecated, reason = "PING is, and is still sent")]
-
-mod support;
-
+use crate::support::line::{Delivery, Incoming, Line, Outgoing};
+use crate::support::receiver::{Local, report};
+use crate::support::{Simulated, v2};
 use controller_core::flight::{Mode, Refusal};
 use controller_core::state::State;
 use core::cell::RefCell;
@@ -11,19 +10,15 @@ use embedded_io_async::{ErrorKind, ErrorType, Read};
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
-use firmware::link::{CommandResult, Reply};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Event, Origin, Report, Severity, Text, Timing, Traffic};
+use firmware::shared::{Event, Ping, Reply, Report, Severity, Timing, Traffic};
+use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, PING_DATA,
-    STATUSTEXT_DATA, SYS_STATUS_DATA,
+    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA,
+    SYS_STATUS_DATA,
 };
-use mavlink::{MavlinkVersion, MessageData};
 use nalgebra::{Quaternion, Vector3};
-use support::line::{Delivery, Incoming, Line, Outgoing};
-use support::receiver::{Local, report};
-use support::{Simulated, decode, v2};
 
 fn disarm(sequence: u8) -> Vec<u8> {
     v2(sequence, &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..Default::default() })
@@ -74,7 +69,7 @@ fn sent<D: MessageData>(written: &RefCell<Vec<u8>>) -> Vec<D> {
     let mut found = Vec::new();
     for &byte in written.borrow().iter() {
         let frame = parser.push(byte, 0);
-        found.extend(frame.and_then(|frame| decode(&frame)));
+        found.extend(frame.and_then(|frame| frame.decode()));
     }
     assert_eq!(parser.discarded(), 0);
     found
@@ -180,27 +175,21 @@ fn the_battery_is_told_while_it_is_known() {
 }
 
 #[test]
-fn commands_are_answered_with_number_result_and_addressee() {
+fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
-    let origin = Origin { system: 255, component: 190, command: 400 };
-    shared.answer(origin, Ok(()));
-    shared.answer(origin, Err(Refusal::PoseStale));
-    let unknown = Origin { command: 65_000, ..origin };
-    shared.replies.put(Reply::Command { origin: unknown, result: CommandResult::Unsupported }).unwrap();
-    let written = transmitted(&shared, 100_000, |_| ());
-    let mut parser = Parser::new();
-    let mut payloads = Vec::new();
-    for &byte in written.borrow().iter() {
-        if let Some(frame) = parser.push(byte, 0).filter(|frame| frame.message == COMMAND_ACK_DATA::ID) {
-            payloads.push(frame.payload.to_vec());
-        }
-    }
-    let known = |payload: &[u8]| COMMAND_ACK_DATA::deser(MavlinkVersion::V2, payload).unwrap();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    assert_eq!(known(&payloads[0]), COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_ACCEPTED });
-    assert_eq!(known(&payloads[1]), COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_DENIED });
-    let [low, high] = 65_000_u16.to_le_bytes();
-    assert_eq!(payloads[2], [low, high, 3, 0, 0, 0, 0, 0, 255, 190]);
+    shared.answer(command, Ok(()));
+    shared.answer(command, Err(Refusal::PoseStale));
+    let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
+    shared.replies.put(Reply::Command { command: other, result }).unwrap();
+    let written = transmitted(&shared, 100_000, |_| ());
+    let answers: Vec<COMMAND_ACK_DATA> = sent(&written);
+    let expected = [
+        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_ACCEPTED },
+        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_DENIED },
+        COMMAND_ACK_DATA { command: other, result },
+    ];
+    assert_eq!(answers, expected);
     // The refusal also goes out in words.
     let texts: Vec<STATUSTEXT_DATA> = sent(&written);
     assert_eq!(texts[0].text.to_str().unwrap(), "Refused: no pose for 100 ms");
@@ -209,12 +198,11 @@ fn commands_are_answered_with_number_result_and_addressee() {
 
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {
-    let origin = Origin { system: 255, component: 190, command: 400 };
-    type Say = fn(&Local, Origin);
+    type Say = fn(&Local);
     let say: [(Say, u32); 3] = [
-        (|shared, origin| shared.answer(origin, Ok(())), COMMAND_ACK_DATA::ID),
-        (|shared, _| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
-        (|shared, _| shared.announce(Severity::Information, &["now"]), STATUSTEXT_DATA::ID),
+        (|shared| shared.answer(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
+        (|shared| shared.announce(Event::new(Severity::Information, "now")), STATUSTEXT_DATA::ID),
     ];
     for (say, message) in say {
         let shared = Local::new();
@@ -222,7 +210,7 @@ fn what_is_said_to_an_idle_line_goes_out_at_once() {
         shared.parameters.set(Name::TelemetryRate, 10.0).unwrap();
         let written = transmitted(&shared, 460_000, |now| {
             if now == 455_000 {
-                say(&shared, origin);
+                say(&shared);
             }
         });
         let mut parser = Parser::new();
@@ -235,11 +223,11 @@ fn what_is_said_to_an_idle_line_goes_out_at_once() {
 #[test]
 fn a_ping_goes_back_to_its_sender_as_it_came() {
     let shared = Local::new();
-    let (time, sequence, system, component) = (0x0102_0304_0506_0708, 0x090A_0B0C, 255, 190);
-    shared.replies.put(Reply::Ping { time, sequence, system, component }).unwrap();
-    let pings: Vec<PING_DATA> = sent(&transmitted(&shared, 100_000, |_| ()));
-    let expected = PING_DATA { time_usec: time, seq: sequence, target_system: system, target_component: component };
-    assert_eq!(pings, [expected]);
+    let (time_usec, seq) = (0x0102_0304_0506_0708, 0x090A_0B0C);
+    let ping = Ping { time_usec, seq, target_system: 255, target_component: 190 };
+    shared.replies.put(Reply::Ping(ping.clone())).unwrap();
+    let pings: Vec<Ping> = sent(&transmitted(&shared, 100_000, |_| ()));
+    assert_eq!(pings, [ping]);
 }
 
 #[test]
@@ -258,7 +246,7 @@ fn every_parameter_is_listed_with_its_place() {
 fn too_many_events_lose_the_last_ones_and_say_how_many() {
     let shared = Local::new();
     for number in 0..11 {
-        shared.announce(Severity::Information, &[Text::count(number).as_str()]);
+        shared.announce(Event::new(Severity::Information, number));
     }
     let texts: Vec<STATUSTEXT_DATA> = sent(&transmitted(&shared, 2_000_000, |_| ()));
     let texts: Vec<_> = texts.iter().map(|text| text.text.to_str().unwrap()).collect();
@@ -275,8 +263,7 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     let mut waiting = Vec::new();
     clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, &shared), |now| {
         flying(&shared, now);
-        let text = Text::new(&["one of many"]);
-        if shared.events.put(Event { severity: Severity::Warning, text }).is_ok() {
+        if shared.events.put(Event::new(Severity::Warning, "one of many")).is_ok() {
             waiting.push(now);
         }
     });

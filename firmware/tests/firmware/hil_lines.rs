@@ -1,7 +1,9 @@
 //! A simulator's line: what goes out on it, and what becomes of the exchange when the line fails.
 
-mod support;
-
+use crate::support::line::{Delivery, Incoming, Line, Outgoing};
+use crate::support::receiver::Local;
+use crate::support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
+use crate::support::{Simulated, v2};
 use controller_core::flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use core::future::pending;
@@ -11,17 +13,13 @@ use firmware::hil::{self, SelectedMotors};
 use firmware::link::frame::Parser;
 use firmware::shared::Flag;
 use mavlink::dialects::common::{HIL_ACTUATOR_CONTROLS_DATA, MavModeFlag};
-use support::line::{Delivery, Incoming, Line, Outgoing};
-use support::receiver::Local;
-use support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
-use support::{Simulated, decode, v2};
 
 /// Every command in what was written.
 fn sent(written: &RefCell<Vec<u8>>) -> Vec<HIL_ACTUATOR_CONTROLS_DATA> {
     let mut parser = Parser::new();
     let mut found = Vec::new();
     for &byte in written.borrow().iter() {
-        found.extend(parser.push(byte, 0).and_then(|frame| decode(&frame)));
+        found.extend(parser.push(byte, 0).and_then(|frame| frame.decode()));
     }
     found
 }

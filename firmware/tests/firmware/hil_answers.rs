@@ -1,15 +1,13 @@
 //! A simulator's answers: which become IMU and pose, with which time, and which are refused.
 
-mod support;
-
+use crate::support::line::{Delivery, Incoming, Line};
+use crate::support::receiver::Local;
+use crate::support::simulator::{COMMANDED, Hil, command, commanded, odometry, sensor};
+use crate::support::{Simulated, patched, v2};
 use controller_core::flight::PERIOD;
 use firmware::hil;
 use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
 use nalgebra::Vector3;
-use support::line::{Delivery, Incoming, Line};
-use support::receiver::Local;
-use support::simulator::{COMMANDED, Hil, command, commanded, odometry, sensor};
-use support::{Simulated, patched, v2};
 
 /// What is shared after the simulator has said `bytes`, 5 ms after its command.
 fn said(hil: &Hil, bytes: Vec<u8>) -> Local {
@@ -29,8 +27,8 @@ fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
     assert_eq!((imu.time, pose.time), (COMMANDED + PERIOD, COMMANDED + PERIOD));
     assert_eq!(imu.value.angular_velocity, Vector3::new(0.5, -0.25, -0.125));
     assert_eq!(imu.value.specific_force, Vector3::new(1.0, -2.0, 9.0));
-    assert_eq!(pose.value.position, Vector3::new(2.0, 1.0, 3.0));
-    assert!((pose.value.velocity - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-6, "{}", pose.value.velocity);
+    assert_eq!(pose.value.position(), Vector3::new(2.0, 1.0, 3.0));
+    assert!((pose.value.velocity() - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-6, "{}", pose.value.velocity());
     assert!(!hil.awaiting());
 }
 

@@ -1,16 +1,15 @@
 //! The light, the battery and the queues.
 
-mod support;
-
-use controller_core::flight::Mode;
+use crate::support::Simulated;
+use crate::support::receiver::{Local, report, texts};
+use controller_core::error::InputError;
+use controller_core::flight::{Mode, Reason, Refusal};
 use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;
-use firmware::shared::{Flag, Severity, TEXT_MAX, Text};
+use firmware::shared::{Event, Flag, Severity, TEXT_MAX, Text};
 use firmware::status::{STEP, is_lit, run};
 use std::cell::RefCell;
-use support::Simulated;
-use support::receiver::{Local, report, texts};
 
 struct Lamp<'a>(&'a RefCell<Vec<bool>>);
 
@@ -83,23 +82,31 @@ fn a_battery_that_does_not_answer_or_reads_nonsense_stops_nothing() {
 #[test]
 fn texts_are_cut_at_whole_characters() {
     let long = "x".repeat(TEXT_MAX - 1);
-    assert_eq!(Text::new(&[&long, "äb"]).as_str(), long);
-    assert_eq!(Text::new(&[&long, "ab"]).as_str(), format!("{long}a"));
+    assert_eq!(Text::new(format_args!("{long}äb")).as_str(), long);
+    assert_eq!(Text::new(format_args!("{long}ab")).as_str(), format!("{long}a"));
     // Nothing is said behind a gap.
-    assert_eq!(Text::new(&[&long, "ä", "b"]).as_str(), long);
+    assert_eq!(Text::new(format_args!("{long}{}{}", 'ä', 'b')).as_str(), long);
 }
 
 #[test]
-fn numbers_are_written_with_one_decimal() {
-    let written = [0.0, 0.04, 0.06, 9.96, -1.25, 250.0].map(Text::decimal);
-    assert_eq!(written.each_ref().map(Text::as_str), ["0.0", "0.0", "0.1", "10.0", "-1.3", "250.0"]);
-}
-
-#[test]
-fn counts_are_written_whole() {
-    for number in [0, 7, 10, 305, u32::MAX] {
-        assert_eq!(Text::count(number).as_str(), number.to_string());
+fn every_event_fits_its_text_and_matters_as_it_should() {
+    let words = |event: &Event| Text::new(event).as_str().to_owned();
+    for reason in Reason::ALL {
+        let event = Event::Mode(reason);
+        assert_eq!(words(&event), reason.to_string());
+        // On its own the vehicle levels, holds and stops; the rest it was told to, or recovers from.
+        let on_its_own = reason.text().contains("lost") || reason.text().starts_with("Stopped");
+        assert_eq!(event.severity() == Severity::Critical, on_its_own, "{reason}");
     }
+    let refused = Event::Refused(Refusal::Unusable("imu.angular_velocity"));
+    assert_eq!(words(&refused), "Refused: imu.angular_velocity unusable");
+    assert_eq!(refused.severity(), Severity::Warning);
+    let input = Event::Input(InputError::NotFinite { field: "state.position" });
+    assert_eq!((words(&input).as_str(), input.severity()), ("state.position: must be finite", Severity::Critical));
+    assert_eq!(
+        (Event::MotorsLost.severity(), Event::MotorsRegained.severity()),
+        (Severity::Critical, Severity::Information)
+    );
 }
 
 #[test]
@@ -115,7 +122,7 @@ fn a_flag_is_taken_once() {
 fn events_without_room_are_counted() {
     let shared = Local::new();
     for _ in 0..20 {
-        shared.announce(Severity::Critical, &["again"]);
+        shared.announce(Event::new(Severity::Critical, "again"));
     }
     assert_eq!(shared.lost_events(), 20 - firmware::shared::EVENTS as u32);
 }

@@ -1,15 +1,13 @@
 //! Parameters over a reboot, in flash like that of the boards, and in flash that fails.
 
-mod support;
-
+use crate::support::Simulated;
+use crate::support::chip::{Chip, RECORDS, Words};
+use crate::support::receiver::{Local, report, texts};
 use controller_core::flight::Mode;
 use firmware::hardware::{Flash, Record};
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use std::cell::RefCell;
-use support::Simulated;
-use support::chip::{Chip, RECORDS, Words};
-use support::receiver::{Local, report, texts};
 
 /// What a boot finds.
 fn booted<const WORD: usize>(chip: &RefCell<Chip>) -> Local {
@@ -154,6 +152,6 @@ fn the_table_is_in_order_and_within_mavlinks_limits() {
         assert_eq!(row.parameter as usize, index);
         assert!(row.name.len() <= 16 && row.allows(row.default) && row.least < row.most, "{row:?}");
         assert!(PARAMETERS.iter().filter(|other| other.name == row.name).count() == 1);
-        assert_eq!(Name::from_bytes(row.name.as_bytes()), Some(row.parameter));
+        assert_eq!(Name::from_name(row.name), Some(row.parameter));
     }
 }

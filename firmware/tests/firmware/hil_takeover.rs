@@ -1,20 +1,17 @@
 //! When a simulator takes over from sensors and motors, and what becomes of those.
 
-mod support;
-
+use crate::support::receiver::{Fed, Local, texts};
+use crate::support::simulator::{Hil, Pins, now, odometry};
+use crate::support::{Simulated, v2};
 use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, Watchdog};
 use firmware::hil::SelectedMotors;
 use firmware::imu;
-use firmware::link::{CommandResult, Reply};
-use firmware::shared::{Asked, Flag, Origin};
-use mavlink::dialects::common::ATT_POS_MOCAP_DATA;
+use firmware::shared::{Asked, Flag, Reply};
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
-use support::receiver::{Fed, Local, texts};
-use support::simulator::{Hil, Pins, now, odometry};
-use support::{Simulated, v2};
 
 /// A sensor with a sample every millisecond.
 struct Steady<'a>(&'a Simulated);
@@ -78,7 +75,7 @@ impl Watchdog for Bench {
 
 /// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being wanted
 /// from 45 ms on; and the answer.
-fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, CommandResult, Vec<String>) {
+fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, Vec<String>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
     let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
@@ -94,8 +91,8 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, CommandResul
         shared.ground_station.put((), now);
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
-            let origin = Origin { system: 255, component: 190, command: 400 };
-            shared.request(Asked { request, origin }).unwrap();
+            let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
+            shared.request(Asked { request, command }).unwrap();
         }
         if now == 45_000 {
             shared.hil.raise();
@@ -112,7 +109,7 @@ fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
     // Both between the same two ticks: neither finds the other done.
     let (pins, answer, texts) = handed_over(Request::Arm, 45_000);
     assert_eq!(pins, [MotorCommand::Stop; 9]);
-    assert_eq!(answer, CommandResult::Denied);
+    assert_eq!(answer, MavResult::MAV_RESULT_DENIED);
     assert_eq!(texts, ["Refused: disarm commanded"]);
 }
 
@@ -122,5 +119,5 @@ fn a_motor_test_ends_where_the_simulator_is_asked_for() {
     let (pins, answer, _) = handed_over(Request::MotorTest(test), 15_000);
     assert_eq!(pins[1..4], [MotorCommand::One { motor: 1, level: 0.1 }; 3]);
     assert_eq!(pins[4..], [MotorCommand::Stop; 5]);
-    assert_eq!(answer, CommandResult::Accepted);
+    assert_eq!(answer, MavResult::MAV_RESULT_ACCEPTED);
 }

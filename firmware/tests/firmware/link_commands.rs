@@ -1,18 +1,15 @@
 //! Commands, parameters, heartbeats and pings in: what they do, and what is answered.
 
-mod support;
-
+use crate::support::receiver::{Fed, Local, report, texts};
+use crate::support::{patched, v1, v2, v2_of_payload};
 use controller_core::flight::{Mode, MotorTest, Request};
-use firmware::link::{CommandResult, Reply};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Asked, Origin, REPLIES, REQUESTS};
+use firmware::shared::{Asked, Ping, REPLIES, REQUESTS, Reply};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavType, PARAM_REQUEST_LIST_DATA,
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavResult, MavType, PARAM_REQUEST_LIST_DATA,
     PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
-use support::receiver::{Fed, Local, report, texts};
-use support::{patched, v1, v2, v2_of_payload};
 
 const ARM_DISARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
 
@@ -29,10 +26,6 @@ fn disarm() -> COMMAND_LONG_DATA {
     command(ARM_DISARM, [0.0; 5])
 }
 
-fn origin(command: MavCmd) -> Origin {
-    Origin { system: 255, component: 190, command: command as u16 }
-}
-
 fn requests(shared: &Local) -> usize {
     std::iter::from_fn(|| shared.requests.take()).count()
 }
@@ -42,13 +35,13 @@ fn replies(shared: &Local) -> Vec<Reply> {
 }
 
 /// The answer to a command that is not put to control.
-fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> CommandResult {
+fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
     let shared = Local::new();
     report(&shared, mode, 0);
     Fed::new(&shared).message(message, 0);
     assert!(shared.requests.take().is_none());
     match replies(&shared)[..] {
-        [Reply::Command { origin: to, result }] if to == origin(message.command) => result,
+        [Reply::Command { command, result }] if command == message.command => result,
         ref other => panic!("{other:?}"),
     }
 }
@@ -59,7 +52,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
         let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, origin: origin(ARM_DISARM) });
+        assert_eq!(asked, Asked { request: Request::Arm, command: ARM_DISARM });
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }
@@ -87,16 +80,16 @@ fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
     for _ in 0..REQUESTS + 3 {
         fed.message(&arm(), 0);
     }
-    let rejected = Reply::Command { origin: origin(ARM_DISARM), result: CommandResult::TemporarilyRejected };
-    assert_eq!(replies(&shared), [rejected; 3]);
+    let rejected = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+    assert_eq!(replies(&shared), [rejected.clone(), rejected.clone(), rejected]);
     fed.message(&disarm(), 0);
     assert!(shared.disarm.take());
     assert!(shared.requests.take().is_none());
-    let refused = Reply::Command { origin: origin(ARM_DISARM), result: CommandResult::Denied };
+    let refused = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_DENIED };
     for _ in 0..REQUESTS {
-        assert_eq!(shared.answers.take(), Some(refused));
+        assert_eq!(shared.answers.take(), Some(refused.clone()));
     }
-    assert_eq!(replies(&shared), [Reply::Command { origin: origin(ARM_DISARM), result: CommandResult::Accepted }]);
+    assert_eq!(replies(&shared), [Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_ACCEPTED }]);
 }
 
 #[test]
@@ -137,7 +130,7 @@ fn nonsense_is_denied() {
         command(MavCmd::MAV_CMD_DO_SET_MODE, [nan, 6.0, 0.0, 0.0, 0.0]),
         command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 3.0, 0.0, 0.0]),
     ] {
-        assert_eq!(answer(&message, Mode::Disarmed), CommandResult::Denied, "{message:?}");
+        assert_eq!(answer(&message, Mode::Disarmed), MavResult::MAV_RESULT_DENIED, "{message:?}");
     }
 }
 
@@ -153,7 +146,7 @@ fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
             for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let shared = Local::new();
                 Fed::new(&shared).bytes(&patched(&message, 4 * parameter, value), 0);
-                let denied = Reply::Command { origin: origin(message.command), result: CommandResult::Denied };
+                let denied = Reply::Command { command: message.command, result: MavResult::MAV_RESULT_DENIED };
                 assert_eq!(replies(&shared).contains(&denied), parameter < used, "{message:?} {parameter} {value}");
                 assert!((requests(&shared) == 0) || parameter >= used);
             }
@@ -166,10 +159,10 @@ fn the_mode_is_guided_flight_and_nothing_else() {
     let set_mode = |base: f32, custom: f32| command(MavCmd::MAV_CMD_DO_SET_MODE, [base, custom, 0.0, 0.0, 0.0]);
     // PX4's OFFBOARD, and GUIDED.
     for message in [set_mode(1.0, 6.0), set_mode(129.0, 6.0), set_mode(8.0, 0.0), set_mode(216.0, 0.0)] {
-        assert_eq!(answer(&message, Mode::Flying), CommandResult::Accepted, "{message:?}");
+        assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_ACCEPTED, "{message:?}");
     }
     for message in [set_mode(64.0, 0.0), set_mode(4.0, 0.0), set_mode(256.0, 0.0), set_mode(-1.0, 0.0)] {
-        assert_eq!(answer(&message, Mode::Flying), CommandResult::Denied, "{message:?}");
+        assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_DENIED, "{message:?}");
     }
 }
 
@@ -188,15 +181,14 @@ fn a_simulator_takes_over_only_while_disarmed() {
 #[test]
 fn commands_nobody_knows_are_answered_as_unsupported() {
     for known in [MavCmd::MAV_CMD_REQUEST_MESSAGE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, MavCmd::MAV_CMD_NAV_TAKEOFF] {
-        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Disarmed), CommandResult::Unsupported);
+        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Disarmed), MavResult::MAV_RESULT_UNSUPPORTED);
     }
-    // One that is not in the dialect at all.
+    // One that is not in the dialect at all is no command: nobody is told that it was for us.
     let mut payload = [0; 33];
     payload[28..30].copy_from_slice(&65_000_u16.to_le_bytes());
     let shared = Local::new();
     Fed::new(&shared).bytes(&v2_of_payload(1, COMMAND_LONG_DATA::ID, COMMAND_LONG_DATA::EXTRA_CRC, &payload), 0);
-    let origin = Origin { system: 255, component: 190, command: 65_000 };
-    assert_eq!(replies(&shared), [Reply::Command { origin, result: CommandResult::Unsupported }]);
+    assert!(replies(&shared).is_empty());
 }
 
 #[test]
@@ -234,14 +226,15 @@ fn a_ground_station_is_heard_by_its_heartbeat_and_nobody_else() {
 }
 
 #[test]
-#[expect(deprecated, reason = "clients still send it and wait for the answer")]
 fn a_ping_to_everybody_is_answered_and_an_answer_is_not() {
-    use mavlink::dialects::common::PING_DATA;
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
-    fed.message(&PING_DATA { time_usec: 5, seq: 6, target_system: 0, target_component: 0 }, 0);
-    fed.message(&PING_DATA { time_usec: 5, seq: 6, target_system: 1, target_component: 1 }, 0);
-    assert_eq!(replies(&shared), [Reply::Ping { time: 5, sequence: 6, system: 255, component: 190 }]);
+    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 0, target_component: 0 }, 0);
+    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 1, target_component: 1 }, 0);
+    assert_eq!(
+        replies(&shared),
+        [Reply::Ping(Ping { time_usec: 5, seq: 6, target_system: 255, target_component: 190 })]
+    );
 }
 
 fn set(name: &str, param_value: f32) -> PARAM_SET_DATA {
@@ -295,7 +288,7 @@ fn parameters_are_read_by_name_by_index_and_all_together() {
     for (index, row) in PARAMETERS.iter().enumerate() {
         fed.message(&read(-1, row.name), 0);
         fed.message(&read(index as i16, ""), 0);
-        assert_eq!(replies(&shared), [Reply::Parameter(row.parameter); 2]);
+        assert_eq!(replies(&shared), [Reply::Parameter(row.parameter), Reply::Parameter(row.parameter)]);
     }
     for nobody in [read(-1, "K_P"), read(PARAMETERS.len() as i16, ""), read(i16::MIN, "")] {
         fed.message(&nobody, 0);

@@ -1,7 +1,6 @@
 //! Frames out of any stream of bytes: whole, broken, repeated, hidden behind noise.
 
-mod support;
-
+use crate::support::{v1, v2, v2_of_payload};
 use firmware::link::frame::{FRAME_AGE_MAX, FRAME_MAX, Header, Parser, Version};
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOGGING_DATA_DATA, MavCmd, ODOMETRY_DATA,
@@ -9,7 +8,6 @@ use mavlink::dialects::common::{
 };
 use mavlink::{MavlinkVersion, MessageData};
 use proptest::prelude::*;
-use support::{decode, v1, v2, v2_of_payload};
 
 /// What a parser makes of `bytes`, a microsecond apart: message numbers and sequence numbers.
 fn parsed(bytes: &[u8]) -> Vec<(u32, u8)> {
@@ -51,7 +49,7 @@ fn fields_come_out_as_they_went_in() {
     let frame = parser.push(*last, 80).unwrap();
     assert_eq!(frame.header, Header { system: 255, component: 190, sequence: 9 });
     assert_eq!((frame.version, frame.time), (Version::V2, 70));
-    assert_eq!(decode(&frame), Some(odometry()));
+    assert_eq!(frame.decode(), Some(odometry()));
     assert_eq!(parser.discarded(), 0);
 }
 
@@ -112,11 +110,8 @@ fn cut_and_extended_payloads_are_understood() {
         let (last, rest) = bytes.split_last().unwrap();
         assert!(rest.iter().all(|&byte| parser.push(byte, 0).is_none()));
         let frame = parser.push(*last, 0).unwrap();
-        assert!(frame.is_whole());
-        assert_eq!(decode(&frame), Some(pose.clone()), "{length} bytes");
-        // Fields cut off are zero.
-        let (time, x, [y, z]) = (frame.u64(0), frame.f32(24), [frame.f32(28), frame.f32(32)]);
-        assert_eq!((time, frame.f32(8), x, y, z), (9, 1.0, 2.0, 0.0, 0.0), "{length} bytes");
+        assert_eq!(frame.decode(), Some(pose.clone()), "{length} bytes");
+        assert_eq!(frame.decode::<ODOMETRY_DATA>(), None);
     }
 }
 
@@ -128,7 +123,19 @@ fn version_1_does_not_cut_payloads() {
     let mut parser = Parser::new();
     let (last, rest) = bytes.split_last().unwrap();
     assert!(rest.iter().all(|&byte| parser.push(byte, 0).is_none()));
-    assert!(!parser.push(*last, 0).unwrap().is_whole());
+    assert_eq!(parser.push(*last, 0).unwrap().decode::<PARAM_SET_DATA>(), None);
+}
+
+#[test]
+fn a_value_outside_the_dialect_makes_a_message_none() {
+    // The type of a heartbeat's sender is the fifth byte of its payload.
+    for (kind, known) in [(6, true), (250, false)] {
+        let payload = [0, 0, 0, 0, kind, 8, 0, 0, 3];
+        let bytes = v2_of_payload(1, HEARTBEAT_DATA::ID, HEARTBEAT_DATA::EXTRA_CRC, &payload);
+        let (mut parser, mut found) = (Parser::new(), None);
+        parser.feed(&bytes, 0, &mut |frame| found = Some(frame.decode::<HEARTBEAT_DATA>().is_some()));
+        assert_eq!(found, Some(known));
+    }
 }
 
 #[test]
