@@ -1,7 +1,7 @@
 //! The paper's flight gives the published number on this machine. `.ci/emulated bits` checks the same on emulated
 //! processors.
 
-use controller_core::certificate::configuration::Certified;
+use controller_core::certificate::certified::Certified;
 use controller_core::controller::{Controller, Diagnostics};
 use controller_core::reference::Reference;
 use firmware::replay::{PERIOD_US, Replay, TICKS, record};

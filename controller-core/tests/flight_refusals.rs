@@ -2,7 +2,7 @@
 
 mod flight;
 
-use controller_core::certificate::configuration::Refused;
+use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::flight::{
     Grounded, Inputs, Mode, MotorTest, Output, PERIOD, Pilot, Pose, Refusal, Request, STAMP_LEAD_MAX, Stamped,

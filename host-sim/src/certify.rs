@@ -6,8 +6,9 @@
 mod blame;
 
 use crate::table::{aligned, percent, short};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
-use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 use scenario::stability::{LoopMargin, Shortfall};

@@ -13,7 +13,8 @@
 
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
-use controller_core::certificate::{Certificate, Form};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Form;
 use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;

@@ -13,7 +13,7 @@ use crate::file::Scenario;
 use crate::sampled_loop::LoopReport;
 use crate::stability::{Lack, LoopMargin};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::{Certified, Refused};
+use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::error::ParameterError;
 use std::fmt;

@@ -14,7 +14,7 @@ use super::measurement::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
 use crate::allocation::{MinimumNorm, Thrusts};
-use crate::certificate::configuration::Certified;
+use crate::certificate::certified::Certified;
 use crate::controller::{Command, Controller};
 use crate::error::InputError;
 use crate::governor::{Governor, GovernorLimits, Memory, Setpoint};

@@ -13,7 +13,7 @@ use super::rules::{
 };
 use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
 use crate::allocation::geometry::ROTORS_MIN;
-use crate::certificate::configuration::{Certified, Refused};
+use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
 use crate::governor::{GovernorLimits, Memory, Setpoint};
 use crate::state::State;

@@ -2,7 +2,7 @@
 //!
 //! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
 
-use crate::certificate::configuration::Refused;
+use crate::certificate::certified::Refused;
 use crate::error::{InputError, ParameterError};
 use core::fmt;
 

@@ -13,7 +13,7 @@
 //! N_1 N_2 N_3 A is alpha at eight delays with signs, all in integers. Nothing rounds, so nothing drifts, ever, and one
 //! short history serves all three. The position is kept as the command's, x_0, less what the averages trail behind.
 
-use super::HISTORY;
+use super::limits::HISTORY;
 use super::windows::Windows;
 use nalgebra::Vector3;
 

@@ -8,7 +8,8 @@ mod body;
 
 pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};
-use controller_core::certificate::configuration::{Certified, Configuration};
+use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::Configuration;
 use controller_core::flight::{
     ImuSample, Inputs, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
 };

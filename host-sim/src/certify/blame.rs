@@ -10,7 +10,8 @@
 use controller_core::allocation::TorqueTerm;
 use controller_core::allocation::support::torque_part;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::certificate::{Certificate, Form, rotors};
+use controller_core::certificate::form::Form;
+use controller_core::certificate::{Certificate, rotors};
 use controller_core::error::ParameterError;
 use nalgebra::{Vector3, Vector4};
 

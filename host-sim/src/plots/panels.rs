@@ -4,7 +4,8 @@ use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
 use super::record::Sample;
 use crate::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
 use crate::table::short;
-use controller_core::certificate::{Certificate, Form};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Form;
 use plotters::style::RGBColor;
 use scenario::Scenario;
 

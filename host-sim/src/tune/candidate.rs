@@ -16,7 +16,7 @@ use super::requirements::Requirements;
 use crate::claims::reached;
 use crate::flight::Flight;
 use crate::flown::Flown;
-use controller_core::certificate::configuration::{Certified, Refused};
+use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;

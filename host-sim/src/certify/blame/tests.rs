@@ -2,7 +2,7 @@
 
 use super::*;
 use controller_core::allocation::Shape;
-use controller_core::certificate::Interval;
+use controller_core::certificate::form::Interval;
 
 fn terms(sets: &[(&'static str, Shape)]) -> Vec<TorqueTerm> {
     sets.iter().map(|(name, shape)| TorqueTerm::new(name, *shape).unwrap()).collect()
