@@ -10,7 +10,7 @@
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! [`file`] reads the whole file; each section has a module; one that comes later adds a module, its name to `SECTIONS` and a
+//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to `SECTIONS` and a
 //! field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`], which
