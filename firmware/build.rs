@@ -1,4 +1,6 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
+//!
+//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository.
 
 #[path = "build/embed.rs"]
 mod embed;
@@ -6,18 +8,20 @@ mod embed;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+/// What flies if nobody chooses: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
+const DEFAULT: &str = "vehicles/study.toml";
+
 /// Boards and the files that describe their memory, from this package's folder.
-const MEMORY: [(&str, &str); 5] = [
+const MEMORY: [(&str, &str); 4] = [
     ("MICOAIR_H743", "memory/micoair-h743.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
-    ("MPS2_AN386", "memory/mps2-an386.x"),
-    ("MPS2_AN500", "memory/mps2-an500.x"),
-    ("PROBE", "memory/mps2-an386.x"),
+    ("MPS2", "memory/mps2.x"),
+    ("PROBE", "memory/mps2.x"),
 ];
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-    embed::scenario(&out.join("configuration.rs")).unwrap_or_else(|error| fail(&error));
+    scenario(&out.join("configuration.rs")).unwrap_or_else(|error| fail(&error));
     println!("cargo::rerun-if-changed=build.rs");
     if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") {
         link(&out).unwrap_or_else(|error| fail(&error));
@@ -28,6 +32,23 @@ fn main() {
 fn fail(problem: &str) -> ! {
     println!("cargo::error={problem}");
     std::process::exit(1)
+}
+
+/// Writes what the chosen file becomes to `target`.
+fn scenario(target: &Path) -> Result<(), String> {
+    println!("cargo::rerun-if-env-changed=SCENARIO");
+    println!("cargo::rerun-if-changed=build/embed.rs");
+    let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
+    let name = env::var("SCENARIO").unwrap_or_else(|_| DEFAULT.to_owned());
+    let file = top.join(&name);
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = fs::read_to_string(&file)
+        .map_err(|error| format!("SCENARIO {name}: cannot be read from the top of the repository: {error}"))?;
+    let embedded = embed::embedded(&text, &name)?;
+    if let Some(warning) = embedded.warning {
+        println!("cargo::warning={warning}");
+    }
+    fs::write(target, embedded.source).map_err(|error| format!("{}: {error}", target.display()))
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and asks for the scripts of the runtime and of defmt.

@@ -1,13 +1,12 @@
 //! The certificate's sharp bound against an adversary that searches everything reachable.
 
-mod adversary_search;
-mod random;
-
-use adversary_search::Domain;
-use adversary_search::configurations::{around_table_1, paper};
-use adversary_search::search::{Objective, worst};
+use crate::support::adversary_search::Domain;
+use crate::support::adversary_search::configurations::{around_table_1, paper};
+use crate::support::adversary_search::search::{Objective, worst};
+use crate::support::random;
+use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::certificate::{Certificate, Form};
+use controller_core::certificate::form::Form;
 
 /// Everything the adversary attacks.
 const OBJECTIVES: [Objective; 8] = [

@@ -1,7 +1,6 @@
 //! q and -q are one rotation: the output and the memory do not depend on which is given, to the last bit.
 
-mod random;
-
+use crate::support::random;
 use controller_core::controller::Controller;
 use rand::RngExt;
 

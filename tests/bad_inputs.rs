@@ -1,8 +1,8 @@
 //! An input the law cannot use: a typed error that names the field, the memory untouched, and a controller that goes on
 //! as if it had never seen it.
 
-mod random;
-
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::controller::Controller;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -10,7 +10,6 @@ use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 /// A number no sensor should report, with the error it must earn in a vector named `field`.
 fn bad_number(rng: &mut ChaCha8Rng, field: &'static str) -> (f32, InputError) {

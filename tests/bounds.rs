@@ -1,7 +1,7 @@
 //! The bounds the law promises whatever happens: the filter box, exactly, and Theorem 1's thrust interval.
 
-mod random;
-
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::controller::{Controller, Memory};
 use controller_core::error::InputError;
 use controller_core::gains::Gains;
@@ -11,7 +11,6 @@ use controller_core::state::State;
 use controller_core::vehicle::Vehicle;
 use nalgebra::Vector3;
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 /// The greatest magnitude the law accepts in a state.
 const GREATEST: f32 = 1e15;

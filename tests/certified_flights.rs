@@ -1,24 +1,23 @@
 //! Certified configurations flown: not one sample of thrust, torque or rotor command beyond its bound. And the other way round: configurations
 //! that the adversary beats do go beyond their limits, so this check can fail.
 
-mod adversary_search;
-mod body;
-mod random;
-
-use adversary_search::Domain;
-use adversary_search::configurations::{around_table_1, limited};
-use adversary_search::search::{Objective, Worst, worst};
-use body::Body;
+use crate::support::adversary_search::Domain;
+use crate::support::adversary_search::configurations::{around_table_1, limited};
+use crate::support::adversary_search::search::{Objective, Worst, worst};
+use crate::support::body::Body;
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::allocation::{MinimumNorm, Mixer, QuadX, Rotors, Thrusts};
-use controller_core::certificate::configuration::{Certified, Configuration};
-use controller_core::certificate::{Certificate, Form};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::Configuration;
+use controller_core::certificate::form::Form;
 use controller_core::controller::Controller;
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, ReferenceBounds};
 use controller_core::state::Wrench;
 use nalgebra::{Vector2, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// How far the limits of a certified configuration are above what it needs, relative: next to nothing.

@@ -1,8 +1,7 @@
 //! The binary as a user meets it: exit statuses, messages, files, and the law in lock-step.
 
-mod binary;
-
-use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
+use crate::support::binary;
+use crate::support::binary::{PAPER, brief, files, host_sim, status, stderr, stdout, with};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -176,7 +175,7 @@ fn unusable_arguments_exit_with_2() {
 #[test]
 fn a_second_flight_replaces_the_first_and_a_failed_one_leaves_it() {
     let directory = directory("replaced");
-    let quick = with(PAPER, "duration", "duration = 1.0");
+    let quick = brief();
     std::fs::write(directory.join("quick.toml"), &quick).unwrap();
     assert_eq!(status(&host_sim(&directory, &["fly", "quick.toml", "--out", "out"])), 0);
     let first = std::fs::read(directory.join("out/log.csv")).unwrap();

@@ -1,9 +1,8 @@
 //! `certify` and `tune` as a user meets them: exit statuses, one clear line for each refusal, no file half-written.
 
-mod binary;
-
-use binary::{PAPER, files, host_sim, status, stderr, stdout, with};
-use host_sim::scenario::Scenario;
+use crate::support::binary;
+use crate::support::binary::{PAPER, files, host_sim, search, status, stderr, stdout, with};
+use scenario::Scenario;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -13,23 +12,6 @@ const STUDY: &str = include_str!("../vehicles/study.toml");
 fn directory(test: &str) -> PathBuf {
     binary::directory("cli_certify", test)
 }
-
-/// Table I where a search may be quick: seconds of recovery, easy requirements.
-const QUICK: [&str; 13] = [
-    "--margin",
-    "0",
-    "--gain-margin",
-    "1.2",
-    "--delay-margin",
-    "1",
-    "--mrp-error",
-    "0.001",
-    "--recovery",
-    "40",
-    "--generations",
-    "1",
-    "--no-projection",
-];
 
 #[test]
 fn certify_exits_with_0_for_the_paper_and_says_why() {
@@ -94,7 +76,7 @@ fn bad_input_exits_with_2_and_one_line_that_names_field_and_reason() {
 fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
     let directory = directory("tune");
     std::fs::write(directory.join("start.toml"), PAPER).unwrap();
-    let output = host_sim(&directory, &[&["tune", "start.toml", "--out", "mine.toml", "--widen"][..], &QUICK].concat());
+    let output = host_sim(&directory, &[&search("start.toml", "mine.toml", "1")[..], &["--widen"]].concat());
     assert_eq!((status(&output), stderr(&output)), (0, String::new()));
     let text = stdout(&output);
     for words in ["height lost [m]", "active constraint", "mine: CERTIFIED", "times as demanding"] {

@@ -1,7 +1,7 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files that the
 //! Markdown pages link to, and the scenario examples.
 
-use host_sim::scenario::Scenario;
+use scenario::Scenario;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,15 +27,9 @@ fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
 /// The names of all tests in the repository.
 fn tests() -> BTreeSet<String> {
     let mut files = Vec::new();
-    for folder in [
-        "controller-core/src",
-        "controller-core/tests",
-        "host-sim/src",
-        "scenario/src",
-        "host-sim/tests",
-        "firmware/src",
-        "tests",
-    ] {
+    for folder in
+        ["controller-core/src", "controller-core/tests", "host-sim/src", "scenario/src", "firmware/src", "tests"]
+    {
         sources(&Path::new(ROOT).join(folder), &mut files);
     }
     let name =

@@ -11,11 +11,8 @@
 //!
 //! And in the end: at rest, exactly on the setpoint; if it started from rest, without having passed it or turned back.
 
-#[path = "governor_campaign/adversary.rs"]
 mod adversary;
-#[path = "governor_campaign/case.rs"]
 mod case;
-#[path = "governor_campaign/witness.rs"]
 mod witness;
 
 use adversary::Adversary;

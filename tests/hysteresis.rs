@@ -1,17 +1,15 @@
 //! The hysteresis of the path lifting does what it is for: attitude noise at a half turn makes the law choose a way round
 //! once, not again and again.
 
-mod body;
-mod random;
-
-use body::Body;
+use crate::support::body::Body;
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::controller::Controller;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::{Trajectory, hover::Hover};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 const FLIGHTS: usize = 100;
 const TICKS: usize = 200;

@@ -3,9 +3,13 @@
 //!
 //! The tolerances are derived from the rounding of single precision in `oracle::rounding`.
 
-mod oracle;
-mod random;
-
+use crate::support::oracle;
+use crate::support::oracle::rounding::{
+    Answer, ULP, lift_tolerances, one_rounding_each, situation, tolerances, vector4,
+};
+use crate::support::oracle::{Law, lifting};
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::Gains;
 use controller_core::path_lifting::Lift;
@@ -14,10 +18,7 @@ use controller_core::reference::Reference;
 use controller_core::state::State;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, Rotation3, Vector4};
-use oracle::rounding::{Answer, ULP, lift_tolerances, one_rounding_each, situation, tolerances, vector4};
-use oracle::{Law, lifting};
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 /// Where |q_0| of the attitude error is below this, either lift is accepted.
 const EITHER_LIFT: f64 = 1e-5;

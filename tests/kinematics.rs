@@ -1,18 +1,15 @@
 //! Kinematic facts the law stands on: modified Rodrigues parameters describe the rotation they came from and move as they
 //! should, and omega_d and omega_d' are what differentiating R_d along a flight gives.
 
-mod body;
-mod oracle;
-mod random;
-
-use body::Body;
+use crate::support::body::Body;
+use crate::support::oracle::lifting;
+use crate::support::oracle::rounding::{ULP, vector4};
+use crate::support::random;
 use controller_core::controller::Controller;
 use controller_core::heading::Heading;
 use controller_core::mrp;
 use controller_core::reference::Reference;
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
-use oracle::lifting;
-use oracle::rounding::{ULP, vector4};
 use rand::RngExt;
 
 /// The greatest distance between entries.

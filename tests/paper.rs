@@ -1,17 +1,15 @@
 //! The paper's experiment, flown: every figure that Section VI claims, and the sharper ones this project aims at.
 
 use controller_core::certificate::Certificate;
-use host_sim::claims::{Flown, all_hold, claims, table};
+use host_sim::claims::{all_hold, claims, table};
 use host_sim::flight::Flight;
-use host_sim::scenario::Scenario;
+use host_sim::flown::Flown;
+use scenario::Scenario;
+use scenario::verdict::Verdict;
+use std::path::Path;
 
 fn flown(scenario: &Scenario) -> Flown {
-    let mut flight = Flight::new(scenario).unwrap();
-    let mut flown = Flown::new(scenario);
-    for _ in 0..scenario.timing.ticks {
-        flown.observe(&flight.tick().unwrap());
-    }
-    flown
+    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
 }
 
 #[test]
@@ -26,7 +24,7 @@ fn the_papers_experiment_meets_every_published_figure() {
     }
     assert_eq!(flown.clipped, 0);
     assert!(flown.filter <= 2.0);
-    let claims = claims(&scenario, &flown);
+    let claims = claims(&scenario, &Verdict::of(&scenario).unwrap(), &flown);
     assert!(all_hold(&claims), "{}", table(&claims));
 }
 
@@ -56,21 +54,34 @@ fn a_finer_plant_step_does_not_change_what_was_flown() {
     assert!((coarse.height_lost - fine.height_lost).abs() < 1e-4, "{coarse:?} {fine:?}");
 }
 
+/// Every scenario file in a folder of the repository.
+fn collection(folder: &str) -> Vec<Scenario> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = paths.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.map(|path| Scenario::load(&path).unwrap()).collect()
+}
+
 #[test]
-fn every_scenario_of_the_collection_flies_within_its_claims() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios");
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let scenario = Scenario::load(&entry.unwrap().path()).unwrap();
-        let flown = flown(&scenario);
-        let claims = claims(&scenario, &flown);
+fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
+    let all = [collection("scenarios"), collection("vehicles")].concat();
+    for scenario in &all {
+        let flown = flown(scenario);
+        let claims = claims(scenario, &Verdict::of(scenario).unwrap(), &flown);
+        println!("{}: there after {:?} s", scenario.name, flown.position_reached());
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
-        assert!(flown.steady_position_error < 0.01, "{}: {} m", scenario.name, flown.steady_position_error);
         let thrust = Certificate::new(&scenario.configuration).unwrap().sharp.thrust;
         assert!(thrust.least > 0.0 && thrust.greatest < f64::from(scenario.configuration.limits().thrust_max));
-        names.push(scenario.name);
     }
-    for name in ["paper", "hover", "circle", "waypoints"] {
-        assert!(names.iter().any(|found| found == name), "{name} is missing");
+    for name in ["paper", "hover", "circle", "waypoints", "hummingbird", "study", "hummingbird-paper", "study-paper"] {
+        assert!(all.iter().any(|scenario| scenario.name == name), "{name} is missing");
+    }
+}
+
+#[test]
+fn the_papers_vehicle_flies_every_scenario_within_a_centimetre() {
+    for scenario in collection("scenarios") {
+        let flown = flown(&scenario);
+        assert!(flown.steady_position_error < 0.01, "{}: {} m", scenario.name, flown.steady_position_error);
     }
 }

@@ -1,9 +1,7 @@
 //! The whole loop, six degrees of freedom at 100 Hz: from any attitude and spin the vehicle rights itself in time.
 
-mod body;
-mod random;
-
-use body::Body;
+use crate::support::body::Body;
+use crate::support::random;
 use controller_core::controller::Controller;
 use controller_core::reference::{Trajectory, hover::Hover};
 use nalgebra::{Quaternion, Vector3};

@@ -1,13 +1,12 @@
 //! The linearised sampled loop against the whole simulation, rotors and six degrees of freedom: what the one predicts, the
-//! other shows. `cargo test -p host-sim --test rotor_lag -- --nocapture` prints the table.
+//! other shows. `cargo test -p host-sim rotor_lag -- --nocapture` prints the table.
 //!
 //! The paper's vehicle and Table I at 100 Hz, hovering, with rotors so strong that none saturates: only their lag and the
 //! delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.
 
-use host_sim::certify::loop_model;
 use host_sim::flight::Flight;
-use host_sim::sampled_loop::Axis;
-use host_sim::scenario::{PAPER, Scenario};
+use scenario::sampled_loop::Axis;
+use scenario::{PAPER, Scenario};
 
 /// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3 rad.
 const START_DEG: f64 = 0.01;
@@ -46,7 +45,7 @@ position = [0.0, 0.0, 0.0]
 
 /// The greatest spectral radius of the six loops, and whose it is.
 fn predicted(scenario: &Scenario) -> (f64, Axis) {
-    let model = loop_model(scenario).unwrap();
+    let model = scenario.loops().unwrap();
     let radii = Axis::ALL.map(|axis| (model.spectral_radius(axis), axis));
     radii.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }
@@ -57,7 +56,7 @@ fn peaks(scenario: &Scenario, stretches: usize) -> Vec<f64> {
     let stretch = |_| {
         (0..200).fold(0.0_f64, |peak, _| {
             let tick = flight.tick().unwrap();
-            assert!(!tick.clipping.any(), "a rotor saturated: stronger ones are needed for this test");
+            assert!(!tick.clipped, "a rotor saturated: stronger ones are needed for this test");
             peak.max(4.0 * f64::from(tick.diagnostics.mrp.norm()).atan())
         })
     };

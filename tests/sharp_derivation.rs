@@ -1,20 +1,20 @@
 //! The steps of docs/sharp-bound.md, checked one by one at random situations.
 
-mod adversary_search;
-mod random;
-
-use adversary_search::configurations::around_table_1;
-use adversary_search::{COORDINATES, Domain, Situation};
+use crate::support::adversary_search;
+use crate::support::adversary_search::configurations::around_table_1;
+use crate::support::adversary_search::{COORDINATES, Domain, Situation};
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::{ARITHMETIC_ALLOWANCE, Form};
 use controller_core::certificate::reachable::{Reachable, half_l1_norm};
 use controller_core::certificate::sharp::{ANGLE_CELLS, HEADING_CELLS, SPLIT_CELLS, TILT_CELLS};
-use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate, Form};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::mrp;
 use controller_core::position::{FilterState, FilterTransition};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
 
 fn situation(rng: &mut ChaCha8Rng) -> Situation {
     let configuration = around_table_1(rng, 3.0);

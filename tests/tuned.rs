@@ -2,10 +2,12 @@
 //! a sixth of the height that Table I takes. `-- --nocapture` prints the heights.
 
 use controller_core::certificate::Certificate;
-use host_sim::claims::{Flown, PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};
-use host_sim::plant::attitude_from_euler;
-use host_sim::scenario::Scenario;
-use host_sim::tune::candidate::{fly, recovery};
+use host_sim::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};
+use host_sim::flight::Flight;
+use host_sim::flown::Flown;
+use host_sim::tune::candidate::recovery;
+use scenario::Scenario;
+use scenario::body::attitude_from_euler;
 use std::path::Path;
 
 /// How long a recovery is watched, s.
@@ -15,11 +17,15 @@ fn tuned() -> Scenario {
     Scenario::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/paper-tuned.toml")).unwrap()
 }
 
+fn flown(scenario: &Scenario) -> Flown {
+    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
+}
+
 /// A recovery from roll -179 degrees and the given yaw, degrees.
 fn recovered(scenario: &Scenario, yaw: f64) -> Flown {
     let mut scenario = recovery(scenario, RECOVERY);
     scenario.initial.attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, yaw.to_radians());
-    fly(&scenario).unwrap()
+    flown(&scenario)
 }
 
 #[test]
@@ -29,7 +35,7 @@ fn it_is_the_papers_vehicle_with_its_limits_references_and_ideal_actuators() {
     assert_eq!(tuned.configuration.limits(), paper.configuration.limits());
     assert_eq!(tuned.configuration.bounds(), paper.configuration.bounds());
     assert_eq!((tuned.timing, tuned.initial, &tuned.reference), (paper.timing, paper.initial, &paper.reference));
-    assert!(tuned.rotors.is_none() && tuned.delay_steps == 0);
+    assert!(tuned.configuration.rotors().is_none() && tuned.delay_steps == 0);
 }
 
 #[test]
@@ -54,7 +60,7 @@ fn it_loses_at_most_six_metres_from_upside_down_where_table_one_loses_23() {
 
 #[test]
 fn it_flies_the_papers_scenario_with_the_papers_accuracy() {
-    let flown = fly(&tuned()).unwrap();
+    let flown = flown(&tuned());
     println!("steady state: {:.1e} m, MRP {:.1e}", flown.steady_position_error, flown.steady_mrp_error);
     assert!(flown.steady_position_error <= PUBLISHED_POSITION_ERROR, "{flown:?}");
     assert!(flown.steady_mrp_error <= PUBLISHED_MRP_ERROR, "{flown:?}");

@@ -1,21 +1,21 @@
 //! The vehicles of `vehicles/`, with their rotors turning: certified to the last rotor, and flown without one that saturates.
 //! What the boards allocate with clips nothing of what their certificates allow.
-//! `cargo test -p host-sim --test vehicles -- --nocapture` prints what each flight showed.
+//! `cargo test -p host-sim vehicles -- --nocapture` prints what each flight showed.
 
-mod random;
-
+use crate::support::random;
+use crate::support::random::ChaCha8Rng;
 use controller_core::allocation::support::ROUNDING;
 use controller_core::allocation::{MinimumNorm, Mixer, Rotors};
-use controller_core::certificate::{ARITHMETIC_ALLOWANCE, Certificate};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::state::Wrench;
 use host_sim::flight::Flight;
-use host_sim::plant::attitude_from_euler;
-use host_sim::scenario::Scenario;
 use host_sim::tune::candidate::recovery;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
-use random::ChaCha8Rng;
+use scenario::Scenario;
+use scenario::body::attitude_from_euler;
 use std::path::Path;
 
 const VEHICLES: [&str; 2] = ["hummingbird", "study"];
@@ -79,7 +79,7 @@ fn flown(scenario: &Scenario) -> Shown {
     // Stretches are counted from the end, so that the last one is complete.
     for left in (0..scenario.timing.ticks).rev() {
         let tick = flight.tick().unwrap();
-        shown.saturated += u64::from(tick.clipping.any());
+        shown.saturated += u64::from(tick.clipped);
         shown.height_lost = shown.height_lost.max(start - tick.state.position.z);
         for (thrust, report) in tick.rotor_thrusts.iter().zip(&certificate.rotors) {
             let middle = 0.5 * (report.demand.least + report.demand.greatest);
@@ -139,14 +139,13 @@ fn they_are_the_vehicles_they_are_said_to_be() {
         let scenario = vehicle(name);
         let body = scenario.configuration.vehicle();
         assert_eq!((body.mass, [body.inertia.x, body.inertia.y, body.inertia.z]), (mass, inertia), "{name}");
-        let setup = scenario.rotors.as_ref().unwrap();
-        assert_eq!((setup.lag, scenario.delay()), (lag, delay), "{name}");
-        for rotor in setup.rotors.iter() {
+        assert_eq!((scenario.rotor_lag, scenario.delay()), (lag, delay), "{name}");
+        for rotor in scenario.configuration.rotors().unwrap().iter() {
             assert_eq!((rotor.thrust_coefficient, rotor.drag_coefficient), (5.57e-6, 1.36e-7), "{name}");
             assert!((rotor.position.norm() - 0.17).abs() < 1e-5, "{name}");
         }
     }
-    let fastest = vehicle("hummingbird").rotors.unwrap().rotors[0].thrust_max;
+    let fastest = vehicle("hummingbird").configuration.rotors().unwrap()[0].thrust_max;
     assert!((fastest - 5.57e-6 * 1500.0 * 1500.0).abs() < 1e-4);
 }
 
@@ -156,7 +155,7 @@ fn the_paper_siblings_differ_in_what_is_flown_only() {
     for name in VEHICLES {
         let (own, sibling) = (vehicle(name), vehicle(&format!("{name}-paper")));
         assert_eq!(own.configuration, sibling.configuration, "{name}");
-        assert_eq!((&own.rotors, own.delay_steps), (&sibling.rotors, sibling.delay_steps), "{name}");
+        assert_eq!((own.rotor_lag, own.delay_steps), (sibling.rotor_lag, sibling.delay_steps), "{name}");
         assert_eq!((sibling.reference, sibling.initial), (paper.reference.clone(), paper.initial), "{name}");
         assert_eq!(own.timing.period_us, paper.timing.period_us, "{name}");
     }

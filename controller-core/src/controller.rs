@@ -39,7 +39,7 @@
 
 use crate::attitude::{AttitudeLaw, TorqueCommand};
 use crate::attitude_reference::DesiredAttitude;
-use crate::certificate::configuration::Certified;
+use crate::certificate::certified::Certified;
 use crate::error::{InputError, ParameterError};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};

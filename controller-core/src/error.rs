@@ -118,22 +118,16 @@ pub enum InputError {
     FallsTooFast,
 }
 
-impl InputError {
-    /// The input in question and what is wrong with it, to be read in one go.
-    #[must_use]
-    pub fn words(&self) -> [&'static str; 2] {
-        match self {
-            Self::NotFinite { field } => [field, ": must be finite"],
-            Self::OutOfRange { field } => [field, ": magnitude out of range"],
-            Self::NotARotation { field } => [field, ": quaternion must have unit length within 1e-3"],
-            Self::FallsTooFast => ["reference.acceleration", ": its vertical part must stay above m_p - gravity"],
-        }
-    }
-}
-
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words().iter().try_for_each(|words| f.write_str(words))
+        match self {
+            Self::NotFinite { field } => write!(f, "{field}: must be finite"),
+            Self::OutOfRange { field } => write!(f, "{field}: magnitude out of range"),
+            Self::NotARotation { field } => write!(f, "{field}: quaternion must have unit length within 1e-3"),
+            Self::FallsTooFast => {
+                write!(f, "reference.acceleration: its vertical part must stay above m_p - gravity")
+            }
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! - [`reason`]: reasons in words, for every transition and every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
 //! - `permission`: what arming and a motor test need;
-//! - `measurement`: which IMU sample and which pose are flown;
+//! - `measurement`: IMU samples and poses, and which of them are flown; [`Pose::new`] checks a pose;
 //! - [`propagation`]: the attitude between poses, by gyro;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
@@ -28,7 +28,9 @@ pub mod reason;
 pub mod rules;
 
 pub use chain::Flown;
-pub use measurement::{BODY_RATE_MAX, STAMP_LEAD_MAX};
+pub use measurement::{
+    BODY_RATE_MAX, DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
+};
 pub use permission::MotorTest;
 pub use pilot::Pilot;
 pub use reason::{Grounded, Reason, Refusal};
@@ -37,47 +39,9 @@ pub use rules::{Mode, Transition};
 use crate::allocation::Thrusts;
 use crate::error::InputError;
 use crate::governor::Setpoint;
-use nalgebra::{Quaternion, Vector3};
 
 /// The time between ticks, us.
 pub const PERIOD: u64 = 10_000;
-
-/// A value and when it was true, microseconds of the vehicle's clock.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stamped<T> {
-    /// What.
-    pub value: T,
-    /// When, us.
-    pub time: u64,
-}
-
-impl<T> Stamped<T> {
-    /// How old it is at `now`, us; zero for a time to come.
-    #[must_use]
-    pub fn age(&self, now: u64) -> u64 {
-        now.saturating_sub(self.time)
-    }
-}
-
-/// What the inertial measurement unit says, body frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImuSample {
-    /// omega, rad/s.
-    pub angular_velocity: Vector3<f32>,
-    /// Specific force (acceleration less gravity), m/s^2: +g along z at rest.
-    pub specific_force: Vector3<f32>,
-}
-
-/// What the pose source says: until an estimator exists, attitude and velocity come from outside.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pose {
-    /// p, m, world.
-    pub position: Vector3<f32>,
-    /// v, m/s, world.
-    pub velocity: Vector3<f32>,
-    /// q, body to world, unit.
-    pub attitude: Quaternion<f32>,
-}
 
 /// What somebody may ask for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,7 +80,7 @@ pub enum Output {
     Thrusts(Thrusts),
     /// One motor turns, the others stop.
     Test {
-        /// Which, from 0.
+        /// Its index in the rotors' order.
         rotor: usize,
         /// Part of the command's range, at most [`rules::MOTOR_TEST_LEVEL_MAX`].
         level: f32,

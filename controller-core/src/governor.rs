@@ -25,12 +25,14 @@
 
 mod braking;
 mod lead;
+mod limits;
 mod pursuit;
 mod setpoint;
 mod smoother;
 mod turning;
 mod windows;
 
+pub use limits::{GovernorLimits, SPEED_RANGE};
 pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
@@ -44,33 +46,6 @@ use setpoint::Parts;
 use smoother::{Knot, Smoother};
 use turning::{TurnGoal, Turning};
 use windows::Windows;
-
-/// Ticks of commands remembered: what the three averages may span together.
-const HISTORY: usize = 512;
-
-/// The greatest speed limit and starting speed, m/s.
-pub const SPEED_RANGE: f32 = 256.0;
-
-/// What the governor needs beyond the bounds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GovernorLimits {
-    /// Greatest horizontal speed asked for, m/s. (The bounds know none; a faster start is slowed down.)
-    pub horizontal_speed: f32,
-    /// Greatest vertical speed asked for, m/s.
-    pub vertical_speed: f32,
-    /// How long snap takes from one end of its bound to the other, s.
-    pub snap_ramp: f32,
-    /// How long psi'' takes from one end of its bound to the other, s.
-    pub heading_ramp: f32,
-    /// How long velocities, rates and feed-forwards are valid without renewal, s.
-    pub timeout: f32,
-}
-
-impl Default for GovernorLimits {
-    fn default() -> Self {
-        Self { horizontal_speed: 5.0, vertical_speed: 2.0, snap_ramp: 0.1, heading_ramp: 0.2, timeout: 0.5 }
-    }
-}
 
 /// What the position is to do: be at a point, or, without one, move. What moves is renewed or stops.
 #[derive(Debug, Clone, Copy, PartialEq)]

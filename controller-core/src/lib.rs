@@ -24,7 +24,7 @@
 //!
 //! [`flight`] decides which of this reaches the motors: [`flight::Pilot`] takes measurements and requests, and gives thrusts or
 //! a stop, by a table of [rules](flight::rules). [`controller`] composes the four steps of the law, with an example. A
-//! [`Controller`](controller::Controller) for flight is made from a [`Certified`](certificate::configuration::Certified)
+//! [`Controller`](controller::Controller) for flight is made from a [`Certified`](certificate::certified::Certified)
 //! configuration and from nothing else.
 //!
 //! # Conventions
@@ -78,7 +78,8 @@ pub mod vehicle;
 /// What most users need in scope.
 pub mod prelude {
     pub use crate::certificate::Certificate;
-    pub use crate::certificate::configuration::{Certified, Configuration, Refused};
+    pub use crate::certificate::certified::{Certified, Refused};
+    pub use crate::certificate::configuration::Configuration;
     pub use crate::controller::{Controller, Diagnostics, Memory};
     pub use crate::error::{InputError, ParameterError};
     pub use crate::gains::{GainParameters, Gains};

@@ -5,7 +5,7 @@ mod flight;
 use controller_core::allocation::Rotors;
 use controller_core::flight::rules::{IMU_AGE_MAX, LEVELLING_MAX, MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, POSE_AGE_MAX};
 use controller_core::flight::{
-    ImuSample, Inputs, Mode, MotorTest, Outcome, Output, PERIOD, Pilot, Pose, Request, Stamped,
+    ImuSample, Inputs, Mode, MotorTest, Outcome, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
 };
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
@@ -72,23 +72,24 @@ fn the_ends_of_the_clock_are_times_like_any_other() {
 
 /// Puts `number` into one of all the fields that hold numbers.
 fn spoil(inputs: &mut Inputs, field: usize, number: f32) {
-    let (imu, pose) = (&mut inputs.imu.as_mut().unwrap().value, &mut inputs.pose.as_mut().unwrap().value);
-    let at = |v: Vector3<f32>| v.map(|_| 0.0);
+    let (imu, pose) = (&mut inputs.imu.as_mut().unwrap().value, inputs.pose.unwrap());
+    let Stamped { value, time } = pose;
+    let (mut position, mut velocity, mut attitude) = (value.position(), value.velocity(), value.attitude());
     match field {
         0..3 => imu.angular_velocity[field] = number,
         3..6 => imu.specific_force[field - 3] = number,
-        6..9 => pose.position[field - 6] = number,
-        9..12 => pose.velocity[field - 9] = number,
-        12..16 => pose.attitude.coords[field - 12] = number,
+        6..9 => position[field - 6] = number,
+        9..12 => velocity[field - 9] = number,
+        12..16 => attitude.coords[field - 12] = number,
         16..25 => {
-            let mut parts = [at(pose.position); 3];
+            let mut parts = [Vector3::zeros(); 3];
             parts[(field - 16) / 3][(field - 16) % 3] = number;
             let [position, velocity, acceleration] = parts;
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
             inputs.setpoint = Some(Setpoint { motion, turn: Turn::Keep });
         }
         25..28 => {
-            let mut velocity = at(pose.velocity);
+            let mut velocity = Vector3::zeros();
             velocity[field - 25] = number;
             inputs.setpoint = Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Keep });
         }
@@ -100,6 +101,9 @@ fn spoil(inputs: &mut Inputs, field: usize, number: f32) {
             (inputs.disarm, inputs.request) = (false, Some(Request::MotorTest(test)));
         }
     }
+    // Numbers that make no pose are none: there is no way to hand them in.
+    let pose = Pose::new(position, Velocity::World(velocity), attitude);
+    inputs.pose = pose.ok().map(|value| Stamped { value, time });
 }
 
 /// What arrives in one tick of a random stream.
@@ -189,10 +193,11 @@ impl Judge {
                 time: now - age.min(now),
             }
         });
-        let pose = arrival.pose.map(|(age, usable)| {
+        let pose = arrival.pose.and_then(|(age, usable)| {
             let attitude = Quaternion::new(1.0, 0.1 * roll, 0.1 * pitch, yaw).normalize();
-            let velocity = Vector3::new(z, broken(usable, x), y);
-            Stamped { value: Pose { position: Vector3::new(x, y, z), velocity, attitude }, time: now - age.min(now) }
+            let velocity = Velocity::World(Vector3::new(z, broken(usable, x), y));
+            let value = Pose::new(Vector3::new(x, y, z), velocity, attitude).ok()?;
+            Some(Stamped { value, time: now - age.min(now) })
         });
         // Usable ones count, from the time they were true.
         if let (Some(imu), Some((_, true))) = (&imu, arrival.imu) {

@@ -1,18 +1,12 @@
-//! From a scenario file to Rust source: the vehicle, gains, rotors and reference bounds that the firmware flies.
+//! From a scenario to Rust source: the vehicle, gains, rotors and reference bounds that the firmware flies.
 //!
-//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. The numbers are
-//! written with all their digits and read back bit for bit; with the rotors goes the inverse of what they do, which the board
-//! checks rather than works out. Nothing of the certificate is carried over: the board works it out again at boot.
+//! The numbers are written with all their digits and read back bit for bit. Nothing that is worked out from them is carried over:
+//! the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
-use controller_core::certificate::configuration::{Certified, Configuration, Refused};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 use scenario::Scenario;
-use std::path::{Path, PathBuf};
-use std::{env, fs};
-
-/// What flies if nobody chooses: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
-const DEFAULT: &str = "vehicles/study.toml";
+use scenario::verdict::Verdict;
 
 /// The rate of the firmware's control task, Hz.
 const RATE: f64 = 100.0;
@@ -20,17 +14,25 @@ const RATE: f64 = 100.0;
 /// Rotors that the boards have outputs for.
 const ROTORS: usize = 4;
 
-/// Reads the chosen file and writes the source of `fn configuration()` and a few constants to `target`.
-pub fn scenario(target: &Path) -> Result<(), String> {
-    println!("cargo::rerun-if-env-changed=SCENARIO");
-    println!("cargo::rerun-if-changed=build/embed.rs");
-    let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
-    let name = env::var("SCENARIO").unwrap_or_else(|_| DEFAULT.to_owned());
-    let file = top.join(&name);
-    println!("cargo::rerun-if-changed={}", file.display());
-    let text = fs::read_to_string(&file)
-        .map_err(|error| format!("SCENARIO {name}: cannot be read from the top of the repository: {error}"))?;
-    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+/// What is to be built in.
+#[derive(Debug)]
+pub struct Embedded {
+    /// The source of `fn built()` and a few constants.
+    pub source: String,
+    /// Why the firmware will refuse to arm, if it will.
+    pub warning: Option<String>,
+}
+
+/// What the scenario in `text`, of the file `name`, becomes.
+///
+/// One whose sampled loops are unstable or without margin is refused: no board works that out, so nothing else would keep it on
+/// the ground. One that is not certified is built all the same, with a warning. The board itself refuses to arm with it: it boots,
+/// answers, tests its motors, and names the inequality.
+///
+/// # Errors
+/// One line: the file, the field or the loop, and what is wrong.
+pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
+    let scenario = Scenario::parse(text, name).map_err(|error| error.to_string())?;
     let rate = 1.0 / scenario.timing.period();
     if (rate - RATE).abs() > 1e-9 {
         return Err(format!("{name}: control.rate: the firmware flies at {RATE} Hz, found {rate}"));
@@ -41,27 +43,19 @@ pub fn scenario(target: &Path) -> Result<(), String> {
     if rotors.len() != ROTORS {
         return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
     }
-    Rotors::with_inverse(rotors, rotors.pseudo_inverse()).map_err(|error| format!("{name}: {error}"))?;
-    warn(&name, &scenario.configuration);
-    fs::write(target, source(&scenario, rotors)).map_err(|error| format!("{}: {error}", target.display()))
-}
-
-/// Says at build time what the board will say at boot.
-fn warn(name: &str, configuration: &Configuration) {
-    if let Err(Refused::Fails(certificate)) = Certified::new(configuration.clone()) {
-        let failed = certificate.inequalities().find(|inequality| !inequality.holds());
-        let failed = failed.map_or("an inequality", |inequality| inequality.name);
-        println!("cargo::warning={name} is not certified ({failed} fails): this firmware will refuse to arm");
+    let verdict = Verdict::of(&scenario).map_err(|error| format!("{name}: {error}"))?;
+    if let Some(lack) = verdict.lacking() {
+        return Err(format!("{name}: {lack}; what cannot be flown is not built"));
     }
+    let warning = verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm"));
+    Ok(Embedded { source: source(&scenario, rotors), warning })
 }
 
 fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let (gains, bounds) = (configuration.gains(), configuration.bounds());
-    let line = |source: String| format!("        {source},\n");
-    let inverse: String = rotors.pseudo_inverse().iter().map(|row| line(row_source(row))).collect();
-    let rotors: String = rotors.iter().map(|rotor| line(rotor_source(rotor))).collect();
+    let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let floor = configuration.thrust_floor();
     let floor = floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:?})"));
     format!(
@@ -75,11 +69,8 @@ fn built() -> Result<Configuration, ParameterError> {{
     let limits = Limits::new(limits, &vehicle)?;
     let gains = Gains::new({gains:?}, &vehicle)?;
     let bounds = {bounds:?};
-    let rotors = [
-{rotors}    ];
-    let inverse = [
-{inverse}    ];
-    let rotors = Rotors::with_inverse(&rotors, &inverse)?;
+    let rotors = Rotors::new(&[
+{rotors}    ])?;
     Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
 }}
 ",
@@ -104,10 +95,6 @@ fn rotor_source(rotor: &Rotor) -> String {
         "Rotor {{ position: {position}, spin: Spin::{spin}, thrust_coefficient: {thrust_coefficient:?}, \
          drag_coefficient: {drag_coefficient:?}, thrust_min: {thrust_min:?}, thrust_max: {thrust_max:?} }}"
     )
-}
-
-fn row_source(row: &Vector4<f64>) -> String {
-    format!("Vector4::new({:?}, {:?}, {:?}, {:?})", row.x, row.y, row.z, row.w)
 }
 
 fn vector(v: &Vector3<f32>) -> String {

@@ -8,7 +8,8 @@ use crate::configuration;
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::parameters::table::Name;
-use controller_core::certificate::configuration::{Certified, Configuration, Refused};
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::flight::Pilot;
 use controller_core::governor::{GovernorLimits, Memory};
@@ -29,7 +30,7 @@ impl Place {
     }
 }
 
-/// Certifies the embedded configuration, logs every margin, and makes a pilot of it, certified or grounded, in the place
+/// Certifies the embedded configuration, logs its numbers, and makes a pilot of it, certified or grounded, in the place
 /// that is meant for it; with it comes what turns its thrusts into motor commands.
 ///
 /// # Errors
@@ -69,33 +70,25 @@ fn pilot(
     place.pilot.init_with(|| Pilot::new(certification, limits, memory))
 }
 
-/// Every inequality that decides, with its margin, and the verdict.
+/// The numbers of every inequality that decides, and the verdict. `host-sim certify` says what they mean.
 #[cfg(target_os = "none")]
 fn log(certification: &Result<Certified, Refused>) {
+    defmt::info!("scenario {=str}", configuration::NAME);
     let certificate = match certification {
         Ok(certified) => certified.certificate(),
         Err(Refused::Fails(certificate)) => certificate,
         Err(Refused::Undefined(error)) => return defmt::error!("not certified: {}", error),
     };
-    defmt::info!("scenario {=str}", configuration::NAME);
     for inequality in certificate.inequalities() {
-        let (required, available) = (inequality.required as f32, inequality.available as f32);
-        let (unit, percent) = (inequality.unit, 100.0 * inequality.margin() as f32);
+        let (name, required, available) = (inequality.name, inequality.required as f32, inequality.available as f32);
         match inequality.holds() {
-            true => defmt::info!(
-                "{=str}: {=f32} of {=f32} {=str}, {=f32} % left",
-                inequality.name,
-                required,
-                available,
-                unit,
-                percent
-            ),
-            false => defmt::error!("{=str} FAILS: {=f32} of {=f32} {=str}", inequality.name, required, available, unit),
+            true => defmt::info!("{=str}: {=f32} of {=f32}", name, required, available),
+            false => defmt::error!("{=str}: {=f32} of {=f32}", name, required, available),
         }
     }
     match certification {
         Ok(_) => defmt::info!("certified"),
-        Err(_) => defmt::error!("not certified: this vehicle will not arm"),
+        Err(_) => defmt::error!("not certified"),
     }
 }
 

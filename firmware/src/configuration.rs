@@ -7,14 +7,14 @@ use controller_core::error::{ParameterError, Reason};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 
 include!(concat!(env!("OUT_DIR"), "/configuration.rs"));
 
 /// Vehicle, limits, gains, rotors and reference bounds as the scenario file gave them.
 ///
 /// # Errors
-/// Never for a file that the build accepted: the same checks, and stricter ones, have seen the same bits.
+/// Never for a file that the build accepted: the same checks have seen the same bits.
 #[inline(never)] // building it takes a stack of its own
 pub fn embedded() -> Result<Configuration, ParameterError> {
     built()

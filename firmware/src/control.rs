@@ -13,11 +13,10 @@
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::Outputs;
-use crate::shared::{Asked, Report, Severity, Shared, Timing};
-use crate::time::beyond;
+use crate::shared::{Asked, Event, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::flight::rules::{IMU_AGE_MAX, POSE_AGE_MAX};
-use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Reason, Refusal};
+use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Refusal};
 use controller_core::state::State;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -69,7 +68,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     /// One tick, from what the other tasks have put down to what the motors are told.
-    #[inline(never)]
+    #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
         let asked = self.shared.requests.take();
         let inputs = self.inputs(now, asked);
@@ -93,25 +92,25 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// Answers, transitions and refusals, in words.
+    /// Answers, transitions and refusals.
     fn tell(&mut self, outcome: &Outcome, asked: Option<Asked>) {
-        if let (Some(Asked { origin, .. }), Some(result)) = (asked, outcome.answer) {
-            self.shared.answer(origin, result);
+        if let (Some(Asked { command, .. }), Some(result)) = (asked, outcome.answer) {
+            self.shared.answer(command, result);
         }
         if let Some(transition) = outcome.transition {
-            self.shared.announce(severity(transition.reason), &[transition.reason.text()]);
+            self.shared.announce(Event::Mode(transition.reason));
         }
         if let Some(setpoint) = outcome.setpoint {
             let refusal = setpoint.err();
             if refusal != self.complaint.setpoint {
                 self.complaint.setpoint = refusal;
-                refusal.inspect(|refusal| self.shared.announce(Severity::Warning, &refusal.words()));
+                refusal.inspect(|refusal| self.shared.announce(Event::Refused(*refusal)));
             }
         }
         let refused = outcome.flown.as_ref().and_then(|flown| flown.as_ref().err().copied());
         if refused != self.complaint.law {
             self.complaint.law = refused;
-            refused.inspect(|error| self.shared.announce(Severity::Critical, &error.words()));
+            refused.inspect(|error| self.shared.announce(Event::Input(*error)));
         }
     }
 
@@ -130,20 +129,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let fault = written.err();
         if fault != self.complaint.writing {
             self.complaint.writing = fault;
-            match fault {
-                Some(Fault) => self.shared.announce(Severity::Critical, &["motors: a frame did not go out"]),
-                None => self.shared.announce(Severity::Information, &["motors: frames go out again"]),
-            }
+            self.shared.announce(if fault.is_some() { Event::MotorsLost } else { Event::MotorsRegained });
         }
-    }
-}
-
-/// What the vehicle does on its own is critical; what it was told to, or recovers from, is good to know.
-fn severity(reason: Reason) -> Severity {
-    use Reason::{GroundStationLost, ImuLost, PoseLost, PoseLostForLong, ThrustsRefused};
-    match reason {
-        ImuLost | ThrustsRefused | PoseLost | PoseLostForLong | GroundStationLost => Severity::Critical,
-        _ => Severity::Information,
     }
 }
 
@@ -152,13 +139,14 @@ fn measured(inputs: &Inputs) -> Option<State> {
     let imu = inputs.imu.filter(|imu| imu.age(inputs.now) <= IMU_AGE_MAX)?.value;
     let pose = inputs.pose.filter(|pose| pose.age(inputs.now) <= POSE_AGE_MAX)?.value;
     let angular_velocity = imu.angular_velocity;
-    Some(State { position: pose.position, velocity: pose.velocity, attitude: pose.attitude, angular_velocity })
+    let (position, velocity, attitude) = (pose.position(), pose.velocity(), pose.attitude());
+    Some(State { position, velocity, attitude, angular_velocity })
 }
 
 /// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it overran.
 fn next_due(due: u64, end: u64) -> u64 {
     let overrun = end.saturating_sub(due);
-    due + overrun - beyond(overrun, PERIOD as u16) + PERIOD
+    due + overrun - overrun % PERIOD + PERIOD
 }
 
 impl Timing {

@@ -41,7 +41,7 @@ pub enum MotorCommand {
     Run([f32; MOTORS]),
     /// One motor turns at a command from 0 to 1; the others get the stop command.
     One {
-        /// Which, from 0.
+        /// Its index in the rotors' order.
         motor: usize,
         /// Its command.
         level: f32,

@@ -18,20 +18,25 @@
 
 use crate::deadline::{send, within};
 use crate::frames;
-use crate::hardware::{Clock, Fault, MotorCommand, Motors};
-use crate::link::COMPONENT;
-use crate::link::draft::Draft;
-use crate::link::frame::{Frame, Header, Parser};
-use crate::link::message::{self, mode};
+use crate::hardware::{Clock, Fault, MOTORS, MotorCommand, Motors};
+use crate::link::frame::{Frame, Parser};
 use crate::link::pose::odometry;
+use crate::link::writer::Writer;
 use crate::parameters::table::Name;
 use crate::shared::{Flag, Latest, Shared};
 use controller_core::flight::{ImuSample, PERIOD, Stamped};
+use core::array;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
+    ODOMETRY_DATA,
+};
+use nalgebra::Vector3;
 
 /// Longest that a message may take to go out, us: then the next tick's is due.
 const SENDING_MAX: u64 = 8_000;
@@ -45,11 +50,13 @@ const SILENCE: u64 = 100_000;
 /// Pause before the line is asked again, us.
 const RETRY: u64 = 1_000;
 
-/// HIL_ACTUATOR_CONTROLS_FLAGS_LOCKSTEP.
-const LOCKSTEP: u64 = 1;
-
-/// HIL_SENSOR: accelerometer and gyro are known, all axes.
-const INERTIAL: u32 = 0b11_1111;
+/// What a simulator must know: accelerometer and gyro, all axes.
+const INERTIAL: HilSensorUpdatedFlags = HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_XACC
+    .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_YACC)
+    .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_ZACC)
+    .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_XGYRO)
+    .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_YGYRO)
+    .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_ZGYRO);
 
 /// The exchange with the simulator: whether there is one, and how far it is.
 pub struct Hil<M: RawMutex> {
@@ -138,18 +145,14 @@ impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
 
 /// Sends the simulator each command that [`SelectedMotors`] was given, for ever.
 pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &impl Clock, shared: &Shared<M>) -> ! {
-    let mut draft = Draft::new();
-    let mut sequence: u8 = 0;
+    let mut writer = Writer::new();
     loop {
         // The time limit only makes the wait a bounded one.
         let _ = within(clock, SILENCE, hil.outgoing.wait()).await;
         let Some(command) = hil.command.take() else { continue };
-        let system = shared.parameters.get(Name::SystemId) as u8;
-        let header = Header { system, component: COMPONENT, sequence };
-        sequence = sequence.wrapping_add(1);
-        controls(&mut draft, &command);
+        writer.write(shared.parameters.get(Name::SystemId) as u8, &controls(&command));
         // What does not go out is not answered, and shows as sensors that grow old.
-        send(&mut line, clock, SENDING_MAX, draft.finish(header)).await;
+        send(&mut line, clock, SENDING_MAX, writer.bytes()).await;
     }
 }
 
@@ -169,18 +172,17 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
 
 /// Acts on one frame, if it is one of the two and answers a command.
 fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, shared: &Shared<M>) {
-    // Both begin with the time.
-    let asked = frame.u64(0);
-    let Some(time) = hil.stamp(asked) else { return };
     match frame.message {
-        message::HIL_SENSOR if frame.is_whole() => {
-            if let Some(sample) = sample(frame) {
+        HIL_SENSOR_DATA::ID => {
+            let Some(message) = frame.decode::<HIL_SENSOR_DATA>() else { return };
+            if let (Some(time), Some(sample)) = (hil.stamp(message.time_usec), sample(&message)) {
                 shared.imu.put(sample, time);
-                hil.answered(asked);
+                hil.answered(message.time_usec);
             }
         }
-        message::ODOMETRY => {
-            if let Ok(pose) = odometry(frame) {
+        ODOMETRY_DATA::ID => {
+            let Some(message) = frame.decode::<ODOMETRY_DATA>() else { return };
+            if let (Some(time), Ok(pose)) = (hil.stamp(message.time_usec), odometry(&message)) {
                 shared.pose.put(pose, time);
             }
         }
@@ -188,31 +190,28 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, shared: &Shared<M>) {
     }
 }
 
-/// Drafts the message that tells the simulator a command.
-fn controls(draft: &mut Draft, command: &Stamped<MotorCommand>) {
+/// The message that tells the simulator a command.
+fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     let mut controls = [0.0; 16];
-    match command.value {
-        MotorCommand::Stop => {}
-        MotorCommand::Run(motors) => {
-            for (control, motor) in controls.iter_mut().zip(motors) {
-                *control = motor;
-            }
-        }
-        MotorCommand::One { motor, level } => {
-            for control in controls.iter_mut().skip(motor).take(1) {
-                *control = level;
-            }
-        }
+    let motors = match command.value {
+        MotorCommand::Stop => [0.0; MOTORS],
+        MotorCommand::Run(motors) => motors,
+        MotorCommand::One { motor, level } => array::from_fn(|index| if index == motor { level } else { 0.0 }),
+    };
+    for (control, motor) in controls.iter_mut().zip(motors) {
+        *control = motor;
     }
-    let armed = if command.value == MotorCommand::Stop { 0 } else { mode::ARMED };
-    let draft = draft.begin(message::HIL_ACTUATOR_CONTROLS).bytes(&command.time.to_le_bytes());
-    draft.bytes(&LOCKSTEP.to_le_bytes()).floats(&controls).bytes(&[mode::HIL | armed]);
+    let mut mode = MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED;
+    mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, command.value != MotorCommand::Stop);
+    let flags = HilActuatorControlsFlags::HIL_ACTUATOR_CONTROLS_FLAGS_LOCKSTEP;
+    HIL_ACTUATOR_CONTROLS_DATA { time_usec: command.time, flags, controls, mode }
 }
 
 /// What the sensors say, if the simulator knows all of it.
-fn sample(message: &Frame<'_>) -> Option<ImuSample> {
-    // Time, accelerometer, gyro, seven numbers of other sensors, which of all these are known.
-    let (accelerometer, gyro, known) = (message.vector(8), message.vector(20), message.u32(60));
-    let whole = known & INERTIAL == INERTIAL && message.are_finite(8, 6);
-    whole.then(|| ImuSample { angular_velocity: frames::body(&gyro), specific_force: frames::body(&accelerometer) })
+fn sample(message: &HIL_SENSOR_DATA) -> Option<ImuSample> {
+    let &HIL_SENSOR_DATA { xacc, yacc, zacc, xgyro, ygyro, zgyro, fields_updated: known, .. } = message;
+    let (force, rates) = (Vector3::new(xacc, yacc, zacc), Vector3::new(xgyro, ygyro, zgyro));
+    let finite = force.iter().chain(&rates).all(|component| component.is_finite());
+    let whole = known.contains(INERTIAL) && finite;
+    whole.then(|| ImuSample { angular_velocity: frames::body(&rates), specific_force: frames::body(&force) })
 }

@@ -6,7 +6,7 @@
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu};
-use crate::shared::{Severity, Shared};
+use crate::shared::{Event, Severity, Shared};
 use controller_core::flight::ImuSample;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
@@ -30,8 +30,8 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
         if sample.is_ok() != healthy {
             healthy = sample.is_ok();
             match sample {
-                Ok(_) => shared.announce(Severity::Information, &["IMU answers again"]),
-                Err(Fault) => shared.announce(Severity::Critical, &["IMU does not answer"]),
+                Ok(_) => shared.announce(Event::new(Severity::Information, "IMU answers again")),
+                Err(Fault) => shared.announce(Event::new(Severity::Critical, "IMU does not answer")),
             }
         }
     }

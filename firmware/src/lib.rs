@@ -8,18 +8,17 @@
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
+//! | [`ending`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
-//! | `memory` | copying and filling memory in little flash; on boards only |
 //! | [`outputs`] | thrusts to motor commands |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
-//! | [`time`] | times divided |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs` list them by
 //! priority and run them on Embassy's executors. They decide nothing about flight: that is [`controller_core::flight`].
@@ -34,16 +33,14 @@ pub mod configuration;
 pub mod control;
 pub mod deadline;
 pub mod dshot;
+pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
 pub mod imu;
 pub mod link;
-#[cfg(target_os = "none")]
-mod memory;
 pub mod outputs;
 pub mod parameters;
 pub mod replay;
 pub mod shared;
 pub mod status;
-pub mod time;

@@ -3,30 +3,26 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`frame`] | frames in a stream of bytes |
-//! | [`draft`] | frames to send |
-//! | [`checksum`], [`message`] | what the protocol's definitions say about its messages, as far as it is needed |
 //! | [`receive`] | what comes in, message by message |
 //! | [`pose`], [`setpoint`], [`command`] | what the messages that matter for flight mean |
 //! | [`transmit`] | what goes out, and when |
 //! | [`telemetry`] | reports, answers and events as messages |
+//! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
-//! both protocol versions are understood, version 2 is sent. Nothing is signed: whoever is on the line commands. Messages are
-//! read and written field by field: the code generated for a whole dialect would take 6 KB more.
+//! both protocol versions are understood, version 2 is sent, without extension fields. Nothing is signed: whoever is on the line
+//! commands. What a message's fields are is the `mavlink` crate's to say: only the types that matter here are decoded, each by
+//! itself, because matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the
+//! dialect does not know (a frame, a command, a type) is none.
 
-pub mod checksum;
 pub mod command;
-pub mod draft;
 pub mod frame;
-pub mod message;
 pub mod pose;
 pub mod receive;
-mod reply;
 pub mod setpoint;
 pub mod telemetry;
 pub mod transmit;
-
-pub use reply::{CommandResult, Reply};
+pub mod writer;
 
 /// MAV_COMP_ID_AUTOPILOT1: this component.
 pub const COMPONENT: u8 = 1;

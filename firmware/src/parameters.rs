@@ -9,11 +9,11 @@ pub mod journal;
 pub mod storage;
 pub mod table;
 
-use crate::shared::Text;
+use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
-use table::{Name, PARAMETERS};
+use table::{Name, PARAMETERS, Row};
 
 /// One value for each row of the table.
 type Values = [f32; PARAMETERS.len()];
@@ -44,13 +44,10 @@ pub struct OutOfRange(
     pub Name,
 );
 
-impl OutOfRange {
-    /// What is allowed, in words.
-    #[must_use]
-    pub fn text(self) -> Text {
-        let row = self.0.row();
-        let (least, most) = (Text::decimal(row.least), Text::decimal(row.most));
-        Text::new(&[row.name, ": allowed are ", least.as_str(), " to ", most.as_str(), " ", row.unit])
+impl fmt::Display for OutOfRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Row { name, least, most, unit, .. } = self.0.row();
+        write!(f, "{name}: allowed are {least:.1} to {most:.1} {unit}")
     }
 }
 

@@ -10,7 +10,8 @@
 //!
 //! Table I flies here and nowhere else in this crate: it does not survive a late sample.
 
-use controller_core::certificate::configuration::{Certified, Configuration};
+use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Controller;
 use controller_core::error::InputError;
 use controller_core::gains::{GainParameters, Gains};

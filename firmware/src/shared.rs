@@ -23,21 +23,23 @@ mod event;
 mod flag;
 mod latest;
 mod queue;
+mod reply;
 mod report;
 
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use queue::{Full, Queue};
+pub use reply::{Asked, Ping, Reply};
 pub use report::{Report, Timing, Traffic};
 
-use crate::link::{CommandResult, Reply};
 use crate::parameters::Parameters;
-use controller_core::flight::{ImuSample, Pose, Refusal, Request};
+use controller_core::flight::{ImuSample, Pose, Refusal};
 use controller_core::governor::Setpoint;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
+use mavlink::dialects::common::{MavCmd, MavResult};
 
 /// Requests that wait for control, which takes one a tick.
 pub const REQUESTS: usize = 4;
@@ -47,26 +49,6 @@ pub const EVENTS: usize = 8;
 
 /// Replies that wait to be sent, and as many answers of control: more than there can be requests on their way.
 pub const REPLIES: usize = 8;
-
-/// Who asked for something, and by which command: enough to answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Origin {
-    /// MAVLink system.
-    pub system: u8,
-    /// MAVLink component.
-    pub component: u8,
-    /// MAV_CMD.
-    pub command: u16,
-}
-
-/// A request to control, to be answered.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Asked {
-    /// What for.
-    pub request: Request,
-    /// Who by.
-    pub origin: Origin,
-}
 
 /// Everything that passes between tasks.
 pub struct Shared<M: RawMutex> {
@@ -141,20 +123,20 @@ impl<M: RawMutex> Shared<M> {
 
     /// Disarms within one tick. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
     pub fn request_disarm(&self) {
-        while let Some(Asked { origin, .. }) = self.requests.take() {
-            self.answer(origin, Err(Refusal::DisarmCommanded));
+        while let Some(Asked { command, .. }) = self.requests.take() {
+            self.answer(command, Err(Refusal::DisarmCommanded));
         }
         self.disarm.raise();
     }
 
-    /// Answers a request, and announces a refusal in words. An answer that finds no room is dropped: its sender asks again
-    /// for want of one.
-    pub fn answer(&self, origin: Origin, result: Result<(), Refusal>) {
+    /// Answers a request, and announces a refusal. An answer that finds no room is dropped: its sender asks again for want of
+    /// one.
+    pub fn answer(&self, command: MavCmd, result: Result<(), Refusal>) {
         if let Err(refusal) = result {
-            self.announce(Severity::Warning, &refusal.words());
+            self.announce(Event::Refused(refusal));
         }
-        let result = if result.is_ok() { CommandResult::Accepted } else { CommandResult::Denied };
-        let _ = self.answers.put(Reply::Command { origin, result });
+        let result = if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED };
+        let _ = self.answers.put(Reply::Command { command, result });
         self.outgoing.signal(());
     }
 
@@ -164,10 +146,9 @@ impl<M: RawMutex> Shared<M> {
         self.outgoing.signal(());
     }
 
-    /// Tells people, by a line of these pieces: the ground station and the log. Where a queue is full the event is dropped and counted: what came
-    /// first is the cause, what follows is mostly its consequence.
-    pub fn announce(&self, severity: Severity, words: &[&str]) {
-        let event = Event { severity, text: Text::new(words) };
+    /// Tells people: the ground station and the log. Where a queue is full the event is dropped and counted: what came first is
+    /// the cause, what follows is mostly its consequence.
+    pub fn announce(&self, event: Event) {
         if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }

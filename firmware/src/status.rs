@@ -14,8 +14,7 @@ mod log;
 
 use crate::hardware::{Battery, Clock, Light};
 use crate::parameters::table::Name;
-use crate::shared::{Severity, Shared, Text};
-use crate::time::{beyond, milliseconds};
+use crate::shared::{Event, Severity, Shared};
 use controller_core::flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -44,7 +43,7 @@ pub const REPORT_AGE_MAX: u64 = 1_000_000;
 #[must_use]
 pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
     // Steps into the present second, 0 to 19.
-    let step = milliseconds(now) % 1000 / (STEP / 1000) as u32;
+    let step = now % 1_000_000 / STEP;
     match mode {
         Some(Mode::Disarmed) => step == 0,
         Some(Mode::MotorTest) => step == 0 || step == 4,
@@ -80,11 +79,11 @@ pub async fn run<M: RawMutex>(
         }
         // By whole steps, so that the pattern does not drift through the second.
         let now = clock.now();
-        clock.until(now - beyond(now, STEP as u16) + STEP).await;
+        clock.until(now - now % STEP + STEP).await;
     }
 }
 
-/// Reads the battery and warns when it is low, no oftener than `warning` allows.
+/// Reads the battery and warns when it is low, no more often than `warning` allows.
 async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, shared: &Shared<M>, warning: &mut u64) {
     let end = clock.now().saturating_add(BATTERY_TIME_MAX);
     let Either::First(Some(voltage)) = select(battery.voltage(), clock.until(end)).await else { return };
@@ -95,6 +94,6 @@ async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, sh
     shared.voltage.put(voltage, now);
     if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
         *warning = now.saturating_add(WARNING_INTERVAL);
-        shared.announce(Severity::Warning, &["Battery low: ", Text::decimal(voltage).as_str(), " V"]);
+        shared.announce(Event::new(Severity::Warning, format_args!("Battery low: {voltage:.1} V")));
     }
 }

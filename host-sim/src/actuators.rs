@@ -7,21 +7,20 @@
 //! ```
 //!
 //! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it acts;
-//! - *allocation*: the core's own [`Mixer`], with its order of giving up what the rotors do not have;
+//! - *allocation*: what the boards use, [`MinimumNorm`], wherever a certificate says that the rotors have what it asks for; outside
+//!   of one the core's [`Mixer`], with its order of giving up what they do not have;
 //! - *lag*: of the rotors' speeds ([`rotors`]).
 //!
-//! A rotor counts as saturated at a tick whose wrench the allocation could not deliver in full.
-//! Rotors start at the speeds that hover.
+//! A tick counts as clipped if its wrench could not be delivered in full. Rotors start at the speeds that hover.
 
 pub mod rotors;
 
-use crate::plant::{Clipping, Diverged, Plant};
-use controller_core::allocation::{Mixer, Thrusts};
+use crate::plant::{Diverged, Plant};
+use controller_core::allocation::{MinimumNorm, Mixer, Thrusts};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
 use nalgebra::Vector3;
 use rotors::SpinningRotors;
-pub use scenario::actuation::RotorSetup;
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -49,30 +48,36 @@ impl From<Diverged> for ActuationError {
     }
 }
 
-/// Rotors behind their allocation.
+/// How a wrench becomes rotor thrusts.
 #[derive(Debug, Clone)]
-struct Allocated {
-    mixer: Mixer,
-    rotors: SpinningRotors,
+pub enum Allocation {
+    /// As on the boards, for a certified flight.
+    Certified(Box<MinimumNorm>),
+    /// For a flight that nothing certifies.
+    Prioritised(Box<Mixer>),
 }
 
-impl Allocated {
-    /// Sends a wrench to the rotors; returns their commanded thrusts and whether they could deliver it.
-    fn command(&mut self, wrench: &Wrench) -> Result<(Thrusts, Clipping), InputError> {
-        let allocation = self.mixer.allocate(wrench)?;
-        self.rotors.command(&allocation.thrusts);
-        let clipping = Clipping {
-            thrust: allocation.thrust_limited,
-            torque: allocation.roll_pitch_limited || allocation.yaw_limited,
-        };
-        Ok((allocation.thrusts, clipping))
+impl Allocation {
+    /// The thrusts for a wrench, N, and whether they fall short of it.
+    fn thrusts(&self, wrench: &Wrench) -> Result<(Thrusts, bool), InputError> {
+        match self {
+            Self::Certified(minimum_norm) => {
+                let delivered = minimum_norm.allocate(wrench)?;
+                Ok((delivered.thrusts, delivered.clipped))
+            }
+            Self::Prioritised(mixer) => {
+                let allocation = mixer.allocate(wrench)?;
+                let short = !allocation.is_exact();
+                Ok((allocation.thrusts, short))
+            }
+        }
     }
 }
 
 /// Delay and rotors between the law and the body.
 #[derive(Debug, Clone)]
 pub struct Actuators {
-    rotors: Option<Allocated>,
+    pub(crate) rotors: Option<(Allocation, SpinningRotors)>,
     delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
@@ -83,37 +88,31 @@ pub struct Actuators {
 }
 
 impl Actuators {
-    /// Actuators that hold the hover thrust, N, until the first wrench arrives. `step` is the plant's, s.
+    /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its tick.
+    /// Without rotors wrenches act on the body directly.
     #[must_use]
-    pub fn new(setup: Option<&RotorSetup>, delay_steps: u64, hover: f32, step: f64) -> Self {
-        Self {
-            rotors: setup.map(|setup| Allocated {
-                mixer: Mixer::new(&setup.rotors),
-                rotors: SpinningRotors::hovering(setup, hover, step),
-            }),
-            delay_steps,
-            now: 0,
-            waiting: VecDeque::new(),
-            acting: Wrench { thrust: hover, torque: Vector3::zeros() },
-        }
+    pub fn new(rotors: Option<(Allocation, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
+        let acting = Wrench { thrust: hover, torque: Vector3::zeros() };
+        Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting }
     }
 
-    /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns what was cut, and the commanded
-    /// rotor thrusts, N, as they stand at the end (none without rotors).
+    /// The rotors' thrusts at this moment, N, after lag; none without rotors.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        self.rotors.as_ref().map_or_else(Vec::new, |(_, rotors)| rotors.thrusts())
+    }
+
+    /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns whether anything was cut, and the
+    /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(
-        &mut self,
-        plant: &mut Plant,
-        wrench: &Wrench,
-        steps: u32,
-    ) -> Result<(Clipping, Thrusts), ActuationError> {
+    pub fn hold(&mut self, plant: &mut Plant, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         if self.rotors.is_none() && self.delay_steps == 0 {
             return Ok((plant.hold(wrench, steps)?, Thrusts::new()));
         }
         self.waiting.push_back((self.now + self.delay_steps, *wrench));
-        let mut clipping = Clipping::default();
+        let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {
             let mut arrived = false;
@@ -122,21 +121,22 @@ impl Actuators {
                 arrived = true;
             }
             match &mut self.rotors {
-                None => clipping = clipping.or(plant.hold(&self.acting, 1)?),
-                Some(rotors) => {
+                None => clipped |= plant.hold(&self.acting, 1)?,
+                Some((allocation, rotors)) => {
                     if arrived {
-                        let (commanded, cut) = rotors.command(&self.acting).map_err(ActuationError::Wrench)?;
-                        clipping = clipping.or(cut);
-                        thrusts = commanded;
+                        let short;
+                        (thrusts, short) = allocation.thrusts(&self.acting).map_err(ActuationError::Wrench)?;
+                        rotors.command(&thrusts);
+                        clipped |= short;
                     }
-                    let (thrust, torque) = rotors.rotors.advance();
+                    let (thrust, torque) = rotors.advance();
                     plant.act(thrust, &torque);
                 }
             }
             self.now += 1;
         }
         plant.check()?;
-        Ok((clipping, thrusts))
+        Ok((clipped, thrusts))
     }
 }
 

@@ -1,16 +1,18 @@
 //! The `certify` command: every inequality of the certificate, as printed in the paper and sharp, side by side.
 //!
-//! Only the sharp form and the rotors decide. The margins of the sampled loop are reported below them: a certificate is
-//! about limits, not about how well a vehicle flies, but whoever reads it wants to know both.
+//! The sharp form and the rotors decide about the commands, the sampled loops below them about small motions: a scenario is
+//! certified if both hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
 
 mod blame;
 
-use crate::sampled_loop::{LoopModel, Timing};
-use crate::scenario::Scenario;
 use crate::table::{aligned, percent, short};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
-use controller_core::certificate::{Certificate, Form};
 use controller_core::error::ParameterError;
+use scenario::Scenario;
+use scenario::stability::{LoopMargin, Shortfall};
+use scenario::verdict::Verdict;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
 const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
@@ -20,10 +22,11 @@ const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torqu
 /// # Errors
 /// If a number of the scenario is beyond what the certificate or the loops can work with.
 pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
-    let certificate = Certificate::new(&scenario.configuration)?;
-    let mut text = verdict(scenario, &certificate);
+    let verdict = Verdict::of(scenario)?;
+    let certificate = verdict.certificate();
+    let mut text = head(scenario, &verdict);
     text += "\n";
-    text += &inequalities(&certificate);
+    text += &inequalities(certificate);
     text += "\n";
     text += &bounds("as printed", &certificate.printed);
     text += &bounds("sharp", &certificate.sharp);
@@ -33,20 +36,32 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     }
     if !certificate.rotors.is_empty() {
         text += "\n";
-        text += &rotors(&certificate);
-        text += &blame::sentence(&scenario.configuration, &certificate)?;
+        text += &rotors(certificate);
+        text += &blame::sentence(&scenario.configuration, certificate)?;
     }
     text += "\n";
-    text += &loops(scenario)?;
-    Ok((text, certificate.holds()))
+    text += &loops(scenario, &verdict);
+    Ok((text, verdict.refusal().is_none()))
 }
 
-fn verdict(scenario: &Scenario, certificate: &Certificate) -> String {
+/// The verdict, what it rests on, and what a reader looks for first.
+fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let failing = |form: &Form| {
         let names: Vec<&str> = form.inequalities.iter().filter(|i| !i.holds()).map(|i| i.name).collect();
         if names.is_empty() { "every inequality holds".to_owned() } else { format!("fails in {}", names.join(", ")) }
     };
-    let decision = if certificate.holds() { "CERTIFIED" } else { "NOT certified" };
+    let certificate = verdict.certificate();
+    let decision = verdict.refusal().map_or("CERTIFIED".to_owned(), |refusal| format!("NOT certified: {refusal}"));
+    let commands =
+        if certificate.holds() { "within every limit, whatever the vehicle does" } else { "NOT within every limit" };
+    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let stable = match verdict.lacking().map(|lack| lack.what) {
+        None => {
+            format!("stable about hover, with {gain} times the gain, 1 / {gain} of it or {} ms more delay", 1e3 * delay)
+        }
+        Some(Shortfall::Unstable { .. }) => "NOT stable about hover".to_owned(),
+        Some(_) => "stable about hover, but with too LITTLE margin".to_owned(),
+    };
     let tightest = certificate.tightest().map_or(String::new(), |tightest| {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
@@ -55,7 +70,8 @@ fn verdict(scenario: &Scenario, certificate: &Certificate) -> String {
         .thrust_floor()
         .map_or(String::new(), |floor| format!("thrust projection on, floor {} N\n", short(f64::from(floor))));
     format!(
-        "{}: {decision}\nas printed: {}\nsharp: {}\n{tightest}{projection}",
+        "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n\
+         as printed: {}\nsharp: {}\n{tightest}{projection}",
         scenario.name,
         failing(&certificate.printed),
         failing(&certificate.sharp)
@@ -103,39 +119,31 @@ fn rotors(certificate: &Certificate) -> String {
     aligned(&rows)
 }
 
-fn loops(scenario: &Scenario) -> Result<String, ParameterError> {
+fn loops(scenario: &Scenario, verdict: &Verdict) -> String {
     let configuration = &scenario.configuration;
-    let head = ["sampled loop, small motions", "spectral radius", "gain margin", "delay margin", ""];
+    let head = ["sampled loop, small motions", "spectral radius", "gain down to", "gain up to", "more delay", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for report in loop_model(scenario)?.reports() {
-        let (gain, delay) = report.margins.map_or(("none".to_owned(), "none".to_owned()), |margins| {
-            (short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay)))
+    for report in verdict.loops() {
+        let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
+            [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
         });
-        let verdict = if report.spectral_radius < 1.0 { "stable" } else { "UNSTABLE" };
+        let verdict = match LoopMargin::LEAST.lacking(report).map(|lack| lack.what) {
+            None => "stable",
+            Some(Shortfall::Unstable { .. }) => "UNSTABLE",
+            Some(_) => "TOO LITTLE MARGIN",
+        };
         let radius = format!("{:.4}", report.spectral_radius);
-        rows.push(vec![report.axis.name().to_owned(), radius, gain, delay, verdict.to_owned()]);
+        let [down, up, delay] = margins;
+        rows.push(vec![report.axis.name().to_owned(), radius, down, up, delay, verdict.to_owned()]);
     }
-    let lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
     let timing = format!(
         "at {} Hz, rotor lag {} ms, delay {} ms, for vehicle {} kg\n",
         short(1e6 / scenario.timing.period_us as f64),
-        short(1e3 * lag),
+        short(1e3 * scenario.rotor_lag),
         short(1e3 * scenario.delay()),
         short(f64::from(configuration.vehicle().mass))
     );
-    Ok(aligned(&rows) + &timing)
-}
-
-/// The sampled loops of a scenario's vehicle, gains, rotors and delay.
-///
-/// # Errors
-/// If the timing is outside the model's range.
-pub fn loop_model(scenario: &Scenario) -> Result<LoopModel, ParameterError> {
-    let configuration = &scenario.configuration;
-    let period = scenario.timing.period();
-    let rotor_lag = scenario.rotors.as_ref().map_or(0.0, |setup| setup.lag);
-    let timing = Timing { period, rotor_lag, delay_samples: scenario.delay() / period };
-    LoopModel::new(configuration.vehicle(), configuration.gains(), timing)
+    aligned(&rows) + &timing
 }
 
 #[cfg(test)]

@@ -3,14 +3,18 @@
 //! At each tick the law sees the plant's state rounded to single precision and the reference of that instant; its wrench is
 //! held until the next tick. Time is integer microseconds.
 
-use crate::actuators::{ActuationError, Actuators};
-use crate::plant::{BodyState, Clipping, Plant};
-use crate::scenario::Scenario;
-use controller_core::allocation::Thrusts;
+use crate::actuators::rotors::SpinningRotors;
+use crate::actuators::{ActuationError, Actuators, Allocation};
+use crate::plant::Plant;
+use controller_core::allocation::{MinimumNorm, Mixer, Thrusts};
+use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::{Controller, Diagnostics};
 use controller_core::error::{InputError, ParameterError};
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::Wrench;
+use scenario::Scenario;
+use scenario::body::BodyState;
 use std::fmt;
 use std::sync::Arc;
 
@@ -39,8 +43,10 @@ pub struct Tick {
     pub wrench: Wrench,
     /// What the law went through.
     pub diagnostics: Diagnostics,
-    /// What the limits or the rotors cut.
-    pub clipping: Clipping,
+    /// Whether the limits or the rotors cut something of it.
+    pub clipped: bool,
+    /// Each rotor's thrust at the tick, N, after lag; empty without rotors.
+    pub rotors: Vec<f64>,
     /// Thrust commanded of each rotor, N; empty without rotors.
     pub rotor_thrusts: Thrusts,
 }
@@ -75,34 +81,78 @@ impl fmt::Display for FlightError {
 
 impl std::error::Error for FlightError {}
 
-/// The law for the scenario's vehicle and gains, reset. A simulation may fly what no certificate covers.
+/// The law for the scenario's vehicle and gains, reset: through the door that boards use where the scenario is certified.
+/// What no certificate covers may be simulated.
 ///
 /// # Errors
 /// If the controller refuses the scenario's period; a [`Scenario`] that was read from a file has a good one.
 pub fn controller(scenario: &Scenario) -> Result<Controller, ParameterError> {
     let configuration = &scenario.configuration;
     let period = scenario.timing.period() as f32;
+    match Certified::new(configuration.clone()) {
+        Ok(certified) => Controller::new(&certified, period),
+        Err(_) => uncertified(configuration, period),
+    }
+}
+
+fn uncertified(configuration: &Configuration, period: f32) -> Result<Controller, ParameterError> {
     Controller::uncertified(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
 }
 
 impl Flight {
-    /// A flight of `scenario`, at its start, the controller reset.
+    /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a millisecond;
+    /// whoever flies one scenario many times clones the start.
     ///
     /// # Errors
     /// As [`controller`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
-        let (timing, configuration) = (&scenario.timing, &scenario.configuration);
-        let vehicle = configuration.vehicle();
+        match Certified::new(scenario.configuration.clone()) {
+            Ok(certified) => Self::certified(scenario, &certified),
+            Err(_) => Self::uncertified(scenario),
+        }
+    }
+
+    /// A flight of what is certified, with the law and the allocation that boards fly, in the circumstances of `scenario`:
+    /// its timing, delay, lag, start and reference.
+    ///
+    /// # Errors
+    /// As [`controller`]'s.
+    pub fn certified(scenario: &Scenario, certified: &Certified) -> Result<Self, ParameterError> {
+        let controller = Controller::new(certified, scenario.timing.period() as f32)?;
+        let minimum_norm = certified.configuration().rotors().map(|rotors| Box::new(MinimumNorm::new(rotors)));
+        Ok(Self::start(scenario, certified.configuration(), controller, minimum_norm.map(Allocation::Certified)))
+    }
+
+    /// A flight that nothing certifies.
+    ///
+    /// # Errors
+    /// As [`controller`]'s.
+    pub fn uncertified(scenario: &Scenario) -> Result<Self, ParameterError> {
+        let configuration = &scenario.configuration;
+        let controller = uncertified(configuration, scenario.timing.period() as f32)?;
+        let mixer = configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors)));
+        Ok(Self::start(scenario, configuration, controller, mixer.map(Allocation::Prioritised)))
+    }
+
+    fn start(
+        scenario: &Scenario,
+        configuration: &Configuration,
+        controller: Controller,
+        allocation: Option<Allocation>,
+    ) -> Self {
+        let (timing, vehicle) = (&scenario.timing, configuration.vehicle());
         let hover = vehicle.mass * vehicle.gravity;
-        Ok(Self {
-            actuators: Actuators::new(scenario.rotors.as_ref(), scenario.delay_steps, hover, timing.step()),
-            plant: Plant::new(configuration.vehicle(), configuration.limits(), timing.step(), scenario.initial),
-            controller: controller(scenario)?,
+        let hovering = |rotors| SpinningRotors::hovering(rotors, scenario.rotor_lag, hover, timing.step());
+        let rotors = allocation.zip(configuration.rotors().map(hovering));
+        Self {
+            actuators: Actuators::new(rotors, scenario.delay_steps, hover),
+            plant: Plant::new(vehicle, configuration.limits(), timing.step(), scenario.initial),
+            controller,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
             steps_per_tick: timing.steps_per_tick,
             tick: 0,
-        })
+        }
     }
 
     /// One control tick and the plant's motion until the next.
@@ -112,15 +162,18 @@ impl Flight {
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let time_us = self.tick * self.period_us;
         let fail = |cause| FlightError { time_us, cause };
-        let state = *self.plant.state();
+        let (state, rotors) = (*self.plant.state(), self.actuators.thrusts());
         let reference = self.trajectory.at(time_us);
         let (wrench, diagnostics) =
             self.controller.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
-        let (clipping, rotor_thrusts) = self
+        let (clipped, rotor_thrusts) = self
             .actuators
             .hold(&mut self.plant, &wrench, self.steps_per_tick)
             .map_err(|error| fail(Cause::Actuation(error)))?;
         self.tick += 1;
-        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipping, rotor_thrusts })
+        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipped, rotors, rotor_thrusts })
     }
 }
+
+#[cfg(test)]
+mod tests;

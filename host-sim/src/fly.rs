@@ -1,14 +1,18 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
-use crate::claims::{self, Claim, Flown};
+use crate::claims::{self, Claim};
 use crate::flight::{Flight, FlightError};
-use crate::log::{self, WholeFile};
+use crate::flown::Flown;
+use crate::interrupt::Interrupt;
+use crate::log;
+use crate::plots;
+use crate::plots::canvas::PlotError;
 use crate::plots::record::Record;
-use crate::plots::{self, PlotError};
 use crate::progress::Progress;
-use crate::scenario::Scenario;
-use controller_core::certificate::configuration::Certified;
+use crate::whole_file::WholeFile;
 use controller_core::error::ParameterError;
+use scenario::Scenario;
+use scenario::verdict::Verdict;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -27,6 +31,8 @@ pub enum FlyError {
     Parameter(ParameterError),
     /// A figure could not be drawn.
     Plot(PlotError),
+    /// Somebody sent this signal.
+    Interrupted(u8),
 }
 
 impl fmt::Display for FlyError {
@@ -36,6 +42,7 @@ impl fmt::Display for FlyError {
             Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Plot(error) => write!(f, "{error}"),
+            Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
         }
     }
 }
@@ -60,68 +67,121 @@ impl From<PlotError> for FlyError {
     }
 }
 
+/// What came of a flight.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Whether its configuration may fly for real, in a sentence.
+    pub certification: String,
+    /// What was claimed, and whether it holds.
+    pub claims: Vec<Claim>,
+}
+
 /// Flies `scenario` and writes log.csv, four figures and report.md into `directory`.
 ///
-/// The files get their names only after the whole flight and all drawings succeeded; until then nothing of an older flight
-/// in the same directory is touched.
+/// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
+/// older flight in the same directory is touched.
 ///
 /// # Errors
 /// [`FlyError`]; then no file is left behind.
-pub fn fly(scenario: &Scenario, directory: &Path) -> Result<Vec<Claim>, FlyError> {
-    let mut flight = Flight::new(scenario)?;
-    let ticks = scenario.timing.ticks;
-    let mut flown = Flown::new(scenario);
-    let mut record = Record::new(ticks);
-    let mut progress = Progress::new("flying", ticks);
-
-    let log_path = directory.join("log.csv");
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |error| FlyError::Output(path, error)
-    };
+pub fn fly(scenario: &Scenario, directory: &Path, interrupt: &Interrupt) -> Result<Outcome, FlyError> {
+    let verdict = Verdict::of(scenario)?;
+    let mut flight = match verdict.certified() {
+        Some(certified) => Flight::certified(scenario, certified),
+        None => Flight::uncertified(scenario),
+    }?;
     std::fs::create_dir_all(directory).map_err(failed(directory))?;
-    let mut log = WholeFile::create(&log_path).map_err(failed(&log_path))?;
-    writeln!(log, "{}", log::HEADER).map_err(failed(&log_path))?;
-    for done in 0..ticks {
-        let tick = flight.tick()?;
-        log::write_row(&mut log, &tick).map_err(failed(&log_path))?;
-        flown.observe(&tick);
-        record.observe(&tick);
-        if done % TICKS_PER_SHOW == 0 {
-            progress.show(done);
-        }
-    }
-    drop(progress);
+    let mut log = Output::create(directory, "log.csv")?;
+    let (flown, record) = log_flight(scenario, &mut flight, &mut log, interrupt)?;
 
-    let claims = claims::claims(scenario, &flown);
+    let outcome =
+        Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) };
     let samples = record.samples();
     let texts = [
         ("fig1.svg", plots::figure_1(scenario, &samples)?),
         ("fig2.svg", plots::figure_2(scenario, &samples)?),
         ("first-seconds.svg", plots::first_seconds(scenario, &samples)?),
         ("flight.svg", plots::path::picture(&samples)?),
-        ("report.md", report(scenario, &claims)),
+        ("report.md", report(scenario, &outcome)),
     ];
-    log.finish().map_err(failed(&log_path))?;
+    let mut outputs = vec![log];
     for (name, text) in texts {
-        let path = directory.join(name);
-        WholeFile::write(&path, &text).map_err(failed(&path))?;
+        let mut output = Output::create(directory, name)?;
+        output.write(|file| file.write_all(text.as_bytes()))?;
+        outputs.push(output);
     }
-    Ok(claims)
+    for output in &mut outputs {
+        output.write(WholeFile::store)?;
+    }
+    interrupted(interrupt)?;
+    outputs.into_iter().try_for_each(|Output { file, path }| file.finish().map_err(failed(&path)))?;
+    Ok(outcome)
+}
+
+/// Flies all ticks and logs them.
+fn log_flight(
+    scenario: &Scenario,
+    flight: &mut Flight,
+    log: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<(Flown, Record), FlyError> {
+    let ticks = scenario.timing.ticks;
+    let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+    let (mut flown, mut record) = (Flown::new(scenario), Record::new(ticks));
+    let mut progress = Progress::new("flying", ticks);
+    log.write(|file| writeln!(file, "{}", log::header(rotors)))?;
+    for done in 0..ticks {
+        interrupted(interrupt)?;
+        let tick = flight.tick()?;
+        log.write(|file| log::write_row(file, &tick))?;
+        flown.observe(&tick);
+        record.observe(&tick);
+        if done % TICKS_PER_SHOW == 0 {
+            progress.show(done);
+        }
+    }
+    Ok((flown, record))
+}
+
+fn interrupted(interrupt: &Interrupt) -> Result<(), FlyError> {
+    interrupt.signal().map_or(Ok(()), |signal| Err(FlyError::Interrupted(signal)))
+}
+
+/// One file of a flight, and what its errors call it.
+struct Output {
+    file: WholeFile,
+    path: PathBuf,
+}
+
+impl Output {
+    fn create(directory: &Path, name: &str) -> Result<Self, FlyError> {
+        let path = directory.join(name);
+        Ok(Self { file: WholeFile::create(&path).map_err(failed(&path))?, path })
+    }
+
+    fn write(&mut self, write: impl FnOnce(&mut WholeFile) -> io::Result<()>) -> Result<(), FlyError> {
+        write(&mut self.file).map_err(failed(&self.path))
+    }
+}
+
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> FlyError {
+    |error| FlyError::Output(path.to_owned(), error)
 }
 
 /// Whether the configuration is one that may fly for real, in a sentence.
-#[must_use]
-pub fn certification(scenario: &Scenario) -> &'static str {
-    match Certified::new(scenario.configuration.clone()) {
-        Ok(_) => "certified: its limits are proven for every reference within this one's bounds",
-        Err(_) => "not certified: what was flown here proves nothing about other flights",
+fn certification(verdict: &Verdict) -> String {
+    match verdict.refusal() {
+        None => "certified: its commands are proven to stay within the limits for every reference within this one's bounds, \
+                 and its small motions are stable with margin"
+            .to_owned(),
+        Some(refusal) => {
+            format!("not certified: {refusal}; what was flown here proves nothing about other flights")
+        }
     }
 }
 
-fn report(scenario: &Scenario, claims: &[Claim]) -> String {
+fn report(scenario: &Scenario, outcome: &Outcome) -> String {
     let timing = &scenario.timing;
-    let verdict = if claims::all_hold(claims) { "Every claim holds." } else { "Not every claim holds." };
+    let verdict = if claims::all_hold(&outcome.claims) { "Every claim holds." } else { "Not every claim holds." };
     format!(
         "# {}\n\n{verdict} {} s at {} Hz, plant step {} s; configuration {}.\n\n{}\n\
          ![Position, yaw and their errors](fig1.svg)\n\n\
@@ -131,7 +191,7 @@ fn report(scenario: &Scenario, claims: &[Claim]) -> String {
         timing.duration(),
         1e6 / timing.period_us as f64,
         timing.step(),
-        certification(scenario),
-        claims::markdown(claims),
+        outcome.certification,
+        claims::markdown(&outcome.claims),
     )
 }

@@ -11,9 +11,10 @@
 //!
 //! There is no sliding, no tipping over an edge and no ground effect, and a fall breaks nothing.
 
-use crate::plant::{BodyState, Plant};
+use crate::plant::Plant;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use scenario::body::BodyState;
 use scenario::body::attitude_from_euler;
 
 /// How far a vehicle may lean when it touches the ground for its legs to put it upright, rad: 30 degrees.
@@ -48,12 +49,6 @@ impl Ground {
         let ground = Self { height, weight: f64::from(vehicle.mass) * gravity, gravity, standing: true };
         let position = Vector3::new(start.position.x, start.position.y, height);
         (ground, standing(position, upright(start)))
-    }
-
-    /// Whether the vehicle stands on it.
-    #[must_use]
-    pub fn is_stood_on(&self) -> bool {
-        self.standing
     }
 
     /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.

@@ -14,8 +14,8 @@ pub mod pace;
 pub mod port;
 pub mod vehicle;
 
-use crate::log::WholeFile;
 use crate::progress::Progress;
+use crate::whole_file::WholeFile;
 use pace::Pace;
 use port::{Port, PortError};
 use scenario::Scenario;
@@ -68,8 +68,19 @@ pub struct Summary {
     pub touchdowns: Vec<(f64, f64, f64)>,
     /// How long it took from the first command on.
     pub took: Duration,
-    /// Whether the other side went before the duration was over.
-    pub left: bool,
+    /// What ended it.
+    pub end: End,
+}
+
+/// What ends a session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Its duration was over.
+    Over,
+    /// The other side went.
+    Left,
+    /// Somebody sent this signal.
+    Interrupted(u8),
 }
 
 impl fmt::Display for Summary {
@@ -83,12 +94,17 @@ impl fmt::Display for Summary {
                 tilt.to_degrees()
             )?;
         }
-        let end = if self.left { "the other side went" } else { "the duration was over" };
-        write!(f, "{end}; vehicle at {x:.4} {y:.4} {z:.4} m")
+        match self.end {
+            End::Over => f.write_str("the duration was over")?,
+            End::Left => f.write_str("the other side went")?,
+            End::Interrupted(signal) => write!(f, "interrupted by signal {signal}")?,
+        }
+        write!(f, "; vehicle at {x:.4} {y:.4} {z:.4} m")
     }
 }
 
-/// Serves one flight controller with the scenario's vehicle until the duration is over or the other side goes.
+/// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or somebody
+/// interrupts.
 ///
 /// # Errors
 /// [`HilError`].
@@ -102,11 +118,16 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
     let mut pace = Pace::new(scenario.timing.period_us);
     let mut touchdowns = Vec::new();
     let mut started = None;
-    let left = loop {
+    let end = loop {
         if end.is_some_and(|end| pace.ticks() >= end) {
-            break false;
+            break End::Over;
         }
-        let Some(controls) = port.receive().map_err(HilError::Port)? else { break true };
+        let controls = match port.receive() {
+            Ok(Some(controls)) => controls,
+            Ok(None) => break End::Left,
+            Err(PortError::Interrupted(signal)) => break End::Interrupted(signal),
+            Err(error) => return Err(HilError::Port(error)),
+        };
         started.get_or_insert_with(Instant::now);
         let tick = pace.ticks();
         let time = tick as f64 * period;
@@ -130,7 +151,7 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
     }
     let position = vehicle.state().position;
     let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());
-    Ok(Summary { pace, position: position.into(), touchdowns, took, left })
+    Ok(Summary { pace, position: position.into(), touchdowns, took, end })
 }
 
 /// A row for each command: the state one period after it, the commands, the thrust at the end.
@@ -140,7 +161,7 @@ struct Log {
 
 impl Log {
     const HEADER: &'static str =
-        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_0,command_1,command_2,command_3";
+        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4";
 
     fn create(path: &Path) -> io::Result<Self> {
         let mut file = WholeFile::create(path)?;

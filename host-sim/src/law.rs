@@ -12,54 +12,59 @@
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
 use crate::flight::controller;
-use crate::scenario::Scenario;
 use controller_core::controller::Controller;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
+use scenario::Scenario;
+use std::fmt;
 use std::io::{self, BufRead, Write};
 
-/// The 33 numbers by the names that messages use.
-const FIELDS: [&str; 33] = [
-    "t",
-    "dt",
-    "x[0]",
-    "x[1]",
-    "x[2]",
-    "v[0]",
-    "v[1]",
-    "v[2]",
-    "q.x",
-    "q.y",
-    "q.z",
-    "q.w",
-    "omega[0]",
-    "omega[1]",
-    "omega[2]",
-    "reference x[0]",
-    "reference x[1]",
-    "reference x[2]",
-    "reference v[0]",
-    "reference v[1]",
-    "reference v[2]",
-    "reference a[0]",
-    "reference a[1]",
-    "reference a[2]",
-    "reference j[0]",
-    "reference j[1]",
-    "reference j[2]",
-    "reference s[0]",
-    "reference s[1]",
-    "reference s[2]",
-    "yaw",
-    "yaw_rate",
-    "yaw_acceleration",
+/// Numbers of a line.
+const NUMBERS: usize = 33;
+
+/// What messages call them: a name, and what its elements are called.
+const FIELDS: [(&str, &[&str]); 13] = [
+    ("t", &[""]),
+    ("dt", &[""]),
+    ("x", &AXES),
+    ("v", &AXES),
+    ("q", &[".x", ".y", ".z", ".w"]),
+    ("omega", &AXES),
+    ("reference x", &AXES),
+    ("reference v", &AXES),
+    ("reference a", &AXES),
+    ("reference j", &AXES),
+    ("reference s", &AXES),
+    ("yaw", &[""]),
+    ("yaw", &["_rate", "_acceleration"]),
 ];
+const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
 /// Longest dt, s.
 const GREATEST_PERIOD: f64 = 0.1;
+
+/// Why lines could not be served to their end.
+#[derive(Debug)]
+pub enum ServeError {
+    /// The input cannot be read.
+    Input(io::Error),
+    /// The output cannot be written.
+    Output(io::Error),
+}
+
+impl fmt::Display for ServeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(error) => write!(f, "standard input: cannot be read: {error}"),
+            Self::Output(error) => write!(f, "standard output: cannot be written: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ServeError {}
 
 /// The law behind a text interface.
 pub struct LawServer {
@@ -104,9 +109,9 @@ impl LawServer {
     ///
     /// # Errors
     /// If the input cannot be read or the output not written, but for a closed pipe.
-    pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> io::Result<()> {
+    pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> Result<(), ServeError> {
         let mut line = Vec::new();
-        while input.read_until(b'\n', &mut line)? > 0 {
+        while input.read_until(b'\n', &mut line).map_err(ServeError::Input)? > 0 {
             let answered = match self.answer(&String::from_utf8_lossy(&line)) {
                 Ok(Wrench { thrust, torque }) => {
                     writeln!(output, "{thrust:?} {:?} {:?} {:?}", torque.x, torque.y, torque.z)
@@ -115,7 +120,7 @@ impl LawServer {
             };
             match answered.and_then(|()| output.flush()) {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-                other => other?,
+                other => other.map_err(ServeError::Output)?,
             }
             line.clear();
         }
@@ -167,23 +172,28 @@ impl LawServer {
 }
 
 /// Exactly 33 finite numbers that fit single precision.
-fn parse(line: &str) -> Result<[f64; FIELDS.len()], String> {
+fn parse(line: &str) -> Result<[f64; NUMBERS], String> {
     let found = line.split_whitespace().count();
-    if found != FIELDS.len() {
-        return Err(format!("needs {} numbers on a line, found {found}", FIELDS.len()));
+    if found != NUMBERS {
+        return Err(format!("needs {NUMBERS} numbers on a line, found {found}"));
     }
-    let mut values = [0.0; FIELDS.len()];
-    for ((value, word), field) in values.iter_mut().zip(line.split_whitespace()).zip(FIELDS) {
-        let number: f64 = word.parse().map_err(|_| format!("{field}: must be a number, found {word:?}"))?;
-        if !number.is_finite() {
-            return Err(format!("{field}: must be finite, found {number}"));
-        }
-        if number.abs() > f64::from(f32::MAX) {
-            return Err(format!("{field}: must be within ±{:e}, found {number:e}", f32::MAX));
-        }
-        *value = number;
+    let fields = FIELDS.iter().flat_map(|(name, elements)| elements.iter().map(move |element| (name, element)));
+    let mut values = [0.0; NUMBERS];
+    for ((value, word), (name, element)) in values.iter_mut().zip(line.split_whitespace()).zip(fields) {
+        *value = number(word).map_err(|problem| format!("{name}{element}: {problem}"))?;
     }
     Ok(values)
+}
+
+fn number(word: &str) -> Result<f64, String> {
+    let number: f64 = word.parse().map_err(|_| format!("must be a number, found {word:?}"))?;
+    if !number.is_finite() {
+        return Err(format!("must be finite, found {number}"));
+    }
+    if number.abs() > f64::from(f32::MAX) {
+        return Err(format!("must be within ±{:e}, found {number:e}", f32::MAX));
+    }
+    Ok(number)
 }
 
 #[cfg(test)]

@@ -1,31 +1,30 @@
-//! The desktop side: a vehicle to fly, scenarios to fly it through, and reports of what was flown.
+//! The desktop side: a vehicle to fly, and reports of what was flown. Scenario files and the verdict on them are a crate of
+//! their own, [`scenario`], which the firmware's build uses too.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
 //! | [`ground`] | something to stand on, for flights that start and end there |
-//! | [`scenario`] | files to validated types; a crate of its own, which the firmware's build reads them with too |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
-//! | [`claims`] | what was claimed against what was flown |
+//! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`plots`] | log.csv and the figures |
-//! | [`sampled_loop`] | margins of the loop with rotor lag and delay |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
 
 pub mod actuators;
 pub mod certify;
 pub mod claims;
 pub mod flight;
+pub mod flown;
 pub mod fly;
 pub mod ground;
 pub mod hil;
+pub mod interrupt;
 pub mod law;
 pub mod log;
 pub mod plant;
 pub mod plots;
 pub mod progress;
-pub mod sampled_loop;
 pub mod table;
 pub mod tune;
-
-pub use scenario;
+pub mod whole_file;

@@ -16,31 +16,8 @@
 use controller_core::state::Wrench;
 use controller_core::vehicle::{Limits, Vehicle};
 use nalgebra::{Quaternion, Vector3};
-pub use scenario::body::{BodyState, attitude_from_euler};
+use scenario::body::BodyState;
 use std::fmt;
-
-/// Which commands the limits cut during one control period.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Clipping {
-    /// Thrust was outside [0, thrust_max].
-    pub thrust: bool,
-    /// A torque was outside ±torque_max about its axis.
-    pub torque: bool,
-}
-
-impl Clipping {
-    /// Whether anything was cut.
-    #[must_use]
-    pub fn any(self) -> bool {
-        self.thrust || self.torque
-    }
-
-    /// What either cut.
-    #[must_use]
-    pub fn or(self, other: Self) -> Self {
-        Self { thrust: self.thrust || other.thrust, torque: self.torque || other.torque }
-    }
-}
 
 /// The simulated motion left the finite numbers; nothing after it means anything.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,17 +73,17 @@ impl Plant {
         &self.state
     }
 
-    /// Holds `wrench`, clipped to the limits, for `steps` integration steps.
+    /// Holds `wrench`, clipped to the limits, for `steps` integration steps. Returns whether the limits cut anything.
     ///
     /// # Errors
     /// [`Diverged`] if the state is not finite afterwards.
-    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<Clipping, Diverged> {
+    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<bool, Diverged> {
         let commanded = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
         let thrust = commanded.0.clamp(0.0, self.thrust_max);
         let torque = commanded.1.zip_map(&self.torque_max, |value, limit| value.clamp(-limit, limit));
         self.advance(thrust, &torque, steps);
         self.check()?;
-        Ok(Clipping { thrust: thrust != commanded.0, torque: torque != commanded.1 })
+        Ok(thrust != commanded.0 || torque != commanded.1)
     }
 
     /// One integration step under thrust, N, and torque, N m, as they are.

@@ -1,34 +1,21 @@
 //! The figures of a flight, as SVG text: the eight panels of the paper's Figures 1 and 2, four of them again for the first
 //! seconds, and a picture of the path.
 
+pub mod canvas;
 pub mod panel;
 pub mod panels;
 pub mod path;
 pub mod record;
 
-use crate::scenario::Scenario;
+use canvas::{PlotError, draw};
 use panel::Panel;
-use plotters::prelude::*;
 use record::Sample;
+use scenario::Scenario;
 
 /// Width and height of a figure, pixels.
 const SIZE: (u32, u32) = (1240, 860);
-/// The drawing library counts in whole pixels: drawn so many times larger and shown smaller, curves are smooth.
-const FINE: i32 = 8;
 /// What the transient's figure shows of a flight, s.
 const FIRST_SECONDS: f64 = 5.0;
-
-/// A figure could not be drawn.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PlotError(String);
-
-impl std::fmt::Display for PlotError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "a figure could not be drawn: {}", self.0)
-    }
-}
-
-impl std::error::Error for PlotError {}
 
 /// The paper's Figure 1: position, yaw, and the norms of the position's and the attitude's error.
 ///
@@ -78,25 +65,4 @@ fn figure(panels: [Panel; 4]) -> Result<String, PlotError> {
         }
         Ok(())
     })
-}
-
-/// An SVG of `size` filled by `fill` on white.
-fn draw<'a, F>(size: (u32, u32), fill: F) -> Result<String, PlotError>
-where
-    F: FnOnce(&DrawingArea<SVGBackend, plotters::coord::Shift>) -> panel::DrawingResult<SVGBackend<'a>>,
-{
-    let mut svg = String::new();
-    let fine = (size.0 * FINE as u32, size.1 * FINE as u32);
-    {
-        let root = SVGBackend::with_string(&mut svg, fine).into_drawing_area();
-        let drawn = root.fill(&WHITE).and_then(|()| fill(&root)).and_then(|()| root.present());
-        drawn.map_err(|error| PlotError(error.to_string()))?;
-    }
-    let (drawn, shown) = (extent(fine), extent(size));
-    Ok(svg.replacen(&drawn, &shown, 1))
-}
-
-/// The attributes of an SVG that say how large it is shown.
-fn extent((width, height): (u32, u32)) -> String {
-    format!("width=\"{width}\" height=\"{height}\"")
 }

@@ -2,9 +2,10 @@
 //!
 //! What is asked, in this order:
 //!
-//! 1. a constraint: every inequality of the certificate, down to the rotors, with [`Requirements::margin`] to spare; the
-//!    sampled loops stable with gain and delay margins; the vehicle recovers from upside down and holds still; the file's
-//!    own reference is flown without a clipped command and within the errors asked for;
+//! 1. a constraint: every inequality of the certificate, down to the rotors, with [`requirements::Requirements::margin`] to spare; the
+//!    sampled loops stable with gain and delay margins, at least those without which nothing may fly; the vehicle recovers
+//!    from upside down and holds still; the file's own reference is flown without a clipped command and within the errors
+//!    asked for;
 //! 2. the least height lost from the paper's first attitude, roll -179 degrees, at rest, on a hover reference at the same
 //!    point ([`candidate::recovery`]);
 //! 3. within [`HEIGHT_SLACK`] of that best, the greatest k_p.
@@ -17,9 +18,10 @@ pub mod candidate;
 pub mod evolution;
 pub mod frontier;
 pub mod output;
+pub mod requirements;
 
+use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use crate::scenario::Scenario;
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
@@ -27,28 +29,11 @@ use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use evolution::{Evolution, Goal};
 use frontier::Frontier;
+use requirements::Requirements;
+use scenario::Scenario;
 
 /// How much more height than the best the answer may lose, relative, to win position gain.
 pub const HEIGHT_SLACK: f64 = 0.05;
-
-/// What every accepted candidate meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Requirements {
-    /// Least relative margin of every inequality.
-    pub margin: f64,
-    /// Least gain margin of every sampled loop, as a factor.
-    pub gain_margin: f64,
-    /// Least delay margin of every sampled loop, s.
-    pub delay_margin: f64,
-    /// Greatest position error of the file's own flight in its last quarter, m.
-    pub position_error: f64,
-    /// Greatest norm of its modified Rodrigues parameters there.
-    pub mrp_error: f64,
-    /// How long a recovery from upside down may take, s; its last quarter must be still.
-    pub recovery: f64,
-    /// Whether the thrust projection may be used.
-    pub projection: bool,
-}
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,25 +57,31 @@ pub struct Tuned {
     pub judged: u64,
 }
 
-/// Searches gains for `scenario`. None if no candidate met the requirements; the closest verdict is then the error's.
+/// Searches gains for `scenario`; an interrupt ends the search with the best found so far.
 ///
 /// # Errors
-/// The verdict of the best candidate, if none is feasible.
-pub fn tune(scenario: &Scenario, requirements: Requirements, effort: Effort) -> Result<Tuned, Box<Verdict>> {
+/// If no candidate met the requirements: the verdict of the one that came closest.
+pub fn tune(
+    scenario: &Scenario,
+    requirements: Requirements,
+    effort: Effort,
+    interrupt: &Interrupt,
+) -> Result<Tuned, Box<Verdict>> {
     let judge = Judge::new(scenario, requirements);
     let mut frontier = Frontier::default();
     let mut progress = Progress::new("tuning", u64::from(2 * effort.generations));
-    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier);
-    for generation in 0..effort.generations {
-        evolution.generation(&judge, Goal::Height, &mut frontier);
+    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier, interrupt);
+    let wanted = |generation: &u32| *generation < effort.generations && interrupt.signal().is_none();
+    for generation in (0..).take_while(wanted) {
+        evolution.generation(&judge, Goal::Height, &mut frontier, interrupt);
         progress.show(u64::from(generation));
     }
     let Some(best) = evolution.best(Goal::Height) else {
         return Err(Box::new(evolution.closest()));
     };
     let goal = Goal::PositionGain { height_at_most: best.1.height_lost * (1.0 + HEIGHT_SLACK) };
-    for generation in 0..effort.generations {
-        evolution.generation(&judge, goal, &mut frontier);
+    for generation in (0..).take_while(wanted) {
+        evolution.generation(&judge, goal, &mut frontier, interrupt);
         progress.show(u64::from(effort.generations + generation));
     }
     drop(progress);

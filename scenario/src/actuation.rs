@@ -13,9 +13,9 @@
 //! delay = 0.01                          # from a tick to the moment its wrench acts, s; whole plant steps
 //! ```
 
-use super::refused;
-use super::section::{FieldError, Section, vector_at};
-use super::timing::Timing;
+use crate::sampled_loop::GREATEST_DELAY;
+use crate::section::{FieldError, Section, vector_at};
+use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
@@ -24,22 +24,15 @@ use toml::Value;
 /// Longest lag and delay, s: slower actuators fly no multirotor.
 const LONGEST: f64 = 1.0;
 
-/// Rotors and how fast they follow.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RotorSetup {
-    /// Geometry, coefficients, ranges.
-    pub rotors: Rotors,
-    /// First-order lag of their speeds, s; zero for none.
-    pub lag: f64,
-}
-
-/// Reads `[rotors]`.
+/// Reads `[rotors]`: carries `configuration` to the rotors, and returns it with the first-order lag of their speeds, s.
+/// Without the section there is neither.
 ///
 /// # Errors
-/// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench.
-pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
+/// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench, `rotors.speed` if
+/// the vehicle cannot hover between its ends.
+pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<(Configuration, f64), FieldError> {
     let Some(section) = root.optional_section("rotors")? else {
-        return Ok(None);
+        return Ok((configuration, 0.0));
     };
     section.allow(&["position", "spin", "thrust_coefficient", "drag_coefficient", "speed", "lag"])?;
     let positions = section.elements("position", "a list of positions [x, y, z]")?;
@@ -63,14 +56,14 @@ pub fn read_rotors(root: &Section) -> Result<Option<RotorSetup>, FieldError> {
             thrust_max: thrust(fastest),
         });
     }
-    let rotors = Rotors::new(&list).map_err(|error| refused(root, &in_file(error)))?;
+    let rotors = Rotors::new(&list).map_err(|error| root.refused(&in_file(error)))?;
     let lag = read_time(&section, "lag")?;
-    Ok(Some(RotorSetup { rotors, lag }))
+    Ok((mounted(root, configuration, rotors)?, lag))
 }
 
 /// The field of the file that a refused field of one rotor comes from: all have the same coefficients and speeds.
 fn in_file(error: ParameterError) -> ParameterError {
-    let field = match error.field.split('[').next() {
+    let field = match error.field.split(',').next() {
         Some("rotors.thrust_coefficient") => "rotors.thrust_coefficient",
         Some("rotors.drag_coefficient") => "rotors.drag_coefficient",
         Some("rotors.thrust_min" | "rotors.thrust_max") => "rotors.speed",
@@ -79,15 +72,12 @@ fn in_file(error: ParameterError) -> ParameterError {
     ParameterError { field, ..error }
 }
 
-/// Carries `configuration` to the rotors.
-///
-/// # Errors
-/// Names `rotors.speed` if the vehicle cannot hover between its ends.
-pub fn mounted(root: &Section, configuration: Configuration, rotors: &Rotors) -> Result<Configuration, FieldError> {
+/// Carries `configuration` to the rotors; refuses those that cannot hover it.
+fn mounted(root: &Section, configuration: Configuration, rotors: Rotors) -> Result<Configuration, FieldError> {
     let hover = configuration.vehicle().mass * configuration.vehicle().gravity;
-    configuration.with_rotors(rotors.clone()).map_err(|error| {
-        let together = |thrust: fn(&Rotor) -> f32| rotors.iter().map(thrust).sum::<f32>();
-        let (least, greatest) = (together(|rotor| rotor.thrust_min), together(|rotor| rotor.thrust_max));
+    let together = |thrust: fn(&Rotor) -> f32| rotors.iter().map(thrust).sum::<f32>();
+    let (least, greatest) = (together(|rotor| rotor.thrust_min), together(|rotor| rotor.thrust_max));
+    configuration.with_rotors(rotors).map_err(|error| {
         let found = root.lookup(error.field).unwrap_or_default();
         let problem = format!(
             "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} rad/s: \
@@ -100,13 +90,18 @@ pub fn mounted(root: &Section, configuration: Configuration, rotors: &Rotors) ->
 /// Reads `[sampling]`: the delay in plant steps.
 ///
 /// # Errors
-/// If it is negative, too long, or no whole number of plant steps.
+/// If it is negative, longer than the sampled loops can be judged with, or no whole number of plant steps.
 pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
     let Some(section) = root.optional_section("sampling")? else {
         return Ok(0);
     };
     section.allow(&["delay"])?;
     let delay = read_time(&section, "delay")?;
+    let greatest = f64::from(GREATEST_DELAY) * timing.period();
+    if delay > greatest {
+        let problem = format!("must be at most {GREATEST_DELAY} control periods, {greatest} s, found {delay}");
+        return Err(FieldError::new(section.path_of("delay"), problem));
+    }
     let steps = delay / timing.step();
     let whole = steps.round();
     if (steps - whole).abs() > 1e-6 {

@@ -12,8 +12,7 @@
 //!
 //! All six are needed, and none may be less than the scenario's own reference takes.
 
-use super::refused;
-use super::section::{FieldError, Section};
+use crate::section::{FieldError, Section};
 use controller_core::reference::ReferenceBounds;
 
 /// Reads `[reference_bounds]`; `own` are those of the scenario's reference.
@@ -50,7 +49,7 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
         heading_rate,
         heading_second_derivative,
     };
-    bounds.validated().map_err(|error| refused(root, &error))
+    bounds.validated().map_err(|error| root.refused(&error))
 }
 
 /// `bounds` as the section of a scenario file.
@@ -69,65 +68,4 @@ pub fn written(bounds: &ReferenceBounds) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const OWN: ReferenceBounds = ReferenceBounds {
-        horizontal_acceleration: 2.0,
-        vertical_acceleration: 0.25,
-        jerk: 3.0,
-        snap: 5.0,
-        heading_rate: 1.0,
-        heading_second_derivative: 1.5,
-    };
-
-    const WIDER: &str = "[reference_bounds]
-horizontal_acceleration = 2.5
-vertical_acceleration = 0.5
-jerk = 4.0
-snap = 7.0
-heading_rate = 1.0
-heading_second_derivative = 2.0
-";
-
-    fn read(text: &str) -> Result<ReferenceBounds, FieldError> {
-        read_bounds(&Section::root(&text.parse().unwrap()), &OWN)
-    }
-
-    #[test]
-    fn left_out_they_are_the_references_own() {
-        assert_eq!(read(""), Ok(OWN));
-    }
-
-    #[test]
-    fn stated_they_replace_the_references_own() {
-        let wider = ReferenceBounds {
-            horizontal_acceleration: 2.5,
-            vertical_acceleration: 0.5,
-            jerk: 4.0,
-            snap: 7.0,
-            heading_rate: 1.0,
-            heading_second_derivative: 2.0,
-        };
-        assert_eq!(read(WIDER), Ok(wider));
-        assert_eq!(read(&written(&wider)), Ok(wider));
-    }
-
-    #[test]
-    fn each_unusable_bound_is_named_with_the_reason() {
-        for (from, to, field, words) in [
-            ("jerk = 4.0", "", "reference_bounds.jerk", "missing"),
-            ("jerk = 4.0", "jerk = 2.9", "reference_bounds.jerk", "at least 3, which [reference] takes, found 2.9"),
-            ("jerk = 4.0", "jerk = -1", "reference_bounds.jerk", "found -1"),
-            ("jerk = 4.0", "jerk = nan", "reference_bounds.jerk", "finite"),
-            ("jerk = 4.0", "jerk = \"hard\"", "reference_bounds.jerk", "must be a number"),
-            ("snap = 7.0", "snapp = 7.0", "reference_bounds.snapp", "did you mean \"snap\"?"),
-            ("heading_rate = 1.0", "heading_rate = 0.999", "reference_bounds.heading_rate", "at least 1"),
-        ] {
-            assert!(WIDER.contains(from), "{from}");
-            let error = read(&WIDER.replace(from, to)).unwrap_err();
-            assert!(error.field == field && error.problem.contains(words), "{to}: {error}");
-        }
-        assert_eq!(read("reference_bounds = 3").unwrap_err().field, "reference_bounds");
-    }
-}
+mod tests;

@@ -1,7 +1,7 @@
 //! `[initial]`: where a flight starts. Left out, in whole or in part: on the reference, at rest, level, facing world x.
 
-use super::section::{FieldError, Section};
 use crate::body::{BodyState, GREATEST_TURN_PER_STEP, attitude_from_euler};
+use crate::section::{FieldError, Section};
 use controller_core::state::STATE_RANGE;
 use nalgebra::Vector3;
 

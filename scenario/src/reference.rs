@@ -1,6 +1,6 @@
 //! `[reference]`: what the vehicle is asked to do, one kind of trajectory per `kind`.
 
-use super::section::{FieldError, Section};
+use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;

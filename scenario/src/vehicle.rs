@@ -2,8 +2,7 @@
 //!
 //! `[control] thrust_floor` (N) is an option of the law: see [`controller_core::projection`].
 
-use super::refused;
-use super::section::{FieldError, Section};
+use crate::section::{FieldError, Section};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
@@ -18,7 +17,7 @@ pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Co
     let limits = read_limits(root, &vehicle)?;
     let gains = read_gains(root, &vehicle)?;
     let configuration = Configuration::new(vehicle, limits, gains, *bounds).map_err(|error| {
-        let refused = refused(root, &error);
+        let refused = root.refused(&error);
         let problem = format!(
             "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
             refused.problem, bounds.vertical_acceleration
@@ -28,7 +27,7 @@ pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Co
     match root.optional_section("control")? {
         Some(control) if control.has("thrust_floor") => {
             let floor = control.number("thrust_floor")? as f32;
-            configuration.with_thrust_floor(floor).map_err(|error| refused(root, &error))
+            configuration.with_thrust_floor(floor).map_err(|error| root.refused(&error))
         }
         _ => Ok(configuration),
     }
@@ -43,7 +42,7 @@ fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
         inertia: section.vector("inertia")?.map(|moment| moment as f32),
         gravity: section.number("gravity")? as f32,
     };
-    Vehicle::new(parameters).map_err(|error| refused(root, &error))
+    Vehicle::new(parameters).map_err(|error| root.refused(&error))
 }
 
 /// Reads `[limits]`.
@@ -54,7 +53,7 @@ fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldError> 
         thrust_max: section.number("thrust_max")? as f32,
         torque_max: section.vector("torque_max")?.map(|torque| torque as f32),
     };
-    Limits::new(parameters, vehicle).map_err(|error| refused(root, &error))
+    Limits::new(parameters, vehicle).map_err(|error| root.refused(&error))
 }
 
 /// Reads `[gains]`.
@@ -76,5 +75,5 @@ fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
         delta: gain("delta")?,
         alpha: gain("alpha")?,
     };
-    Gains::new(parameters, vehicle).map_err(|error| refused(root, &error))
+    Gains::new(parameters, vehicle).map_err(|error| root.refused(&error))
 }

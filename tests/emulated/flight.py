@@ -1,12 +1,14 @@
 """Flies the whole firmware on emulated Cortex-M boards with a real MAVLink client, and holds it to the flight rules.
 
-Usage: flight.py MACHINE RUN...   with RUN one of: flight, vanishing-client, failing-pose
+Usage: flight.py MACHINE RUN...   with RUN one of: as-printed, flight, vanishing-client, failing-pose
 
 Every time is the vehicle's. Figures that are printed were measured in that run.
 """
 
+import os
 import sys
 
+from printed import as_printed
 from rig import Rig
 
 START = (1.0, 0.0, 0.0)
@@ -77,8 +79,8 @@ def vanishing_client(machine):
         station.wait(6.0)
         assert station.armed and station.mode == HOLDING
         held = station.position
-        worst = station.worst_distance(held, 10.0)
-        print(f"    held within {1e3 * worst:.1f} mm for 10 s, {held[1]:.2f} m along a way of {far} m")
+        worst = station.worst_distance(held, 5.0)
+        print(f"    held within {1e3 * worst:.1f} mm for 5 s, {held[1]:.2f} m along a way of {far} m")
         assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
         station.target, station.alive = None, True
         station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
@@ -90,7 +92,7 @@ def vanishing_client(machine):
 
 def failing_pose(machine):
     """A pose source that stops at a hover: level at hover thrust for a second, then stop."""
-    stops = 25.0
+    stops = 14.0
     with Rig(machine, ["--pose-until", stops]) as rig:
         station = rig.station
         take_off(station)
@@ -115,11 +117,15 @@ def failing_pose(machine):
     assert rig.rows[-1]["pz"] < 0.01
 
 
-RUNS = {"flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
+MACHINES = ["mps2-an386", "mps2-an500"]
+RUNS = {"as-printed": as_printed, "flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
 
 
 def main():
     machine, *names = sys.argv[1:]
+    # The board, the simulator and the client take turns, a byte at a time: on one processor that costs no waking of another.
+    processors = sorted(os.sched_getaffinity(0))
+    os.sched_setaffinity(0, {processors[MACHINES.index(machine) % len(processors)]})
     for name in names:
         print(f"== {machine}: {name}", flush=True)
         RUNS[name](machine)

@@ -1,6 +1,7 @@
 """The rig: an emulated board, the simulated vehicle on its first serial port, a ground station on its second."""
 
 import csv
+import os
 import pathlib
 import re
 import socket
@@ -10,9 +11,11 @@ import tempfile
 from station import Station
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
-SIMULATOR = TOP / "target/release/host-sim"
-IMAGES = TOP / "target/emulated"
 VEHICLE = TOP / "vehicles/study.toml"
+
+# What flies: the files that .ci/emulated_flight has just built.
+SIMULATOR = pathlib.Path(os.environ["SIMULATOR"])
+IMAGE = pathlib.Path(os.environ["IMAGE"])
 
 # 1 ns an instruction, and no waiting while the processor sleeps: see firmware/src/boards/mps2/idle.rs.
 TIME = "shift=0,sleep=off"
@@ -47,7 +50,7 @@ class Rig:
         # The board waits with its first instruction until both are connected.
         self.start(["qemu-system-arm", "-M", self.machine, "-display", "none", "-monitor", "none", "-icount", TIME,
                     *serial(vehicle), *serial(ground), "-semihosting-config", "enable=on,target=native",
-                    "-kernel", IMAGES / self.machine], subprocess.DEVNULL, self.said)
+                    "-kernel", IMAGE], subprocess.DEVNULL, self.said)
         self.start([SIMULATOR, "hil", "--connect", f"127.0.0.1:{vehicle}", "--patience", PATIENCE, "--log", self.log,
                     *self.options, VEHICLE], self.report, self.report)
         try:

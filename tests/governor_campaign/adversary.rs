@@ -1,6 +1,6 @@
 //! Who sends the setpoints.
 
-use crate::case::{Case, Random};
+use super::case::{Case, Random};
 use controller_core::governor::{Governor, Motion, Setpoint, Turn};
 use controller_core::prelude::{Reference, Vector3};
 use core::f32::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! Who watches the reference: bounds, continuity and approach, in double precision.
 
-use crate::case::Case;
+use super::case::Case;
 use controller_core::prelude::{Reference, Vector3};
 
 /// How near to its bounds the streams of a thread came (as shares), and how they fared.

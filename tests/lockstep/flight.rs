@@ -1,9 +1,9 @@
 //! One flight: the firmware's tasks, the vehicle and the people, all on one simulated clock.
 
-use crate::clock::SimClock;
-use crate::line::Line;
-use crate::station::Station;
-use crate::world::{SimImu, SimMotors, SimWatchdog, World};
+use super::clock::SimClock;
+use super::line::Line;
+use super::station::Station;
+use super::world::{SimImu, SimMotors, SimWatchdog, World};
 use controller_core::flight::Pilot;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use firmware::control::Control;

@@ -1,7 +1,8 @@
 //! A configuration whose certificate fails: it boots and answers, and never arms.
 
-use crate::flight::Flight;
-use controller_core::certificate::configuration::{Certified, Configuration, Refused};
+use super::flight::Flight;
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::flight::{Mode, Pilot};
 use controller_core::governor::{GovernorLimits, Memory};
 use controller_core::reference::ReferenceBounds;

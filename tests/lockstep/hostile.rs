@@ -1,14 +1,14 @@
 //! Bytes that nobody meant to send: the vehicle flies on, or does what the flight rules say, and never panics.
 
-use crate::flight::Flight;
-use crate::station::Station;
+use super::flight::Flight;
+use super::station::Station;
 use controller_core::flight::Mode;
 use controller_core::flight::rules::POSE_AGE_MAX;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
+use rand::rngs::ChaCha8Rng;
 use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// The vehicle's pose as a message.
 fn pose(flight: &Flight) -> MavMessage {

@@ -1,7 +1,7 @@
 //! The pose is lost in the middle of a fast way, not at a hover.
 
-use crate::flight::Flight;
-use crate::station::Station;
+use super::flight::Flight;
+use super::station::Station;
 use controller_core::flight::Mode;
 use firmware::hardware::MotorCommand;
 

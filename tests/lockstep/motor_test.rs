@@ -1,6 +1,6 @@
 //! The motor test: one motor, slowly, not for long, and never against a disarm command.
 
-use crate::flight::Flight;
+use super::flight::Flight;
 use controller_core::flight::Mode;
 use firmware::hardware::{MOTORS, MotorCommand};
 use mavlink::dialects::common::MavResult;

@@ -1,7 +1,7 @@
 //! Peripherals that fail: motor outputs that fault or hang, an IMU that falls silent.
 
-use crate::flight::Flight;
-use crate::world::Health;
+use super::flight::Flight;
+use super::world::Health;
 use controller_core::flight::Mode;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::MavResult;

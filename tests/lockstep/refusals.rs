@@ -1,6 +1,6 @@
 //! Arming refused, for each reason that shows on the link: the command denied, and why in words.
 
-use crate::flight::Flight;
+use super::flight::Flight;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::MavResult;
 use std::f64::consts::PI;

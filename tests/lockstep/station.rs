@@ -1,8 +1,8 @@
 //! The ground station and the pose source: MAVLink written and read by the public crate, not by the firmware's own code.
 
-use crate::clock::SimClock;
-use crate::line::Line;
-use controller_core::flight::Pose;
+use super::clock::SimClock;
+use super::line::Line;
+use controller_core::state::State;
 use firmware::hardware::Clock;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
@@ -129,7 +129,7 @@ impl Station {
     }
 
     /// A pose as ODOMETRY: the same rotation and vectors in MAVLink's frames, worked out by hand.
-    pub fn odometry(pose: &Pose) -> MavMessage {
+    pub fn odometry(pose: &State) -> MavMessage {
         // World: east, north, up to north, east, down; body: left and up change sign. As quaternions, a half turn about
         // (1, 1, 0) / sqrt 2 before and one about x behind.
         let half = std::f32::consts::FRAC_1_SQRT_2;

@@ -1,20 +1,23 @@
 //! The vehicle as the firmware's peripherals meet it: rotors that lag, a body that falls, sensors and motors.
 
-use crate::clock::SimClock;
+use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::flight::{ImuSample, Pose};
+use controller_core::flight::ImuSample;
+use controller_core::state::State;
 use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, Watchdog};
-use host_sim::plant::{BodyState, Plant, attitude_from_euler};
+use host_sim::plant::Plant;
 use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::body::{BodyState, attitude_from_euler};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 /// Integration step, us; also the IMU's period.
 pub const STEP: u64 = 1_000;
 
-/// First-order lag of the rotors' speeds, s: that of vehicles/study.toml, which is what the firmware embeds.
-const LAG: f64 = 0.030;
+/// The file that the firmware embeds; what the firmware does not know of it is the rotors' lag.
+const EMBEDDED: &str = include_str!("../../vehicles/study.toml");
 
 /// Everything outside the processor; clones are the same world.
 #[derive(Clone)]
@@ -46,6 +49,8 @@ struct Body {
     /// Speed of a full command, rad/s.
     greatest: f64,
     speeds: [f64; MOTORS],
+    /// What a step leaves of a speed's error.
+    left: f64,
 }
 
 /// The rigid body at `state`.
@@ -72,7 +77,9 @@ impl World {
         let state = BodyState { position: still, velocity: still, attitude, angular_velocity: still };
         let plant = body(configuration, state);
         let greatest = f64::from(rotors[0].speed_at(rotors[0].thrust_max));
-        let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS] };
+        let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
+        let left = (-1e-6 * STEP as f64 / lag).exp();
+        let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left };
         let command = Cell::new((MotorCommand::Stop, 0));
         Self(Rc::new(Inner {
             clock: clock.clone(),
@@ -94,10 +101,9 @@ impl World {
         }
     }
 
-    /// Position, velocity and attitude as a motion capture system would give them.
-    pub fn pose(&self) -> Pose {
-        let state = self.0.body.borrow().plant.state().measured();
-        Pose { position: state.position, velocity: state.velocity, attitude: state.attitude }
+    /// The state, of which a motion capture system would give position, velocity and attitude.
+    pub fn pose(&self) -> State {
+        self.0.body.borrow().plant.state().measured()
     }
 
     /// What the motors were last told.
@@ -150,7 +156,7 @@ impl Body {
         for (((speed, wanted), rotor), column) in
             self.speeds.iter_mut().zip(wanted).zip(self.rotors.iter()).zip(self.rotors.effectiveness())
         {
-            *speed += (wanted - *speed) * (1.0 - (-1e-6 * STEP as f64 / LAG).exp());
+            *speed += (wanted - *speed) * (1.0 - self.left);
             let force = f64::from(rotor.thrust_coefficient) * *speed * *speed;
             thrust += force;
             torque += Vector3::new(column.y, column.z, column.w) * force;

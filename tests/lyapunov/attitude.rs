@@ -16,10 +16,10 @@
 //! Across jumps, sigma_omega taken componentwise reaches sqrt(3) M*: a > sqrt(3) b M* alpha_theta / (gamma_theta delta
 //! (2 + delta)), 0.022 b. `Weights::sufficient` takes the greatest of all and 1 % more.
 
-use crate::oracle::rounding::situation;
-use crate::oracle::{Evaluation, Law, lifting, skew};
-use crate::random::{self, ChaCha8Rng};
-use crate::{PERIOD, configuration};
+use super::{PERIOD, configuration};
+use crate::support::oracle::rounding::situation;
+use crate::support::oracle::{Evaluation, Law, lifting, skew};
+use crate::support::random::{self, ChaCha8Rng};
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::Gains;
 use controller_core::path_lifting::Lift;

@@ -1,12 +1,12 @@
 //! What sampling at 100 Hz costs: along flights with inputs held between ticks V_1 and V_2 need not fall at every sample.
 //! Prints how often each rises where the law rather than rounding or the tracking of a moving reference decides.
 
-use crate::attitude::{Weights, random_rate_error};
-use crate::body::Body;
-use crate::oracle::Law;
-use crate::position::{Translation, random_translation};
-use crate::random;
-use crate::{PERIOD, hover};
+use super::attitude::{Weights, random_rate_error};
+use super::position::{Translation, random_translation};
+use super::{PERIOD, hover};
+use crate::support::body::Body;
+use crate::support::oracle::Law;
+use crate::support::random;
 use controller_core::controller::Controller;
 use nalgebra::Vector3;
 

@@ -1,8 +1,8 @@
 //! V_1, eq. (LyapunovFunctionV), of the position loop.
 
-use crate::oracle::Law;
-use crate::random::{self, ChaCha8Rng};
-use crate::{PERIOD, configuration, hover};
+use super::{PERIOD, configuration, hover};
+use crate::support::oracle::Law;
+use crate::support::random::{self, ChaCha8Rng};
 use controller_core::controller::{Controller, Memory};
 use controller_core::position::FilterState;
 use controller_core::state::State;

@@ -39,24 +39,18 @@ const THRUST_MAX: f32 = 1e6;
 /// Below it, one wrench component can only be had with rotor thrusts 100 times those it would need alone.
 pub const INDEPENDENCE: f64 = 0.01;
 
-/// How far B B+ may be from the unit matrix, m and 1/m included: well above the rounding of any rotors this module takes.
-const INVERSE_TOLERANCE: f64 = 1e-9;
-
-/// What is said of rotors that do not make every wrench.
-const DOES_NOT_SPAN: ParameterError = ParameterError { field: "rotors", reason: Reason::DoesNotSpan };
-
-/// The eight names of a field that every rotor has.
+/// The eight names of a field that every rotor has; rotors are numbered from 1.
 macro_rules! of_each_rotor {
     ($name:literal) => {
         [
-            concat!("rotors.", $name, "[0]"),
-            concat!("rotors.", $name, "[1]"),
-            concat!("rotors.", $name, "[2]"),
-            concat!("rotors.", $name, "[3]"),
-            concat!("rotors.", $name, "[4]"),
-            concat!("rotors.", $name, "[5]"),
-            concat!("rotors.", $name, "[6]"),
-            concat!("rotors.", $name, "[7]"),
+            concat!("rotors.", $name, ", rotor 1"),
+            concat!("rotors.", $name, ", rotor 2"),
+            concat!("rotors.", $name, ", rotor 3"),
+            concat!("rotors.", $name, ", rotor 4"),
+            concat!("rotors.", $name, ", rotor 5"),
+            concat!("rotors.", $name, ", rotor 6"),
+            concat!("rotors.", $name, ", rotor 7"),
+            concat!("rotors.", $name, ", rotor 8"),
         ]
     };
 }
@@ -152,7 +146,7 @@ impl Rotors {
     /// Checks every rotor, their number, and that together they produce thrust, roll, pitch and yaw independently.
     ///
     /// # Errors
-    /// Names the field, with the rotor's number from 0; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
+    /// Names the field, with the rotor's number from 1; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
     /// combination of the others to within [`INDEPENDENCE`].
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
@@ -181,26 +175,10 @@ impl Rotors {
             require(rotor.thrust_min >= 0.0, field, Reason::Negative)?;
             require(rotor.thrust_min < rotor.thrust_max, field, Reason::NotBelow(rotor.thrust_max))?;
         }
-        Self::spanning(list).ok_or(DOES_NOT_SPAN)
+        Self::spanning(list).ok_or(ParameterError { field: "rotors", reason: Reason::DoesNotSpan })
     }
 
-    /// The same rotors on a machine that is handed B+ and need not work it out.
-    ///
-    /// What it takes on trust is checked: each rotor has a range, and the rows given are a right inverse of B. Then they
-    /// deliver every wrench, and whoever bounds the thrusts bounds those of these very rows.
-    ///
-    /// # Errors
-    /// Names `rotors`.
-    pub fn with_inverse(rotors: &[Rotor], inverse: &[Vector4<f64>]) -> Result<Self, ParameterError> {
-        let (Ok(list), Ok(inverse)) = (Vec::from_slice(rotors), Vec::from_slice(inverse)) else {
-            return Err(ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) });
-        };
-        let known = Self { columns: columns(rotors), rotors: list, inverse };
-        let ranges = rotors.iter().all(|rotor| rotor.thrust_min >= 0.0 && rotor.thrust_min < rotor.thrust_max);
-        if ranges && known.is_inverse() { Ok(known) } else { Err(DOES_NOT_SPAN) }
-    }
-
-    /// Four equal rotors: 0 front left and 2 rear right turn clockwise, 1 rear left and 3 front right counter-clockwise.
+    /// Four equal rotors: 1 front left and 3 rear right turn clockwise, 2 rear left and 4 front right counter-clockwise.
     ///
     /// # Errors
     /// As [`Rotors::new`]; a bad arm shows as the positions it makes, bad speeds as the thrusts.
@@ -241,17 +219,6 @@ impl Rotors {
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
     pub(super) fn scale(&self) -> Vector4<f64> {
         squares(&self.columns).map(|square| 1.0 / math::sqrt_f64(square))
-    }
-
-    /// Whether B B+ is the unit matrix.
-    fn is_inverse(&self) -> bool {
-        (0..16).all(|place| {
-            let (row, column) = (place / 4, place % 4);
-            let pairs = self.columns.iter().zip(&self.inverse);
-            let product: f64 = pairs.filter_map(|(b, inverse)| Some(b.get(row)? * inverse.get(column)?)).sum();
-            let unit = if row == column { 1.0 } else { 0.0 };
-            (product - unit).abs() < INVERSE_TOLERANCE
-        }) && self.inverse.len() == self.columns.len()
     }
 
     /// Works out B, its scaling and B+, if the rows of B are independent enough.

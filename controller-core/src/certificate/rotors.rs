@@ -16,8 +16,8 @@
 //! hovering is required of it.
 
 use super::configuration::Configuration;
+use super::form::{ARITHMETIC_ALLOWANCE, Form};
 use super::inequality::Inequality;
-use super::{ARITHMETIC_ALLOWANCE, Form};
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
 use crate::error::ParameterError;

@@ -10,11 +10,11 @@
 //! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
 //! to fade out, so no bridge is needed, and such a start fits in a tick.
 
-use super::Pose;
+use super::measurement::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
 use crate::allocation::{MinimumNorm, Thrusts};
-use crate::certificate::configuration::Certified;
+use crate::certificate::certified::Certified;
 use crate::controller::{Command, Controller};
 use crate::error::InputError;
 use crate::governor::{Governor, GovernorLimits, Memory, Setpoint};
@@ -117,7 +117,7 @@ impl<'m> Chain<'m> {
     /// # Errors
     /// As [`Self::start`].
     pub fn regain(&mut self, pose: &Pose) -> Result<(), InputError> {
-        self.governor.start(&pose.position, &pose.velocity, &self.reference.heading)
+        self.governor.start(&pose.position(), &pose.velocity(), &self.reference.heading)
     }
 
     /// Brings the reference to rest.

@@ -1,7 +1,8 @@
 //! A vehicle to test with: the AscTec Hummingbird of `vehicles/hummingbird.toml`.
 
 use crate::allocation::{QuadX, Rotors};
-use crate::certificate::configuration::{Certified, Configuration};
+use crate::certificate::certified::Certified;
+use crate::certificate::configuration::Configuration;
 use crate::gains::{GainParameters, Gains};
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};

@@ -1,9 +1,8 @@
 //! What arming and a motor test need, and why they are refused.
 
-use super::measurement::Newest;
+use super::measurement::{ImuSample, Newest, Pose};
 use super::reason::Refusal;
 use super::rules::{IMU_AGE_MAX, MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode, POSE_AGE_MAX};
-use super::{ImuSample, Pose};
 use crate::heading::Heading;
 use crate::math;
 use nalgebra::{Quaternion, Vector2, Vector3};
@@ -14,7 +13,7 @@ const TILT_COSINE: f32 = 0.866_025_4;
 /// One motor to be turned slowly for a while, to see which it is and which way it turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorTest {
-    /// Which, from 0, in the rotors' order.
+    /// Its index in the rotors' order.
     pub rotor: usize,
     /// Part of the command's range, in (0, [`MOTOR_TEST_LEVEL_MAX`]].
     pub level: f32,
@@ -53,10 +52,10 @@ pub(super) fn to_arm(
     imu.unusable().or(pose.unusable()).map_or(Ok(()), |field| Err(Refusal::Unusable(field)))?;
     require(imu.within(IMU_AGE_MAX, now).is_some(), Refusal::ImuStale)?;
     let pose = &pose.within(POSE_AGE_MAX - 1, now).ok_or(Refusal::PoseStale)?.value;
-    require(upright(&pose.attitude) > TILT_COSINE, Refusal::Tilted)?;
+    require(upright(&pose.attitude()) > TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
-    let heading = heading(&pose.attitude).ok_or(Refusal::Tilted)?;
-    Ok(Start { position: pose.position, heading })
+    let heading = heading(&pose.attitude()).ok_or(Refusal::Tilted)?;
+    Ok(Start { position: pose.position(), heading })
 }
 
 /// A motor test: one rotor that exists, slowly, not for long.

@@ -13,7 +13,7 @@ use super::rules::{
 };
 use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
 use crate::allocation::geometry::ROTORS_MIN;
-use crate::certificate::configuration::{Certified, Refused};
+use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
 use crate::governor::{GovernorLimits, Memory, Setpoint};
 use crate::state::State;
@@ -86,7 +86,7 @@ impl<'m> Pilot<'m> {
         self.imu.offer(&inputs.imu, now);
         let rates = self.imu.within(u64::MAX, now).map_or_else(Default::default, |imu| imu.value.angular_velocity);
         if let Some(pose) = self.pose.offer(&inputs.pose, now) {
-            self.attitude = Some(PropagatedAttitude::new(pose.value.attitude, rates, pose.time));
+            self.attitude = Some(PropagatedAttitude::new(pose.value.attitude(), rates, pose.time));
         }
         if let Some(attitude) = &mut self.attitude {
             attitude.advance(rates, now);
@@ -169,7 +169,7 @@ impl<'m> Pilot<'m> {
             Mode::Disarmed | Mode::MotorTest => return (Output::Stop, None),
             Mode::Levelling => chain.fly_level(attitude, angular_velocity),
             Mode::Flying | Mode::Holding => {
-                let &Pose { position, velocity, .. } = &pose.value;
+                let (position, velocity) = (pose.value.position(), pose.value.velocity());
                 chain.fly(&State { position, velocity, attitude, angular_velocity })
             }
         };

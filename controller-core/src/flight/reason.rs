@@ -1,9 +1,8 @@
 //! Reasons in words: for every transition, and for everything that is refused.
 //!
-//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit. The words
-//! come in pieces, so that a board can put them together without the formatting of `core`.
+//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
 
-use crate::certificate::configuration::Refused;
+use crate::certificate::certified::Refused;
 use crate::error::{InputError, ParameterError};
 use core::fmt;
 
@@ -123,26 +122,13 @@ pub(super) fn field(error: InputError) -> &'static str {
     }
 }
 
-impl Grounded {
-    /// The reason in words, to be read in one go.
-    #[must_use]
-    pub fn words(&self) -> [&'static str; 3] {
-        match self {
-            Self::Inequality(name) => ["Not certified: ", cut(name, 35), ""],
-            Self::Parameter(field) => ["Cannot fly with ", cut(field, 34), ""],
-            Self::NoRotors => ["Cannot fly: the configuration has no rotors", "", ""],
-        }
-    }
-}
-
-/// The name's first characters, at most so many: names are ASCII.
-fn cut(name: &'static str, most: usize) -> &'static str {
-    name.get(..most).unwrap_or(name)
-}
-
 impl fmt::Display for Grounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words().iter().try_for_each(|words| f.write_str(words))
+        match self {
+            Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
+            Self::Parameter(field) => write!(f, "Cannot fly with {field:.34}"),
+            Self::NoRotors => f.write_str("Cannot fly: the configuration has no rotors"),
+        }
     }
 }
 
@@ -162,7 +148,7 @@ pub enum Refusal {
     ImuStale,
     /// No pose under [`super::rules::POSE_AGE_MAX`] old.
     PoseStale,
-    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or no rotation.
+    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or of a time to come.
     Unusable(&'static str),
     /// Body z is 30 degrees or more from up.
     Tilted,
@@ -182,15 +168,13 @@ pub enum Refusal {
     Setpoint(&'static str),
 }
 
-impl Refusal {
-    /// The reason in words, to be read in one go.
-    #[must_use]
-    pub fn words(&self) -> [&'static str; 3] {
-        let whole = match self {
-            Self::Grounded(grounded) => return grounded.words(),
-            Self::Unusable(field) => return ["Refused: ", cut(field, 32), " unusable"],
-            Self::Reference(field) => return ["Refused: no start at this ", cut(field, 24), ""],
-            Self::Setpoint(field) => return ["Setpoint refused: ", cut(field, 32), ""],
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Grounded(grounded) => return grounded.fmt(f),
+            Self::Unusable(field) => return write!(f, "Refused: {field:.32} unusable"),
+            Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
+            Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
@@ -202,68 +186,9 @@ impl Refusal {
             Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
             Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
             Self::NotFlying => "Setpoint refused: not flying",
-        };
-        [whole, "", ""]
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words().iter().try_for_each(|words| f.write_str(words))
+        })
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flight::example;
-    extern crate std;
-    use std::format;
-    use std::string::ToString;
-    use std::vec::Vec;
-
-    /// A name longer than any.
-    const LONG: &str = "a_name.that_is_longer_than_the_fifty_characters_of_a_status_text";
-
-    #[test]
-    fn every_text_fits_a_statustext_and_is_unlike_the_others() {
-        let grounded = [Grounded::Inequality(LONG), Grounded::Parameter(LONG), Grounded::NoRotors];
-        let refusals = [
-            Refusal::AlreadyArmed,
-            Refusal::MotorTestRunning,
-            Refusal::DisarmCommanded,
-            Refusal::ImuStale,
-            Refusal::PoseStale,
-            Refusal::Unusable(LONG),
-            Refusal::Tilted,
-            Refusal::GroundStationSilent,
-            Refusal::Reference(LONG),
-            Refusal::NoSuchRotor,
-            Refusal::MotorTestLevel,
-            Refusal::MotorTestDuration,
-            Refusal::NotFlying,
-            Refusal::Setpoint(LONG),
-        ];
-        let reasons = Reason::ALL.iter().map(ToString::to_string);
-        let refusals = refusals.into_iter().chain(grounded.map(Refusal::Grounded));
-        let mut texts: Vec<_> = reasons.chain(refusals.map(|refusal| refusal.to_string())).collect();
-        for text in &texts {
-            assert!(text.len() <= TEXT_MAX && text.len() > 4, "{text}");
-        }
-        let count = texts.len();
-        texts.sort();
-        texts.dedup();
-        assert_eq!(texts.len(), count);
-    }
-
-    #[test]
-    fn every_inequality_of_the_certificate_is_told_from_the_others_in_its_text() {
-        let certified = example::certified();
-        let certificate = certified.certificate();
-        let mut texts: Vec<_> =
-            certificate.inequalities().map(|i| format!("{:.44}", Grounded::Inequality(i.name).to_string())).collect();
-        texts.sort();
-        texts.dedup();
-        assert_eq!(texts.len(), certificate.inequalities().count());
-    }
-}
+mod tests;

@@ -34,6 +34,32 @@ pub const MOTOR_TEST_MAX: u64 = 2_000_000;
 pub const REFUSALS_MAX: u32 = 5;
 
 /// The states of the flight rules.
+///
+/// ```text
+/// +----------+  motor test permitted               +-----------+
+/// |          | ----------------------------------> |           |
+/// | Disarmed |                                     | MotorTest |
+/// |          | <---------------------------------- |           |
+/// +----------+  disarm, any request, time over     +-----------+
+///   |      ^
+///   |      |  in Flying, Holding and Levelling: disarm, IMU stale, thrusts refused;
+///   |      +----------------------------------  in Levelling besides: levelling over
+///   |
+///   | arming permitted
+///   v
+/// +----------+  ground station silent              +-----------+
+/// |          | ----------------------------------> |           |
+/// |  Flying  |                                     |  Holding  |
+/// |          | <---------------------------------- |           |
+/// +----------+  ground station heard               +-----------+
+///   |      ^                                              |
+///   | pose | pose                                         | pose stale
+///   | stale| regained                                     |
+///   v      |                                              |
+/// +-----------+                                           |
+/// | Levelling | <-----------------------------------------+
+/// +-----------+
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Mode {

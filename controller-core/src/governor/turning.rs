@@ -12,8 +12,8 @@
 //! A turn is 2^44 integer units: phases wrap where the circle does, sums are exact, and the way to an angle is the
 //! shorter one.
 
-use super::GovernorLimits;
 use super::braking::{BRAKING_SHARE, approach_speed};
+use super::limits::GovernorLimits;
 use super::windows::{ROUNDING_ROOM, ticks};
 use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;

@@ -12,7 +12,7 @@
 //! So T_1 = max(D/K_j, sqrt(2D/K_s)), T_2 = 2D/(K_s T_1): the least T_1 + T_2 that satisfies both. Should the windows not
 //! fit the memory, the authority A is lowered until they do: slower, never beyond a bound.
 
-use super::{GovernorLimits, HISTORY, SPEED_RANGE};
+use super::limits::{GovernorLimits, HISTORY, SPEED_RANGE};
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
 use crate::reference::ReferenceBounds;

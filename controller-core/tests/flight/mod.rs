@@ -3,13 +3,16 @@
 // Every test crate that includes this module uses a part of it.
 #![allow(dead_code)]
 
-#[path = "../../../tests/body/mod.rs"]
+#[path = "../../../tests/support/body.rs"]
 mod body;
 
 pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};
-use controller_core::certificate::configuration::{Certified, Configuration};
-use controller_core::flight::{ImuSample, Inputs, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped};
+use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::Configuration;
+use controller_core::flight::{
+    ImuSample, Inputs, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
+};
 use controller_core::governor::{GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
@@ -67,11 +70,15 @@ pub fn pilot() -> Pilot<'static> {
     Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), memory())
 }
 
+/// A pose as sources give it, velocity in the world.
+pub fn pose(position: Vector3<f32>, velocity: Vector3<f32>, attitude: Quaternion<f32>) -> Pose {
+    Pose::new(position, Velocity::World(velocity), attitude).unwrap()
+}
+
 /// Everything as it should be for a vehicle at rest and level at the origin.
 pub fn at_rest(now: u64) -> Inputs {
     let imu = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::new(0.0, 0.0, 9.81) };
-    let pose =
-        Pose { position: Vector3::zeros(), velocity: Vector3::zeros(), attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0) };
+    let pose = pose(Vector3::zeros(), Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
     Inputs {
         now,
         imu: Some(Stamped { value: imu, time: now }),
@@ -131,9 +138,8 @@ impl Flight {
     /// One tick and the motion until the next. Whatever the mode, the wrench is within the certificate.
     pub fn tick(&mut self) -> Outcome {
         let (state, now) = (self.body.state(), self.inputs.now);
-        let attitude = state.attitude;
         let imu = ImuSample { angular_velocity: state.angular_velocity, specific_force: Vector3::zeros() };
-        let pose = Pose { position: state.position, velocity: state.velocity, attitude };
+        let pose = pose(state.position, state.velocity, state.attitude);
         if self.present.imu {
             self.newest.imu = Some(Stamped { value: imu, time: now });
         }

@@ -5,7 +5,6 @@
 #[cfg(target_os = "none")]
 mod target {
     use defmt_rtt as _;
-    use panic_probe as _;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {

@@ -18,7 +18,6 @@ mod target {
     use firmware::outputs::Outputs;
     use firmware::shared::Shared;
     use firmware::status;
-    use panic_probe as _;
 
     static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
@@ -38,13 +37,13 @@ mod target {
         SHARED.hil.raise();
 
         let spawner = executors::start_flight();
-        spawner.spawn(defmt::unwrap!(control(pilot, outputs)));
-        spawner.spawn(defmt::unwrap!(to_simulator()));
-        spawner.spawn(defmt::unwrap!(from_simulator()));
+        spawner.spawn(control(pilot, outputs).unwrap());
+        spawner.spawn(to_simulator().unwrap());
+        spawner.spawn(from_simulator().unwrap());
         let spawner = executors::start_background();
-        spawner.spawn(defmt::unwrap!(from_ground()));
-        spawner.spawn(defmt::unwrap!(to_ground()));
-        spawner.spawn(defmt::unwrap!(show_status()));
+        spawner.spawn(from_ground().unwrap());
+        spawner.spawn(to_ground().unwrap());
+        spawner.spawn(show_status().unwrap());
         idle::idle(|| HIL.awaiting())
     }
 

@@ -5,20 +5,19 @@
 //! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
 //! restarts.
 
+use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
-use super::stm32::fault;
+use super::stm32::executors;
 use super::stm32::imu;
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
-use super::stm32::tasks::{self, Board};
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
 use core::mem::forget;
-use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
@@ -71,9 +70,9 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
-/// The second time.
+/// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board {
+pub fn take() -> Board<BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
     let p = embassy_stm32::init(clocks());
     pac::FLASH.acr().modify(|w| {
@@ -105,11 +104,11 @@ pub fn take() -> Board {
     let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
-    let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+    let uart = uart.expect("USART2's clock makes no 921,600 baud");
     let (receiver, transmitter) = link::halves(uart);
     let (to, from) = link::simulator_rings();
     let uart = BufferedUart::new(p.USART3, p.PC11, p.PC10, to, from, Interrupts, link::config());
-    let uart = defmt::unwrap!(uart.map_err(|_| "USART3's clock makes no 921,600 baud"));
+    let uart = uart.expect("USART3's clock makes no 921,600 baud");
     let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
     Board {
@@ -156,30 +155,20 @@ impl Battery for NoBattery {
 }
 
 /// The registers that TIM2 has in common with 16-bit timers: all that stopping needs.
-fn motor_timer() -> TimGp16 {
+#[must_use]
+pub fn motor_timer() -> TimGp16 {
     // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
     unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }
-}
-
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    fault::log_callers(frame);
-    fault::stop_and_restart(motor_timer())
-}
-
-#[exception]
-unsafe fn DefaultHandler(_: i16) -> ! {
-    fault::stop_and_restart(motor_timer())
 }
 
 #[interrupt]
 unsafe fn UART4() {
     // SAFETY: this is its handler.
-    unsafe { tasks::on_control_interrupt() }
+    unsafe { executors::on_control_interrupt() }
 }
 
 #[interrupt]
 unsafe fn UART5() {
     // SAFETY: this is its handler.
-    unsafe { tasks::on_sensor_interrupt() }
+    unsafe { executors::on_sensor_interrupt() }
 }

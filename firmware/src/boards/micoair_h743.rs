@@ -5,19 +5,18 @@
 //! revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays off: it
 //! would stand between the core and the DMA buffers.
 
+use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
-use super::stm32::fault;
+use super::stm32::executors;
 use super::stm32::imu;
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
-use super::stm32::tasks::{self, Board};
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::{Bmi088, Mounting};
 use crate::hardware::Battery;
-use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
@@ -73,9 +72,9 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
-/// The second time.
+/// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board {
+pub fn take() -> Board<BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
     let p = embassy_stm32::init(clocks());
     if let Some(mut core) = cortex_m::Peripherals::take() {
@@ -98,11 +97,11 @@ pub fn take() -> Board {
     let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
-    let uart = defmt::unwrap!(uart.map_err(|_| "USART1's clock makes no 921,600 baud"));
+    let uart = uart.expect("USART1's clock makes no 921,600 baud");
     let (receiver, transmitter) = link::halves(uart);
     let (to, from) = link::simulator_rings();
     let uart = BufferedUart::new(p.USART2, p.PA3, p.PA2, to, from, Interrupts, link::config());
-    let uart = defmt::unwrap!(uart.map_err(|_| "USART2's clock makes no 921,600 baud"));
+    let uart = uart.expect("USART2's clock makes no 921,600 baud");
     let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
     Board {
@@ -172,30 +171,20 @@ impl Battery for DividedBattery {
 }
 
 /// The registers that TIM1 has in common with smaller timers: all that stopping needs.
-fn motor_timer() -> TimGp16 {
+#[must_use]
+pub fn motor_timer() -> TimGp16 {
     // SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
     unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }
-}
-
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    fault::log_callers(frame);
-    fault::stop_and_restart(motor_timer())
-}
-
-#[exception]
-unsafe fn DefaultHandler(_: i16) -> ! {
-    fault::stop_and_restart(motor_timer())
 }
 
 #[interrupt]
 unsafe fn SAI1() {
     // SAFETY: this is its handler.
-    unsafe { tasks::on_control_interrupt() }
+    unsafe { executors::on_control_interrupt() }
 }
 
 #[interrupt]
 unsafe fn SAI2() {
     // SAFETY: this is its handler.
-    unsafe { tasks::on_sensor_interrupt() }
+    unsafe { executors::on_sensor_interrupt() }
 }

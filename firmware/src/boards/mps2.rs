@@ -7,7 +7,7 @@
 //! | SysTick, timer 0 | [`time`]: what embassy-time counts, and when it wakes |
 //! | LED | [`bench`], which also stands in for what is not there |
 //! | watchdog | [`watchdog`]: ends the emulation |
-//! | two interrupt lines nobody is connected to | the executors, flight above link ([`executors`]) |
+//! | two interrupt lines nobody is connected to | the executors, flight above link ([`executors`]); all lines: [`lines`] |
 //!
 //! Thread mode only sleeps ([`idle`]). Panics and faults end the emulation with status 1 ([`exit`]).
 
@@ -15,42 +15,13 @@ pub mod bench;
 pub mod executors;
 pub mod exit;
 pub mod idle;
+pub mod lines;
 pub mod time;
 pub mod uart;
 pub mod watchdog;
 
-use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
-
-/// What the processor and all devices on the bus run at, Hz.
-pub const CLOCK: u32 = 25_000_000;
-
-/// The lines of the interrupt controller that are in use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u16)]
-pub enum Interrupt {
-    /// UART 0 has a byte.
-    Uart0Receive = 0,
-    /// UART 0 takes another byte.
-    Uart0Transmit = 1,
-    /// UART 1 has a byte.
-    Uart1Receive = 2,
-    /// UART 1 takes another byte.
-    Uart1Transmit = 3,
-    /// Timer 0 has run down.
-    Timer0 = 8,
-    /// The executor of the flight tasks; connected to no device.
-    Flight = 30,
-    /// The executor of everything that may wait; connected to no device.
-    Background = 31,
-}
-
-// SAFETY: the numbers are those of the machine's lines, each below the 32 that it has.
-unsafe impl InterruptNumber for Interrupt {
-    fn number(self) -> u16 {
-        self as u16
-    }
-}
+use lines::Interrupt;
 
 /// Lines by urgency, the most urgent first. Devices only move bytes and wake tasks, so they may interrupt the flight tasks.
 const PRIORITIES: [(Interrupt, u8); 7] = [

@@ -1,7 +1,9 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
+pub mod board;
 pub mod clock;
-pub mod fault;
+pub mod executors;
+mod fault;
 pub mod imu;
 pub mod light;
 pub mod link;

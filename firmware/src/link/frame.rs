@@ -14,9 +14,8 @@
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
-use super::checksum::{checksum, extra};
-use super::message::LENGTHS;
-use nalgebra::Vector3;
+use mavlink::dialects::common::MavMessage;
+use mavlink::{MavlinkVersion, Message, MessageData, calculate_crc};
 
 /// The longest frame: version 2, 255 bytes of payload, signed.
 pub const FRAME_MAX: usize = 280;
@@ -28,13 +27,13 @@ pub const FRAME_AGE_MAX: u64 = 100_000;
 /// First byte of a version 1 frame.
 const START_V1: u8 = 0xFE;
 /// First byte of a version 2 frame.
-pub(super) const START_V2: u8 = 0xFD;
+const START_V2: u8 = 0xFD;
 /// Bytes before the payload: start, length, sequence, system, component, message.
 const HEADER_V1: usize = 6;
 /// Bytes before the payload: start, length, two of flags, sequence, system, component, three of message.
-pub(super) const HEADER_V2: usize = 10;
+const HEADER_V2: usize = 10;
 /// Bytes of the checksum behind the payload.
-pub(super) const CHECKSUM: usize = 2;
+const CHECKSUM: usize = 2;
 const SIGNATURE: usize = 13;
 
 /// The only incompatibility flag that is understood: a signature follows. It is not verified.
@@ -78,60 +77,12 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Whether all fields are there of a message that is read here. Version 1 does not cut fields off: there, a shorter
-    /// payload is something else.
+    /// The message, if it is of this type and its enumerations have values of the dialect. Version 2 cuts zeros off the end
+    /// of a message; version 1 does not: there, a shorter payload is something else.
     #[must_use]
-    pub fn is_whole(&self) -> bool {
-        let cut = |&(message, length): &(u32, usize)| self.message == message && self.payload.len() < length;
-        self.version == Version::V2 || !LENGTHS.iter().any(cut)
-    }
-
-    /// Bytes of the payload; zero where version 2 has cut them off.
-    #[must_use]
-    pub fn bytes<const COUNT: usize>(&self, offset: usize) -> [u8; COUNT] {
-        core::array::from_fn(|index| self.byte(offset + index))
-    }
-
-    /// One byte of the payload.
-    #[must_use]
-    pub fn byte(&self, offset: usize) -> u8 {
-        self.payload.get(offset).copied().unwrap_or(0)
-    }
-
-    /// An unsigned number of two bytes.
-    #[must_use]
-    pub fn u16(&self, offset: usize) -> u16 {
-        u16::from_le_bytes(self.bytes(offset))
-    }
-
-    /// An unsigned number of four bytes.
-    #[must_use]
-    pub fn u32(&self, offset: usize) -> u32 {
-        u32::from_le_bytes(self.bytes(offset))
-    }
-
-    /// An unsigned number of eight bytes.
-    #[must_use]
-    pub fn u64(&self, offset: usize) -> u64 {
-        u64::from(self.u32(offset)) | u64::from(self.u32(offset + 4)) << 32
-    }
-
-    /// A number in single precision.
-    #[must_use]
-    pub fn f32(&self, offset: usize) -> f32 {
-        f32::from_bits(self.u32(offset))
-    }
-
-    /// Whether `count` of them are neither NaN nor infinite.
-    #[must_use]
-    pub fn are_finite(&self, offset: usize, count: usize) -> bool {
-        (0..count).all(|index| self.f32(offset + 4 * index).is_finite())
-    }
-
-    /// Three of them.
-    #[must_use]
-    pub fn vector(&self, offset: usize) -> Vector3<f32> {
-        Vector3::from_fn(|row, _| self.f32(offset + 4 * row))
+    pub fn decode<D: MessageData>(&self) -> Option<D> {
+        let is_whole = self.version == Version::V2 || self.payload.len() >= D::ENCODED_LEN;
+        if self.message == D::ID && is_whole { D::deser(MavlinkVersion::V2, self.payload).ok() } else { None }
     }
 }
 
@@ -249,11 +200,16 @@ fn candidate(bytes: &[u8]) -> Candidate {
     let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
         return Candidate::Incomplete;
     };
-    if checksum(checked, extra) != u16::from_le_bytes([low, high]) {
+    if calculate_crc(checked, extra) != u16::from_le_bytes([low, high]) {
         return Candidate::Noise;
     }
     let length = end + CHECKSUM + signature;
     if bytes.len() < length { Candidate::Incomplete } else { Candidate::Frame(length) }
+}
+
+/// What a message's definition puts into its checksum; none for a message outside the dialect.
+fn extra(message: u32) -> Option<u8> {
+    Some(MavMessage::extra_crc(message)).filter(|&extra| extra != 0)
 }
 
 /// The message's number, if the header is there.

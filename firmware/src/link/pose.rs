@@ -10,22 +10,16 @@
 //! is not after the last one's is a repetition (or was overtaken) and is dropped, and differences are taken over it.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
-//! jumps. A field that is used and is not finite, or out of any sensible range, makes the message worthless; covariances
-//! are not looked at (NaN there means unknown).
+//! jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless. Body rates
+//! must be finite too, though the gyro's are flown; covariances are not looked at (NaN there means unknown).
 
 use super::frame::Frame;
-use super::message::{ATT_POS_MOCAP, LOCAL_NED, ODOMETRY};
 use crate::frames;
-use controller_core::flight::Pose;
-use controller_core::governor::SPEED_RANGE;
-use controller_core::math;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-
-/// How far from the origin a pose is believed, m.
-pub const POSITION_MAX: f32 = 10_000.0;
-
-/// How far from one a quaternion's length may be; closer ones are normalised.
-pub const LENGTH_TOLERANCE: f32 = 0.05;
+use controller_core::flight::{Pose, PoseError, Velocity};
+use core::fmt;
+use mavlink::MessageData;
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
+use nalgebra::{Quaternion, Vector3};
 
 /// How long a source must have been silent before another is listened to, or its clock may start again, us.
 pub const SOURCE_SILENCE: u64 = 1_000_000;
@@ -42,13 +36,9 @@ const SMOOTHING: f32 = 0.02;
 /// Why a pose was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PoseRefusal {
-    /// A field in use is NaN or infinite.
-    NotFinite,
-    /// Further away or faster than any vehicle.
-    OutOfRange,
-    /// The quaternion's length is not one.
-    NotARotation,
-    /// Frames that are not converted here.
+    /// Its numbers are none.
+    Numbers(PoseError),
+    /// Frames that are not converted here, or a message cut short.
     Frame,
     /// The sender's time is not after that of its last message.
     Repeated,
@@ -58,18 +48,14 @@ pub enum PoseRefusal {
     NoTime,
 }
 
-impl PoseRefusal {
-    /// The reason in words, to follow "Pose refused: ".
-    #[must_use]
-    pub fn text(self) -> &'static str {
+impl fmt::Display for PoseRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite => "a field is not finite",
-            Self::OutOfRange => "too far away or too fast",
-            Self::NotARotation => "quaternion not of unit length",
-            Self::Frame => "use LOCAL_NED and BODY_FRD",
-            Self::Repeated => "its time does not advance",
-            Self::SecondSource => "another source is in use",
-            Self::NoTime => "ATT_POS_MOCAP without a time",
+            Self::Numbers(error) => error.fmt(f),
+            Self::Frame => f.write_str("use LOCAL_NED and BODY_FRD"),
+            Self::Repeated => f.write_str("its time does not advance"),
+            Self::SecondSource => f.write_str("another source is in use"),
+            Self::NoTime => f.write_str("ATT_POS_MOCAP without a time"),
         }
     }
 }
@@ -100,20 +86,23 @@ impl Poses {
     /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
     pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Pose>, PoseRefusal> {
         match frame.message {
-            ODOMETRY => {
-                let pose = odometry(frame)?;
-                self.listen(frame, frame.u64(0))?;
+            ODOMETRY_DATA::ID => {
+                let message = frame.decode().ok_or(PoseRefusal::Frame)?;
+                let pose = odometry(&message)?;
+                self.listen(frame, message.time_usec)?;
                 Ok(Some(pose))
             }
-            ATT_POS_MOCAP => {
-                // Time, attitude, position.
-                let (time, pose) = (frame.u64(0), still(frame, 24, 8)?);
+            ATT_POS_MOCAP_DATA::ID => {
+                let message: ATT_POS_MOCAP_DATA = frame.decode().ok_or(PoseRefusal::Frame)?;
+                let ATT_POS_MOCAP_DATA { time_usec: time, q, x, y, z } = message;
+                let pose = |velocity| pose([x, y, z], q, Velocity::World(velocity));
+                // Nothing else may become the last position.
+                let still = pose(Vector3::zeros())?;
                 if time == 0 {
                     return Err(PoseRefusal::NoTime);
                 }
                 self.listen(frame, time)?;
-                let velocity = self.differences.take(pose.position, time)?;
-                Ok(velocity.map(|velocity| Pose { velocity, ..pose }))
+                self.differences.take(still.position(), time, pose)
             }
             _ => Ok(None),
         }
@@ -148,8 +137,13 @@ pub struct Differences {
 }
 
 impl Differences {
-    /// The velocity at this position (m) and sender's time (us), if one is known.
-    fn take(&mut self, position: Vector3<f32>, time: u64) -> Result<Option<Vector3<f32>>, PoseRefusal> {
+    /// The pose at this position (m) and sender's time (us), if a velocity is known; `pose` makes it of a velocity (m/s).
+    fn take(
+        &mut self,
+        position: Vector3<f32>,
+        time: u64,
+        pose: impl Fn(Vector3<f32>) -> Result<Pose, PoseRefusal>,
+    ) -> Result<Option<Pose>, PoseRefusal> {
         let last = self.last.map(|(last, then)| (last, time.saturating_sub(then)));
         if last.is_some_and(|(_, gap)| gap < GAP_MIN) {
             return Err(PoseRefusal::Repeated);
@@ -159,67 +153,42 @@ impl Differences {
             self.velocity = None;
             return Ok(None);
         };
-        let gap = gap as u32 as f32 * 1e-6;
+        let gap = gap as f32 * 1e-6;
         let difference = (position - last) / gap;
-        check(&difference, SPEED_RANGE)?;
+        // What no pose can have is a jump, and must not be smoothed into the next ones.
+        pose(difference)?;
         let velocity = match self.velocity {
             Some(velocity) => velocity + (difference - velocity) * (gap / (SMOOTHING + gap)),
             None => difference,
         };
         self.velocity = Some(velocity);
-        Ok(self.velocity)
+        pose(velocity).map(Some)
     }
 }
 
-/// MAV_FRAME_BODY_FRD.
-const BODY_FRD: u8 = 12;
-/// MAV_FRAME_LOCAL_FRD.
-const LOCAL_FRD: u8 = 20;
-
-/// The pose in an ODOMETRY message. Its body rates are checked but not used: the gyro is nearer.
-pub(crate) fn odometry(message: &Frame<'_>) -> Result<Pose, PoseRefusal> {
-    // Time, position, attitude, velocity, body rates, two covariances, the frames of position and velocity.
-    let (velocity, frame, child) = (message.vector(36), message.byte(228), message.byte(229));
-    if frame != LOCAL_NED && frame != LOCAL_FRD {
-        return Err(PoseRefusal::Frame);
+/// The pose in an ODOMETRY message.
+///
+/// # Errors
+/// [`PoseRefusal::Frame`] or [`PoseRefusal::Numbers`].
+pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
+    let &ODOMETRY_DATA { x, y, z, q, vx, vy, vz, frame_id: frame, child_frame_id: child, .. } = message;
+    if ![message.rollspeed, message.pitchspeed, message.yawspeed].iter().all(|rate| rate.is_finite()) {
+        return Err(PoseRefusal::Numbers(PoseError::NotFinite("body rate")));
     }
-    if !message.are_finite(36, 6) {
-        return Err(PoseRefusal::NotFinite);
-    }
-    check(&velocity, SPEED_RANGE)?;
-    let pose = still(message, 8, 20)?;
-    let velocity = match child {
-        BODY_FRD => UnitQuaternion::new_unchecked(pose.attitude) * frames::body(&velocity),
-        child if child == frame => frames::world(&velocity),
+    let velocity = Vector3::new(vx, vy, vz);
+    let velocity = match (frame, child) {
+        (MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_FRD, MavFrame::MAV_FRAME_BODY_FRD) => {
+            Velocity::Body(frames::body(&velocity))
+        }
+        (MavFrame::MAV_FRAME_LOCAL_NED, MavFrame::MAV_FRAME_LOCAL_NED)
+        | (MavFrame::MAV_FRAME_LOCAL_FRD, MavFrame::MAV_FRAME_LOCAL_FRD) => Velocity::World(frames::world(&velocity)),
         _ => return Err(PoseRefusal::Frame),
     };
-    Ok(Pose { velocity, ..pose })
+    pose([x, y, z], q, velocity)
 }
 
-/// The pose of a vehicle at rest, with a position of NED and an attitude FRD to NED at these places of the message.
-fn still(message: &Frame<'_>, position: usize, attitude: usize) -> Result<Pose, PoseRefusal> {
-    if !message.are_finite(attitude, 4) {
-        return Err(PoseRefusal::NotFinite);
-    }
-    let position = message.vector(position);
-    check(&position, POSITION_MAX)?;
-    // Scalar first.
-    let q = Quaternion::from_parts(message.f32(attitude), message.vector(attitude + 4));
-    let length = math::sqrt(q.norm_squared());
-    if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
-        return Err(PoseRefusal::NotARotation);
-    }
-    let (position, attitude) = (frames::world(&position), frames::attitude(&(q / length)));
-    Ok(Pose { position, velocity: Vector3::zeros(), attitude })
-}
-
-/// Refuses components that are not finite or greater than `range`.
-fn check(vector: &Vector3<f32>, range: f32) -> Result<(), PoseRefusal> {
-    if vector.iter().any(|component| !component.is_finite()) {
-        return Err(PoseRefusal::NotFinite);
-    }
-    if vector.iter().any(|component| component.abs() > range) {
-        return Err(PoseRefusal::OutOfRange);
-    }
-    Ok(())
+/// The pose at a position of NED with an attitude FRD to NED, scalar first, and a velocity in the law's frames.
+fn pose(position: [f32; 3], [w, i, j, k]: [f32; 4], velocity: Velocity) -> Result<Pose, PoseRefusal> {
+    let attitude = frames::attitude(&Quaternion::new(w, i, j, k));
+    Pose::new(frames::world(&position.into()), velocity, attitude).map_err(PoseRefusal::Numbers)
 }

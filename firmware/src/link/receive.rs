@@ -2,18 +2,23 @@
 //!
 //! A message that cannot be used changes nothing, is counted and, once a second at most, told in words. No input panics.
 
-use super::command::{Action, Command, Repetitions, action};
+use super::COMPONENT;
+use super::command::{Action, Repetitions, action};
 use super::frame::{Frame, Parser};
 use super::pose::Poses;
-use super::reply::{CommandResult, Reply};
 use super::setpoint::setpoint;
-use super::{COMPONENT, message};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Origin, Severity, Shared, Text, Traffic};
+use crate::shared::{Asked, Event, Ping, Reply, Severity, Shared, Traffic};
+use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavParamType, MavResult, MavType, ODOMETRY_DATA,
+    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -23,9 +28,6 @@ const RECOVERY: u64 = 10_000;
 
 /// How often a kind of refusal is told in words, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
-
-/// MAV_TYPE_GCS.
-const GROUND_STATION: u8 = 6;
 
 /// Bytes read at once.
 const CHUNK: usize = 64;
@@ -57,10 +59,10 @@ struct Occasionally {
 }
 
 impl Occasionally {
-    fn announce<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: &[&str]) {
+    fn warn<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: impl Display) {
         if now >= self.not_before {
             self.not_before = now.saturating_add(TEXT_INTERVAL);
-            shared.announce(Severity::Warning, words);
+            shared.announce(Event::new(Severity::Warning, words));
         }
     }
 }
@@ -97,26 +99,31 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
-        if !frame.is_whole() {
-            return self.refused();
-        }
-        // Whether the addressee at this place of the message is this vehicle or everyone.
-        let is_addressed = |offset| {
-            let (system, component) = (frame.byte(offset), frame.byte(offset + 1));
-            (system == 0 || system == own) && (component == 0 || component == COMPONENT)
-        };
         match frame.message {
-            message::HEARTBEAT => self.heartbeat(frame),
+            HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             // In a simulation the simulator says where the vehicle is.
-            message::ODOMETRY | message::ATT_POS_MOCAP if !self.shared.hil.is_raised() => self.pose(frame),
-            message::SET_POSITION_TARGET_LOCAL_NED if is_addressed(50) => self.setpoint(frame),
-            message::COMMAND_LONG if is_addressed(30) => self.command(frame),
-            message::PING => self.ping(frame),
-            message::PARAM_REQUEST_LIST if is_addressed(0) => self.shared.reply(Reply::AllParameters),
-            message::PARAM_REQUEST_READ if is_addressed(2) => self.read_parameter(frame),
-            message::PARAM_SET if is_addressed(4) => self.set_parameter(frame),
+            ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
+            SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
+            COMMAND_LONG_DATA::ID => self.decoded(frame, Self::command),
+            Ping::ID => self.decoded(frame, Self::ping),
+            PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
+            PARAM_REQUEST_READ_DATA::ID => self.decoded(frame, Self::read_parameter),
+            PARAM_SET_DATA::ID => self.decoded(frame, Self::set_parameter),
             _ => {}
         }
+    }
+
+    /// Acts on the frame's message, or counts it as refused if it is no such message.
+    fn decoded<D: MessageData>(&mut self, frame: &Frame<'_>, act: fn(&mut Self, &Frame<'_>, &D)) {
+        match frame.decode() {
+            Some(message) => act(self, frame, &message),
+            None => self.refused(),
+        }
+    }
+
+    /// Whether an addressee is this vehicle or everyone.
+    fn is_addressed(&self, system: u8, component: u8) -> bool {
+        (system == 0 || system == self.own_system()) && (component == 0 || component == COMPONENT)
     }
 
     /// Shares the counts, with the parser's.
@@ -134,9 +141,9 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    /// Any ground station's will do. Its type is the fifth byte; the other fields are of no interest, known or not.
-    fn heartbeat(&mut self, frame: &Frame<'_>) {
-        if frame.byte(4) == GROUND_STATION {
+    /// Any ground station's will do.
+    fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
+        if message.mavtype == MavType::MAV_TYPE_GCS {
             self.shared.ground_station.put((), frame.time);
         }
     }
@@ -147,72 +154,85 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             Ok(None) => {}
             Err(refusal) => {
                 self.refused();
-                self.pose_refused.announce(self.shared, frame.time, &["Pose refused: ", refusal.text()]);
+                self.pose_refused.warn(self.shared, frame.time, format_args!("Pose refused: {refusal}"));
             }
         }
     }
 
-    fn setpoint(&mut self, frame: &Frame<'_>) {
-        match setpoint(frame) {
+    fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
+        if !self.is_addressed(message.target_system, message.target_component) {
+            return;
+        }
+        match setpoint(message) {
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
             Err(refusal) => {
                 self.refused();
-                self.setpoint_refused.announce(self.shared, frame.time, &["Setpoint refused: ", refusal.text()]);
+                self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
             }
         }
     }
 
-    fn command(&mut self, frame: &Frame<'_>) {
-        let command = Command::from_frame(frame);
+    fn command(&mut self, frame: &Frame<'_>, message: &COMMAND_LONG_DATA) {
+        if !self.is_addressed(message.target_system, message.target_component) {
+            return;
+        }
         if self.repetitions.is_repeated(frame) {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             return;
         }
-        let (system, component) = (frame.header.system, frame.header.component);
-        let origin = Origin { system, component, command: command.command };
-        let result = match action(&command, self.shared.is_armed()) {
-            Action::Ask(request) => match self.shared.request(Asked { request, origin }) {
+        let command = message.command;
+        let result = match action(message, self.shared.is_armed()) {
+            Action::Ask(request) => match self.shared.request(Asked { request, command }) {
                 Ok(()) => return,
-                Err(_) => CommandResult::TemporarilyRejected,
+                Err(_) => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
             },
             Action::Disarm => {
                 self.shared.request_disarm();
-                CommandResult::Accepted
+                MavResult::MAV_RESULT_ACCEPTED
             }
             Action::EnterHil => {
                 self.shared.hil.raise();
-                CommandResult::Accepted
+                MavResult::MAV_RESULT_ACCEPTED
             }
             Action::Answer(result) => result,
         };
-        self.shared.reply(Reply::Command { origin, result });
+        self.shared.reply(Reply::Command { command, result });
     }
 
-    /// PING is deprecated in favour of TIMESYNC, but clients still send it and wait for the answer. One that is addressed to
-    /// somebody is itself an answer.
-    fn ping(&mut self, frame: &Frame<'_>) {
-        if frame.u16(12) == 0 {
-            let (time, sequence) = (frame.u64(0), frame.u32(8));
-            let (system, component) = (frame.header.system, frame.header.component);
-            self.shared.reply(Reply::Ping { time, sequence, system, component });
+    /// Back to its sender. One that is addressed to somebody is itself an answer.
+    #[expect(deprecated, reason = "see there")]
+    fn ping(&mut self, frame: &Frame<'_>, message: &Ping) {
+        if (message.target_system, message.target_component) == (0, 0) {
+            let (target_system, target_component) = (frame.header.system, frame.header.component);
+            self.shared.reply(Reply::Ping(Ping { target_system, target_component, ..message.clone() }));
         }
     }
 
-    fn read_parameter(&mut self, frame: &Frame<'_>) {
-        // A negative index: by name.
-        let name = match usize::try_from(frame.u16(0) as i16) {
-            Ok(index) => Name::from_index(index),
-            Err(_) => Name::from_bytes(&frame.bytes::<16>(4)),
-        };
-        self.reply_with_parameter(name);
+    fn list_parameters(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_LIST_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            self.shared.reply(Reply::AllParameters);
+        }
     }
 
-    fn set_parameter(&mut self, frame: &Frame<'_>) {
-        let (value, name, kind) = (frame.f32(0), Name::from_bytes(&frame.bytes::<16>(6)), frame.byte(22));
-        if let Some(name) = name {
-            self.set(name, value, kind);
+    fn read_parameter(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_READ_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            // A negative index: by name.
+            let name = match usize::try_from(message.param_index) {
+                Ok(index) => Name::from_index(index),
+                Err(_) => message.param_id.to_str().ok().and_then(Name::from_name),
+            };
+            self.reply_with_parameter(name);
         }
-        self.reply_with_parameter(name);
+    }
+
+    fn set_parameter(&mut self, _: &Frame<'_>, message: &PARAM_SET_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            let name = message.param_id.to_str().ok().and_then(Name::from_name);
+            if let Some(name) = name {
+                self.set(name, message.param_value, message.param_type);
+            }
+            self.reply_with_parameter(name);
+        }
     }
 
     /// Its value, as it is now, answers every question about a parameter.
@@ -223,17 +243,15 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    fn set(&mut self, name: Name, value: f32, kind: u8) {
+    fn set(&mut self, name: Name, value: f32, kind: MavParamType) {
         let shared = self.shared;
-        let refusal = if shared.is_armed() {
-            Text::new(&["Parameters change only while disarmed"])
-        } else if kind != message::REAL32 {
-            Text::new(&[name.row().name, ": is a REAL32"])
+        let warn = |words: &dyn Display| shared.announce(Event::new(Severity::Warning, words));
+        if shared.is_armed() {
+            warn(&"Parameters change only while disarmed");
+        } else if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
+            warn(&format_args!("{}: is a REAL32", name.row().name));
         } else if let Err(error) = shared.parameters.set(name, value) {
-            error.text()
-        } else {
-            return;
-        };
-        shared.announce(Severity::Warning, &[refusal.as_str()]);
+            warn(&error);
+        }
     }
 }

@@ -10,10 +10,10 @@
 //! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not looked
 //! at. Only LOCAL_NED is understood. Ranges are the governor's business: everything from here goes through it.
 
-use super::frame::Frame;
-use super::message::LOCAL_NED;
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};
+use core::fmt;
+use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::Vector3;
 
 /// Why a setpoint was not taken.
@@ -27,66 +27,73 @@ pub enum SetpointRefusal {
     Frame,
 }
 
-impl SetpointRefusal {
-    /// The reason in words, to follow "Setpoint refused: ".
-    #[must_use]
-    pub fn text(self) -> &'static str {
-        match self {
+impl fmt::Display for SetpointRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
             Self::NotFinite => "a field is not finite",
             Self::Mask => "type mask not supported",
             Self::Frame => "use LOCAL_NED",
-        }
+        })
     }
 }
 
-/// The type mask's bit that makes the acceleration a force.
-const FORCE: u16 = 1 << 9;
-/// Its bit for a heading that is not to be looked at.
-const NO_HEADING: u16 = 1 << 10;
-/// And for the heading's rate.
-const NO_HEADING_RATE: u16 = 1 << 11;
+/// The bits that set a position aside, axis by axis; and those for velocity and acceleration.
+const NO_POSITION: Mask = Mask::POSITION_TARGET_TYPEMASK_X_IGNORE
+    .union(Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE)
+    .union(Mask::POSITION_TARGET_TYPEMASK_Z_IGNORE);
+const NO_VELOCITY: Mask = Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE
+    .union(Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE)
+    .union(Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE);
+const NO_ACCELERATION: Mask = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
+    .union(Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE)
+    .union(Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE);
 
 /// What a SET_POSITION_TARGET_LOCAL_NED asks for.
 ///
 /// # Errors
 /// [`SetpointRefusal`] for what cannot be done or is not finite.
-pub fn setpoint(message: &Frame<'_>) -> Result<Setpoint, SetpointRefusal> {
-    // Time, position, velocity, acceleration, heading, its rate, mask, addressee, frame.
-    let (mask, frame) = (message.u16(48), message.byte(52));
-    if frame != LOCAL_NED {
+pub fn setpoint(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint, SetpointRefusal> {
+    let &SET_POSITION_TARGET_LOCAL_NED_DATA { x, y, z, vx, vy, vz, afx, afy, afz, type_mask: mask, .. } = message;
+    if message.coordinate_frame != MavFrame::MAV_FRAME_LOCAL_NED {
         return Err(SetpointRefusal::Frame);
     }
-    let quantity = |index: usize| frames::world(&message.vector(4 + 12 * index));
-    let motion = match (is_used(message, mask, 0)?, is_used(message, mask, 1)?, is_used(message, mask, 2)?) {
-        (_, _, true) if mask & FORCE != 0 => return Err(SetpointRefusal::Mask),
-        (true, false, false) => Motion::Position(quantity(0)),
-        (false, true, false) => Motion::Velocity(quantity(1)),
-        (true, true, accelerated) => Motion::PositionVelocityAcceleration {
-            position: quantity(0),
-            velocity: quantity(1),
-            acceleration: if accelerated { quantity(2) } else { Vector3::zeros() },
-        },
+    let position = used([x, y, z], mask, NO_POSITION)?;
+    let velocity = used([vx, vy, vz], mask, NO_VELOCITY)?;
+    let acceleration = used([afx, afy, afz], mask, NO_ACCELERATION)?;
+    let motion = match (position, velocity, acceleration) {
+        (_, _, Some(_)) if mask.contains(Mask::POSITION_TARGET_TYPEMASK_FORCE_SET) => {
+            return Err(SetpointRefusal::Mask);
+        }
+        (Some(position), None, None) => Motion::Position(position),
+        (None, Some(velocity), None) => Motion::Velocity(velocity),
+        (Some(position), Some(velocity), acceleration) => {
+            let acceleration = acceleration.unwrap_or_else(Vector3::zeros);
+            Motion::PositionVelocityAcceleration { position, velocity, acceleration }
+        }
         _ => return Err(SetpointRefusal::Mask),
     };
-    Ok(Setpoint { motion, turn: turn(message, mask)? })
+    Ok(Setpoint { motion, turn: turn(message)? })
 }
 
-/// Whether the mask has position (0), velocity (1) or acceleration (2) used. All three axes are, or none.
-fn is_used(message: &Frame<'_>, mask: u16, index: usize) -> Result<bool, SetpointRefusal> {
-    match mask >> (3 * index) & 0b111 {
-        0b000 if message.are_finite(4 + 12 * index, 3) => Ok(true),
-        0b000 => Err(SetpointRefusal::NotFinite),
-        0b111 => Ok(false),
-        _ => Err(SetpointRefusal::Mask),
+/// A vector of NED in the law's world, unless the mask sets it aside. All three axes count, or none.
+fn used(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
+    if mask.contains(ignored) {
+        return Ok(None);
     }
+    if mask.intersects(ignored) {
+        return Err(SetpointRefusal::Mask);
+    }
+    let finite = vector.iter().all(|component| component.is_finite());
+    if finite { Ok(Some(frames::world(&vector.into()))) } else { Err(SetpointRefusal::NotFinite) }
 }
 
-fn turn(message: &Frame<'_>, mask: u16) -> Result<Turn, SetpointRefusal> {
-    let (turns, rotates) = (mask & NO_HEADING == 0, mask & NO_HEADING_RATE == 0);
-    if turns && !message.are_finite(40, 1) || rotates && !message.are_finite(44, 1) {
+fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Turn, SetpointRefusal> {
+    let turns = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
+    let rotates = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
+    if turns && !message.yaw.is_finite() || rotates && !message.yaw_rate.is_finite() {
         return Err(SetpointRefusal::NotFinite);
     }
-    let (angle, rate) = (frames::heading(message.f32(40)), frames::heading_rate(message.f32(44)));
+    let (angle, rate) = (frames::heading(message.yaw), frames::heading_rate(message.yaw_rate));
     Ok(match (turns, rotates) {
         (false, false) => Turn::Keep,
         (false, true) => Turn::Rate(rate),

@@ -2,18 +2,18 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::draft::Draft;
-use super::frame::Header;
-use super::reply::Reply;
-use super::{COMPONENT, telemetry};
+use super::telemetry;
+use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, Report, Severity, Shared, Text};
+use crate::shared::{Event, Reply, Report, Severity, Shared};
 use controller_core::flight::Stamped;
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
+use mavlink::MessageData;
+use mavlink::dialects::common::COMMAND_ACK_DATA;
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIME_MAX: u64 = 100_000;
@@ -36,7 +36,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
         for turn in [Speaker::scheduled, Speaker::queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
-                send(&mut line, clock, WRITE_TIME_MAX, speaker.finish()).await;
+                send(&mut line, clock, WRITE_TIME_MAX, speaker.writer.bytes()).await;
             }
         }
         if silent {
@@ -64,7 +64,6 @@ impl Schedule {
 }
 
 /// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
-#[inline(never)]
 fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     let has_come = now >= *due;
     if has_come {
@@ -74,12 +73,11 @@ fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
     has_come
 }
 
-/// Finds what to say next and drafts it. Nothing here waits, so there is one future for all messages.
+/// Finds what to say next and writes it. Nothing here waits, so there is one future for all messages.
 struct Speaker<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     schedule: Schedule,
-    draft: Draft,
-    sequence: u8,
+    writer: Writer,
     /// Lost events that were told of.
     told: u32,
 }
@@ -87,34 +85,30 @@ struct Speaker<'a, M: RawMutex> {
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
         let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, list: None };
-        Self { shared, schedule, draft: Draft::new(), sequence: 0, told: 0 }
+        Self { shared, schedule, writer: Writer::new(), told: 0 }
     }
 
-    /// The drafted message as the next frame.
-    fn finish(&mut self) -> &[u8] {
-        let sequence = self.sequence;
-        self.sequence = sequence.wrapping_add(1);
-        let system = self.shared.parameters.get(Name::SystemId) as u8;
-        self.draft.finish(Header { system, component: COMPONENT, sequence })
+    fn say(&mut self, message: &impl MessageData) {
+        self.writer.write(self.shared.parameters.get(Name::SystemId) as u8, message);
     }
 
-    /// Drafts the first message that is due; whether there is one.
+    /// Writes the first message that is due; whether there is one.
     fn scheduled(&mut self, now: u64) -> bool {
         // Within 10 and 50 Hz, as the table has it.
-        let interval = u64::from((1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u32);
+        let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
         let report = self.shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
         let state = report.as_ref().and_then(|report| Some((report.time, report.value.state.as_ref()?)));
         if comes(&mut self.schedule.attitude, interval, now)
             && let Some((time, state)) = state
         {
-            telemetry::attitude(&mut self.draft, time, state);
+            self.say(&telemetry::attitude(time, state));
         } else if comes(&mut self.schedule.position, interval, now)
             && let Some((time, state)) = state
         {
-            telemetry::position(&mut self.draft, time, state);
+            self.say(&telemetry::position(time, state));
         } else if comes(&mut self.schedule.heartbeat, HEARTBEAT_INTERVAL, now) {
             let mode = report.map(|report| report.value.mode);
-            telemetry::heartbeat(&mut self.draft, mode, self.shared.hil.is_raised());
+            self.say(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
         } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
             self.status(report.as_ref(), now);
         } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
@@ -129,31 +123,31 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    /// Drafts the next thing that was asked for, what the vehicle decided first; whether there is one.
+    /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
         if let Some(answer) = shared.answers.take() {
-            return self.reply(&answer, now);
+            return self.reply(answer, now);
         }
         if let Some(event) = shared.events.take() {
-            telemetry::text(&mut self.draft, &event);
+            self.say(&telemetry::text(&event));
             return true;
         }
-        if shared.lost_events() != self.told {
-            self.lost(shared.lost_events());
+        let lost = shared.lost_events().wrapping_sub(self.told);
+        if lost > 0 {
+            self.told = self.told.wrapping_add(lost);
+            self.say(&telemetry::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
-        shared.replies.take().is_some_and(|reply| self.reply(&reply, now))
+        shared.replies.take().is_some_and(|reply| self.reply(reply, now))
     }
 
-    /// Drafts a reply; a list of parameters is put on the schedule.
-    fn reply(&mut self, reply: &Reply, now: u64) -> bool {
+    /// Writes a reply; a list of parameters is put on the schedule.
+    fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
-            Reply::Command { origin, result } => telemetry::acknowledgement(&mut self.draft, origin, *result),
-            Reply::Ping { time, sequence, system, component } => {
-                telemetry::ping(&mut self.draft, *time, *sequence, *system, *component);
-            }
-            Reply::Parameter(name) => self.parameter(*name),
+            Reply::Command { command, result } => self.say(&COMMAND_ACK_DATA { command, result }),
+            Reply::Ping(ping) => self.say(&ping),
+            Reply::Parameter(name) => self.parameter(name),
             Reply::AllParameters => {
                 self.schedule.list = Some((0, now));
                 return false;
@@ -166,17 +160,10 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         let voltage = self.shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
         let traffic = self.shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
         let report = report.map(|report| &report.value);
-        telemetry::status(&mut self.draft, voltage.map(|voltage| voltage.value), report, traffic);
-    }
-
-    fn lost(&mut self, lost: u32) {
-        let text = Text::new(&[Text::count(lost.wrapping_sub(self.told)).as_str(), " events lost"]);
-        self.told = lost;
-        telemetry::text(&mut self.draft, &Event { severity: Severity::Warning, text });
+        self.say(&telemetry::status(voltage.map(|voltage| voltage.value), report, traffic));
     }
 
     fn parameter(&mut self, name: Name) {
-        let value = self.shared.parameters.get(name);
-        telemetry::parameter(&mut self.draft, name, value);
+        self.say(&telemetry::parameter(name, self.shared.parameters.get(name)));
     }
 }

@@ -12,8 +12,6 @@
 //! where it is: what was programmed once cannot be programmed again. An erasure that was cut short is done again, because
 //! only the sector of the newest record is ever continued. Reading back after writing finds a place that looked blank
 //! and was not.
-//!
-//! It replaces a general key-value store that took 7 KB of flash for five numbers; this takes less than one.
 
 use crate::hardware::{Fault, Flash, Record};
 

@@ -11,7 +11,7 @@ use super::table::PARAMETERS;
 use super::{DEFAULTS, Values};
 use crate::deadline::within;
 use crate::hardware::{Clock, Flash};
-use crate::shared::{Severity, Shared};
+use crate::shared::{Event, Severity, Shared};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 const _: () = assert!(PARAMETERS.len() <= VALUES_MAX);
@@ -36,12 +36,12 @@ impl<F: Flash> Storage<F> {
         let mut values = DEFAULTS;
         let (journal, found) = Journal::open(flash, &mut values);
         if found.is_err() {
-            shared.announce(Severity::Warning, &["Parameters: stored values unusable, defaults taken"]);
+            shared.announce(Event::new(Severity::Warning, "Parameters: stored values unusable, defaults taken"));
         }
         for (row, value) in PARAMETERS.iter().zip(values) {
             if shared.parameters.restore(row.parameter, value).is_err() {
-                let name = row.name;
-                shared.announce(Severity::Warning, &[name, ": stored value unusable, default taken"]);
+                let words = format_args!("{}: stored value unusable, default taken", row.name);
+                shared.announce(Event::new(Severity::Warning, words));
             }
         }
         Self { journal, saved: shared.parameters.all() }
@@ -65,13 +65,13 @@ impl<F: Flash> Storage<F> {
         if values == self.saved {
             return;
         }
-        // Twice and no oftener: one place may be bad, and a flash that fails would be worn out by more. The next change is
+        // Twice and no more: one place may be bad, and a flash that fails would be worn out by more. The next change is
         // another chance.
         let written = (0..2).any(|_| self.journal.append(&values).is_ok());
         for (row, (value, saved)) in PARAMETERS.iter().zip(values.iter().zip(&self.saved)) {
             if !written && value != saved {
-                let name = row.name;
-                shared.announce(Severity::Warning, &[name, ": set, but could not be saved"]);
+                let words = format_args!("{}: set, but could not be saved", row.name);
+                shared.announce(Event::new(Severity::Warning, words));
             }
         }
         self.saved = values;

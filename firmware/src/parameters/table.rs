@@ -65,11 +65,10 @@ impl Name {
         &PARAMETERS[self as usize]
     }
 
-    /// The parameter of this MAVLink name, which ends at the first zero byte or fills its 16 bytes.
+    /// The parameter of this MAVLink name.
     #[must_use]
-    pub fn from_bytes(name: &[u8]) -> Option<Self> {
-        let name = name.split(|&byte| byte == 0).next()?;
-        PARAMETERS.iter().find(|row| row.name.as_bytes() == name).map(|row| row.parameter)
+    pub fn from_name(name: &str) -> Option<Self> {
+        PARAMETERS.iter().find(|row| row.name == name).map(|row| row.parameter)
     }
 
     /// The parameter in this place of the table.

@@ -1,6 +1,8 @@
-//! Something to tell people: one line of text.
-//!
-//! Lines are put together from pieces here, not by the formatting of `core`, which would take 5 KB of flash.
+//! What people are told. An event is put into words where it is sent or logged, not in the control task it may come from.
+
+use controller_core::error::InputError;
+use controller_core::flight::{Reason, Refusal};
+use core::fmt::{self, Write};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -10,43 +12,13 @@ pub const TEXT_MAX: usize = 50;
 pub struct Text(heapless::String<TEXT_MAX>);
 
 impl Text {
-    /// The pieces one after the other; what does not fit is cut off, and so is the rest of a character that fits in part.
+    /// The words; what does not fit is cut off, and so is the rest of a character that fits in part.
     #[must_use]
-    pub fn new(pieces: &[&str]) -> Self {
+    pub fn new(words: impl fmt::Display) -> Self {
         let mut text = Self::default();
-        for piece in pieces {
-            let part = piece.get(..piece.floor_char_boundary(TEXT_MAX - text.0.len())).unwrap_or("");
-            // It has room for as much.
-            let _ = text.0.push_str(part);
-            if part.len() < piece.len() {
-                break;
-            }
-        }
+        // An error says that it is full.
+        let _ = write!(text, "{words}");
         text
-    }
-
-    /// A count as people write it.
-    #[must_use]
-    pub fn count(number: u32) -> Self {
-        // At most ten digits, found from the last one on.
-        let (mut digits, mut rest) = ([""; 10], number);
-        for place in digits.iter_mut().rev() {
-            let digit = (rest % 10) as usize;
-            *place = "0123456789".get(digit..=digit).unwrap_or("");
-            rest /= 10;
-            if rest == 0 {
-                break;
-            }
-        }
-        Self::new(&digits)
-    }
-
-    /// A number as people write it, with one decimal; at most 2e8 in size.
-    #[must_use]
-    pub fn decimal(number: f32) -> Self {
-        let tenths = (number.abs() * 10.0 + 0.5) as u32;
-        let sign = if number < 0.0 { "-" } else { "" };
-        Self::new(&[sign, Self::count(tenths / 10).as_str(), ".", Self::count(tenths % 10).as_str()])
     }
 
     /// The line.
@@ -56,9 +28,16 @@ impl Text {
     }
 }
 
+impl Write for Text {
+    fn write_str(&mut self, words: &str) -> fmt::Result {
+        let end = words.floor_char_boundary(TEXT_MAX - self.0.len());
+        self.0.push_str(words.get(..end).unwrap_or("")).map_err(|_| fmt::Error)?;
+        if end < words.len() { Err(fmt::Error) } else { Ok(()) }
+    }
+}
+
 /// How much it matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Severity {
     /// Good to know.
     Information,
@@ -69,10 +48,53 @@ pub enum Severity {
 }
 
 /// Something to tell people.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Event {
-    /// How much it matters.
-    pub severity: Severity,
-    /// What it is.
-    pub text: Text,
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// The flight rules changed the mode.
+    Mode(Reason),
+    /// A request or a setpoint was refused.
+    Refused(Refusal),
+    /// The law cannot use its input.
+    Input(InputError),
+    /// The motors' frames do not go out.
+    MotorsLost,
+    /// They do again.
+    MotorsRegained,
+    /// Anything else, in words.
+    Words(Severity, Text),
+}
+
+impl Event {
+    /// Something said in words.
+    #[must_use]
+    pub fn new(severity: Severity, words: impl fmt::Display) -> Self {
+        Self::Words(severity, Text::new(words))
+    }
+
+    /// What the vehicle does on its own is critical; what it was told to, or recovers from, is good to know.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        use Reason::{GroundStationLost, ImuLost, PoseLost, PoseLostForLong, ThrustsRefused};
+        match self {
+            Self::Mode(ImuLost | ThrustsRefused | PoseLost | PoseLostForLong | GroundStationLost)
+            | Self::Input(_)
+            | Self::MotorsLost => Severity::Critical,
+            Self::Mode(_) | Self::MotorsRegained => Severity::Information,
+            Self::Refused(_) => Severity::Warning,
+            Self::Words(severity, _) => *severity,
+        }
+    }
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mode(reason) => reason.fmt(f),
+            Self::Refused(refusal) => refusal.fmt(f),
+            Self::Input(error) => error.fmt(f),
+            Self::MotorsLost => f.write_str("motors: a frame did not go out"),
+            Self::MotorsRegained => f.write_str("motors: frames go out again"),
+            Self::Words(_, text) => f.write_str(text.as_str()),
+        }
+    }
 }

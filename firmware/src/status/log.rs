@@ -7,27 +7,26 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 /// Logs an event.
 #[cfg(target_os = "none")]
 pub fn event(event: &Event) {
-    use crate::shared::Severity;
-    let text = event.text.as_str();
-    match event.severity {
-        Severity::Information => defmt::info!("{=str}", text),
-        Severity::Warning => defmt::warn!("{=str}", text),
-        Severity::Critical => defmt::error!("{=str}", text),
+    use crate::shared::{Severity, Text};
+    let text = Text::new(event);
+    match event.severity() {
+        Severity::Information => defmt::info!("{=str}", text.as_str()),
+        Severity::Warning => defmt::warn!("{=str}", text.as_str()),
+        Severity::Critical => defmt::error!("{=str}", text.as_str()),
     }
 }
 
 /// Logs how the vehicle does.
 #[cfg(target_os = "none")]
 pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>) {
-    use crate::time::milliseconds;
     let Some(Stamped { value: report, time }) = report else {
         defmt::warn!("no report from control");
         return;
     };
     let timing = report.timing;
     defmt::info!(
-        "{=u32} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
-        milliseconds(*time),
+        "{=u64} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
+        *time / 1000,
         report.mode,
         timing.worst_duration,
         timing.worst_jitter,
@@ -41,14 +40,14 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
     if let Some(sample) = shared.imu.get() {
         let (rate, force) = (sample.value.angular_velocity, sample.value.specific_force);
         defmt::info!(
-            "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u32} ms old",
+            "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u64} ms old",
             rate.x,
             rate.y,
             rate.z,
             force.x,
             force.y,
             force.z,
-            milliseconds(time.saturating_sub(sample.time))
+            time.saturating_sub(sample.time) / 1000
         );
     }
     if let Some(voltage) = shared.voltage.get() {

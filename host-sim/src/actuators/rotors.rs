@@ -4,7 +4,6 @@
 //! so the error against a continuous solution is of second order in step / lag. There is no air flow through the rotors,
 //! and a motor that starts from standstill follows like any other.
 
-use super::RotorSetup;
 use controller_core::allocation::{Rotor, Rotors};
 use nalgebra::{Vector3, Vector4};
 
@@ -19,29 +18,36 @@ pub struct SpinningRotors {
 }
 
 impl SpinningRotors {
-    /// Rotors that together give the thrust `hover`, N, without torque. `step` is the plant's, s.
+    /// Rotors that together give the thrust `hover`, N, without torque. `lag` and the plant's `step` in s.
     #[must_use]
-    pub fn hovering(setup: &RotorSetup, hover: f32, step: f64) -> Self {
+    pub fn hovering(rotors: &Rotors, lag: f64, hover: f32, step: f64) -> Self {
         let hovering = |(rotor, row): (&Rotor, &Vector4<f64>)| {
             let thrust = (row.x as f32 * hover).clamp(rotor.thrust_min, rotor.thrust_max);
             f64::from(rotor.speed_at(thrust))
         };
-        Self::at(setup, step, setup.rotors.iter().zip(setup.rotors.pseudo_inverse()).map(hovering))
+        Self::at(rotors, lag, step, rotors.iter().zip(rotors.pseudo_inverse()).map(hovering))
     }
 
-    /// Rotors that stand still.
+    /// Rotors that stand still. `lag` and the plant's `step` in s.
     #[must_use]
-    pub fn stopped(setup: &RotorSetup, step: f64) -> Self {
-        Self::at(setup, step, setup.rotors.iter().map(|_| 0.0))
+    pub fn stopped(rotors: &Rotors, lag: f64, step: f64) -> Self {
+        Self::at(rotors, lag, step, rotors.iter().map(|_| 0.0))
     }
 
-    fn at(setup: &RotorSetup, step: f64, speeds: impl Iterator<Item = f64>) -> Self {
-        let left = |time: f64| if setup.lag > 0.0 { (-time / setup.lag).exp() } else { 0.0 };
+    fn at(rotors: &Rotors, lag: f64, step: f64, speeds: impl Iterator<Item = f64>) -> Self {
+        let left = |time: f64| if lag > 0.0 { (-time / lag).exp() } else { 0.0 };
         Self {
-            rotors: setup.rotors.clone(),
+            rotors: rotors.clone(),
             decay: (left(0.5 * step), left(step)),
             speeds: speeds.map(|speed| (speed, speed)).collect(),
         }
+    }
+
+    /// Thrusts at the speeds of this moment, N.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        let thrust = |((speed, _), rotor): (&(f64, f64), &Rotor)| f64::from(rotor.thrust_coefficient) * speed * speed;
+        self.speeds.iter().zip(self.rotors.iter()).map(thrust).collect()
     }
 
     /// Asks each rotor for a thrust, N.
@@ -71,30 +77,24 @@ impl SpinningRotors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::allocation::QuadX;
-
-    const STEP: f64 = 1e-3;
-    const HOVER: f32 = 0.5 * 9.81;
-    const LAG: f64 = 0.03;
-
-    fn setup() -> RotorSetup {
-        let (thrust_coefficient, drag_coefficient) = (5.57e-6, 1.36e-7);
-        let quad = QuadX { arm: 0.17, thrust_coefficient, drag_coefficient, speed_min: 0.0, speed_max: 1500.0 };
-        RotorSetup { rotors: Rotors::quad_x(quad).unwrap(), lag: LAG }
-    }
+    use scenario::Scenario;
 
     #[test]
     fn rotor_speeds_follow_the_closed_form_exactly() {
-        let mut rotors = SpinningRotors::hovering(&setup(), HOVER, STEP);
+        let study = Scenario::parse(include_str!("../../../vehicles/study.toml"), "study").unwrap();
+        let (lag, step) = (study.rotor_lag, study.timing.step());
+        let vehicle = study.configuration.vehicle();
+        let hover = vehicle.mass * vehicle.gravity;
+        let mut rotors = SpinningRotors::hovering(study.configuration.rotors().unwrap(), lag, hover, step);
         let start: Vec<f64> = rotors.speeds.iter().map(|(speed, _)| *speed).collect();
         rotors.command(&[2.2, 1.9, 2.0, 1.8]);
-        for step in 1..=200_u32 {
+        for k in 1..=200_u32 {
             rotors.advance();
-            let left = (-f64::from(step) * STEP / LAG).exp();
+            let left = (-f64::from(k) * step / lag).exp();
             for ((speed, command), start) in rotors.speeds.iter().zip(&start) {
                 let exact = command + (start - command) * left;
                 // Two hundred products, each rounded.
-                assert!((speed - exact).abs() < 1e-13 * 200.0 * exact, "step {step}: {speed} {exact}");
+                assert!((speed - exact).abs() < 1e-13 * 200.0 * exact, "step {k}: {speed} {exact}");
             }
         }
     }

@@ -1,27 +1,31 @@
 //! Lag against its closed form, delays to the step, and nothing at all where the file asks for nothing.
 
 use super::*;
-use crate::plant::BodyState;
-use controller_core::allocation::{QuadX, Rotors};
-use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
-use nalgebra::Quaternion;
+use scenario::Scenario;
+use scenario::body::{BodyState, attitude_from_euler};
 
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
 const STEP: f64 = 1e-3;
 const HOVER: f32 = 0.5 * 9.81;
 const LAG: f64 = 0.03;
 
-fn plant(step: f64) -> Plant {
-    let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
-    let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap();
-    let limits = Limits::new(LimitParameters { thrust_max: 20.0, torque_max: Vector3::repeat(1.0) }, &vehicle).unwrap();
-    let (rest, attitude) = (Vector3::zeros(), Quaternion::identity());
-    Plant::new(&vehicle, &limits, step, BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest })
+fn hummingbird() -> Scenario {
+    Scenario::parse(HUMMINGBIRD, "hummingbird").unwrap()
 }
 
-fn setup(lag: f64) -> RotorSetup {
-    let quad =
-        QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
-    RotorSetup { rotors: Rotors::quad_x(quad).unwrap(), lag }
+fn plant(step: f64) -> Plant {
+    let configuration = hummingbird().configuration;
+    let (rest, attitude) = (Vector3::zeros(), attitude_from_euler(0.0, 0.0, 0.0));
+    let state = BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest };
+    Plant::new(configuration.vehicle(), configuration.limits(), step, state)
+}
+
+/// The vehicle's rotors with a lag of so many s, behind the mixer: these wrenches are not a certified law's.
+fn rotors(lag: f64, delay_steps: u64, step: f64) -> Actuators {
+    let configuration = hummingbird().configuration;
+    let rotors = configuration.rotors().unwrap();
+    let spinning = SpinningRotors::hovering(rotors, lag, HOVER, step);
+    Actuators::new(Some((Allocation::Prioritised(Box::new(Mixer::new(rotors))), spinning)), delay_steps, HOVER)
 }
 
 fn wrench(thrust: f32, x: f32, y: f32, z: f32) -> Wrench {
@@ -31,12 +35,12 @@ fn wrench(thrust: f32, x: f32, y: f32, z: f32) -> Wrench {
 #[test]
 fn without_rotors_and_delay_the_plant_is_the_plant_bit_for_bit() {
     let (mut direct, mut through) = (plant(STEP), plant(STEP));
-    let mut actuators = Actuators::new(None, 0, HOVER, STEP);
+    let mut actuators = Actuators::new(None, 0, HOVER);
     for k in 0..200_u8 {
         let x = f32::from(k);
         let wrench = wrench(25.0 * (0.3 * x).sin(), 0.02 * x.cos(), 1.5 * (0.7 * x).sin(), 0.01);
-        let (clipping, thrusts) = actuators.hold(&mut through, &wrench, 10).unwrap();
-        assert_eq!(clipping, direct.hold(&wrench, 10).unwrap());
+        let (clipped, thrusts) = actuators.hold(&mut through, &wrench, 10).unwrap();
+        assert_eq!(clipped, direct.hold(&wrench, 10).unwrap());
         assert!(thrusts.is_empty());
         assert_eq!(through.state(), direct.state());
     }
@@ -47,7 +51,7 @@ fn a_delay_takes_effect_at_its_step_and_not_one_sooner() {
     let commands = [wrench(6.0, 0.01, 0.0, 0.0), wrench(4.0, 0.0, -0.02, 0.0), wrench(5.0, 0.0, 0.0, 0.03)];
     for delay in [1, 7, 10, 13, 25] {
         let (mut direct, mut through) = (plant(STEP), plant(STEP));
-        let mut actuators = Actuators::new(None, delay, HOVER, STEP);
+        let mut actuators = Actuators::new(None, delay, HOVER);
         for (tick, command) in commands.iter().chain(&commands).enumerate() {
             actuators.hold(&mut through, command, 10).unwrap();
             for step in 10 * tick as u64..10 * (tick as u64 + 1) {
@@ -66,7 +70,7 @@ fn a_delay_takes_effect_at_its_step_and_not_one_sooner() {
 fn a_delay_holds_rotors_back_as_well() {
     let still = |delay| {
         let mut plant = plant(STEP);
-        let mut actuators = Actuators::new(Some(&setup(0.0)), delay, HOVER, STEP);
+        let mut actuators = rotors(0.0, delay, STEP);
         actuators.hold(&mut plant, &wrench(8.0, 0.0, 0.0, 0.0), 10).unwrap();
         plant.state().velocity.z.abs() < 1e-5
     };
@@ -76,11 +80,11 @@ fn a_delay_holds_rotors_back_as_well() {
 /// Velocity gained in 50 ms of a thrust step, less the closed form's, relative to the latter.
 fn thrust_error(step: f64) -> f64 {
     let mut plant = plant(step);
-    let mut actuators = Actuators::new(Some(&setup(LAG)), 0, HOVER, step);
+    let mut actuators = rotors(LAG, 0, step);
     let duration = 0.05;
     actuators.hold(&mut plant, &wrench(9.0, 0.0, 0.0, 0.0), (duration / step).round() as u32).unwrap();
     // Thrust 4 k (c + (s - c) e^(-t/lag))^2, integrated.
-    let coefficient = f64::from(5.57e-6_f32);
+    let coefficient = f64::from(hummingbird().configuration.rotors().unwrap()[0].thrust_coefficient);
     let (s, c) = ((f64::from(HOVER) / 4.0 / coefficient).sqrt(), (9.0 / 4.0 / coefficient).sqrt());
     let gone = |rate: f64| (1.0 - (-rate * duration / LAG).exp()) * LAG / rate;
     let impulse = 4.0 * coefficient * (c * c * duration + 2.0 * c * (s - c) * gone(1.0) + (s - c).powi(2) * gone(2.0));
@@ -99,9 +103,9 @@ fn thrust_is_the_square_of_the_lagging_speed_to_second_order_in_the_step() {
 #[test]
 fn rotors_start_at_the_speeds_that_hover() {
     let mut plant = plant(STEP);
-    let mut actuators = Actuators::new(Some(&setup(LAG)), 0, HOVER, STEP);
-    let (clipping, thrusts) = actuators.hold(&mut plant, &wrench(HOVER, 0.0, 0.0, 0.0), 1000).unwrap();
-    assert!(!clipping.any() && thrusts.iter().all(|thrust| (thrust - HOVER / 4.0).abs() < 1e-6));
+    let mut actuators = rotors(LAG, 0, STEP);
+    let (clipped, thrusts) = actuators.hold(&mut plant, &wrench(HOVER, 0.0, 0.0, 0.0), 1000).unwrap();
+    assert!(!clipped && thrusts.iter().all(|thrust| (thrust - HOVER / 4.0).abs() < 1e-6));
     // Single-precision rotor speeds: 1e-7 of gravity over a second.
     assert!(
         plant.state().velocity.amax() < 1e-5 && plant.state().angular_velocity.amax() < 1e-4,
@@ -111,22 +115,32 @@ fn rotors_start_at_the_speeds_that_hover() {
 }
 
 #[test]
-fn what_the_rotors_lack_is_flagged_and_by_kind() {
-    let cut = |wrench: &Wrench| {
-        let mut actuators = Actuators::new(Some(&setup(LAG)), 0, HOVER, STEP);
-        actuators.hold(&mut plant(STEP), wrench, 10).unwrap().0
-    };
+fn what_the_rotors_lack_is_flagged() {
+    let cut = |wrench: &Wrench| rotors(LAG, 0, STEP).hold(&mut plant(STEP), wrench, 10).unwrap().0;
     // Two rotors at nothing carry all yaw the hovering thrust has: k_m / k_eta T = 24.4 mm of 4.9 N.
-    assert_eq!(cut(&wrench(HOVER, 0.0, 0.0, 0.119)), Clipping::default());
-    assert_eq!(cut(&wrench(HOVER, 0.0, 0.0, 0.121)), Clipping { thrust: false, torque: true });
-    assert_eq!(cut(&wrench(60.0, 0.0, 0.0, 0.0)), Clipping { thrust: true, torque: false });
-    assert_eq!(cut(&wrench(-1.0, 0.0, 0.0, 0.0)), Clipping { thrust: true, torque: false });
-    assert!(cut(&wrench(HOVER, 9.0, 0.0, 0.0)).torque);
+    assert!(!cut(&wrench(HOVER, 0.0, 0.0, 0.119)) && cut(&wrench(HOVER, 0.0, 0.0, 0.121)));
+    assert!(cut(&wrench(60.0, 0.0, 0.0, 0.0)) && cut(&wrench(-1.0, 0.0, 0.0, 0.0)));
+    assert!(cut(&wrench(HOVER, 9.0, 0.0, 0.0)));
+}
+
+#[test]
+fn a_certified_flight_takes_the_boards_allocation_and_flags_what_it_clips() {
+    let configuration = hummingbird().configuration;
+    let boards = MinimumNorm::new(configuration.rotors().unwrap());
+    let spinning = SpinningRotors::hovering(configuration.rotors().unwrap(), LAG, HOVER, STEP);
+    let certified = Actuators::new(Some((Allocation::Certified(Box::new(boards.clone())), spinning)), 0, HOVER);
+    let held = |wrench: &Wrench| certified.clone().hold(&mut plant(STEP), wrench, 10).unwrap();
+    // Beyond the rotors it gives up what is cheapest to work out, where the mixer gives up yaw first.
+    let too_much = wrench(HOVER, 0.0, 0.3, 0.2);
+    let (clipped, thrusts) = held(&too_much);
+    assert!(clipped && thrusts == boards.allocate(&too_much).unwrap().thrusts);
+    assert_ne!(thrusts, rotors(LAG, 0, STEP).hold(&mut plant(STEP), &too_much, 10).unwrap().1);
+    assert!(!held(&wrench(HOVER, 0.01, -0.01, 0.01)).0);
 }
 
 #[test]
 fn a_wrench_that_is_no_number_is_refused() {
-    let mut actuators = Actuators::new(Some(&setup(LAG)), 0, HOVER, STEP);
+    let mut actuators = rotors(LAG, 0, STEP);
     let refused = actuators.hold(&mut plant(STEP), &wrench(f32::NAN, 0.0, 0.0, 0.0), 10);
     assert!(matches!(refused, Err(ActuationError::Wrench(_))), "{refused:?}");
 }

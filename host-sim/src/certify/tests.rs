@@ -1,7 +1,7 @@
 //! The report's lines, for a certified, a refused, and a rotor-bound configuration.
 
 use super::*;
-use crate::scenario::PAPER;
+use scenario::PAPER;
 
 const STUDY: &str = include_str!("../../../vehicles/study.toml");
 
@@ -32,7 +32,10 @@ fn table_one_is_certified_sharply_and_refused_as_printed_beside_the_published_fi
 #[test]
 fn a_refusal_says_which_inequality_fails() {
     let (text, certified) = report(&PAPER.replace("thrust_max = 7.0", "thrust_max = 5.0"));
-    assert!(!certified && text.starts_with("paper: NOT certified\n"), "{text}");
+    assert!(
+        !certified && text.starts_with("paper: NOT certified: certificate, T1 greatest thrust: requires 5.68"),
+        "{text}"
+    );
     assert!(line(&text, "sharp: fails").contains("T1 greatest thrust"), "{text}");
     assert!(line(&text, "tightest").contains("margin -"), "{text}");
     assert!(!text.contains("published"), "the published figures are about the paper's own limits");
@@ -45,8 +48,16 @@ fn the_loops_are_reported_for_all_six_axes_with_their_timing() {
         assert!(line(&text, axis).ends_with(" stable"), "{text}");
     }
     assert!(text.contains("at 100 Hz, rotor lag 0 ms, delay 0 ms"));
-    let late = STUDY.replace("delay = 0.010", "delay = 0.200");
-    assert!(report(&late).0.contains("UNSTABLE") && report(&late).0.contains("delay 200 ms"));
+    let late = |delay: &str| report(&STUDY.replace("delay = 0.010", &format!("delay = {delay}")));
+    let (text, certified) = late("0.200");
+    assert!(!certified && text.starts_with("study: NOT certified: sampled loop roll: unstable, spectral"), "{text}");
+    assert!(line(&text, "roll ").ends_with(" UNSTABLE") && text.contains("delay 200 ms"), "{text}");
+    let (text, certified) = late("0.027");
+    assert!(
+        !certified && text.contains("small motions (an analysis): stable about hover, but with too LITTLE"),
+        "{text}"
+    );
+    assert!(line(&text, "lateral x ").ends_with(" TOO LITTLE MARGIN"), "{text}");
 }
 
 #[test]

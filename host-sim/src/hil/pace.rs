@@ -38,18 +38,6 @@ impl Pace {
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
-
-    /// Ticks that brought no command.
-    #[must_use]
-    pub fn missed(&self) -> u64 {
-        self.missed
-    }
-
-    /// How far the time between two commands was from the period at most, us.
-    #[must_use]
-    pub fn jitter(&self) -> u64 {
-        self.range.map_or(0, |(least, greatest)| least.abs_diff(self.period).max(greatest.abs_diff(self.period)))
-    }
 }
 
 impl fmt::Display for Pace {
@@ -68,13 +56,13 @@ mod tests {
     fn a_steady_pace_has_no_jitter() {
         let mut pace = Pace::new(10_000);
         (0..5).for_each(|k| pace.take(123 + k * 10_000));
-        assert_eq!((pace.ticks(), pace.missed(), pace.jitter()), (5, 0, 0));
+        assert_eq!((pace.ticks(), pace.missed, pace.range), (5, 0, Some((10_000, 10_000))));
     }
 
     #[test]
     fn a_command_left_out_is_missed_and_a_late_one_is_not() {
         let mut pace = Pace::new(10_000);
         [0, 10_400, 20_000, 40_000].into_iter().for_each(|time| pace.take(time));
-        assert_eq!((pace.ticks(), pace.missed(), pace.jitter()), (4, 1, 10_000));
+        assert_eq!((pace.ticks(), pace.missed, pace.range), (4, 1, Some((9_600, 20_000))));
     }
 }

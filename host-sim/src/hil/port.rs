@@ -1,6 +1,7 @@
-//! The connection to the flight controller: TCP, every wait bounded.
+//! The connection to the flight controller: TCP, every wait bounded and every wait ended by an interrupt.
 
 use super::messages::{Controls, Encoder};
+use crate::interrupt::Interrupt;
 use firmware::link::frame::Parser;
 use nalgebra::Vector3;
 use scenario::body::BodyState;
@@ -9,7 +10,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Pause between attempts to connect or to find somebody who does.
+/// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// Where the other side is to be found.
@@ -32,6 +33,8 @@ pub enum PortError {
     Silent(Duration),
     /// The connection broke.
     Broken(io::Error),
+    /// Somebody sent this signal.
+    Interrupted(u8),
 }
 
 impl fmt::Display for PortError {
@@ -47,6 +50,7 @@ impl fmt::Display for PortError {
             Self::Address(address, error) => write!(f, "{address}: cannot be used: {error}"),
             Self::Silent(waited) => write!(f, "no motor command for {} s", waited.as_secs_f64()),
             Self::Broken(error) => write!(f, "the connection broke: {error}"),
+            Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}"),
         }
     }
 }
@@ -57,6 +61,7 @@ pub struct Port {
     parser: Parser,
     writer: TcpStream,
     patience: Duration,
+    interrupt: Interrupt,
     encoder: Encoder,
     bytes: Vec<u8>,
 }
@@ -66,22 +71,23 @@ impl Port {
     ///
     /// # Errors
     /// [`PortError`] if there is nobody in time or the address cannot be used.
-    pub fn open(address: &Address, patience: Duration) -> Result<Self, PortError> {
+    pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
         let stream = match address {
-            Address::Connect(to) => connect(to, address, patience)?,
-            Address::Listen(on) => listen(on, address, patience)?,
+            Address::Connect(to) => connect(to, address, patience, interrupt)?,
+            Address::Listen(on) => listen(on, address, patience, interrupt)?,
         };
-        Self::over(stream, patience).map_err(PortError::Broken)
+        Self::over(stream, patience, interrupt.clone()).map_err(PortError::Broken)
     }
 
-    fn over(stream: TcpStream, patience: Duration) -> io::Result<Self> {
+    fn over(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
-        stream.set_read_timeout(Some(patience))?;
+        stream.set_read_timeout(Some(PAUSE.min(patience)))?;
         stream.set_write_timeout(Some(patience))?;
         let writer = stream.try_clone()?;
         let reader = BufReader::new(stream);
-        Ok(Self { reader, parser: Parser::new(), writer, patience, encoder: Encoder::default(), bytes: Vec::new() })
+        let (parser, encoder, bytes) = (Parser::new(), Encoder::default(), Vec::new());
+        Ok(Self { reader, parser, writer, patience, interrupt, encoder, bytes })
     }
 
     /// The next command; none when the other side has gone. Other messages, and what is none, are skipped.
@@ -89,18 +95,24 @@ impl Port {
     /// # Errors
     /// [`PortError`] if no byte comes in time or the connection breaks.
     pub fn receive(&mut self) -> Result<Option<Controls>, PortError> {
+        let mut heard = Instant::now();
         loop {
+            interrupted(&self.interrupt)?;
             let bytes = match self.reader.fill_buf() {
                 Ok([]) => return Ok(None),
                 Ok(bytes) => bytes,
-                Err(error) => {
-                    return match error.kind() {
-                        ErrorKind::ConnectionReset => Ok(None),
-                        ErrorKind::WouldBlock | ErrorKind::TimedOut => Err(PortError::Silent(self.patience)),
-                        _ => Err(PortError::Broken(error)),
-                    };
-                }
+                Err(error) => match error.kind() {
+                    ErrorKind::ConnectionReset => return Ok(None),
+                    ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {
+                        if heard.elapsed() >= self.patience {
+                            return Err(PortError::Silent(self.patience));
+                        }
+                        continue;
+                    }
+                    _ => return Err(PortError::Broken(error)),
+                },
             };
+            heard = Instant::now();
             for (taken, byte) in (1..).zip(bytes) {
                 // Time does not matter here: a stream neither loses nor ages anything.
                 if let Some(controls) = self.parser.push(*byte, 0).and_then(|frame| Controls::from_frame(&frame)) {
@@ -138,9 +150,14 @@ impl Port {
     }
 }
 
-fn connect(to: &str, address: &Address, patience: Duration) -> Result<TcpStream, PortError> {
+fn interrupted(interrupt: &Interrupt) -> Result<(), PortError> {
+    interrupt.signal().map_or(Ok(()), |signal| Err(PortError::Interrupted(signal)))
+}
+
+fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     let started = Instant::now();
     loop {
+        interrupted(interrupt)?;
         match TcpStream::connect(to) {
             Ok(stream) => return Ok(stream),
             Err(error) if error.kind() == ErrorKind::InvalidInput => return Err(PortError::Address(to.into(), error)),
@@ -152,12 +169,13 @@ fn connect(to: &str, address: &Address, patience: Duration) -> Result<TcpStream,
     }
 }
 
-fn listen(on: &str, address: &Address, patience: Duration) -> Result<TcpStream, PortError> {
+fn listen(on: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     let refuse = |error| PortError::Address(on.to_owned(), error);
     let listener = TcpListener::bind(on).map_err(refuse)?;
     listener.set_nonblocking(true).map_err(refuse)?;
     let started = Instant::now();
     loop {
+        interrupted(interrupt)?;
         match listener.accept() {
             Ok((stream, _)) => return Ok(stream),
             Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(PortError::Broken(error)),

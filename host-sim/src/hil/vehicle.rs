@@ -51,18 +51,18 @@ impl HilVehicle {
     /// In words, if the scenario has not as many rotors as there are motor commands.
     pub fn new(scenario: &Scenario) -> Result<Self, String> {
         let configuration = &scenario.configuration;
-        let Some(setup) = scenario.rotors.as_ref().filter(|setup| setup.rotors.len() == MOTORS) else {
-            let found = scenario.rotors.as_ref().map_or(0, |setup| setup.rotors.len());
+        let Some(rotors) = configuration.rotors().filter(|rotors| rotors.len() == MOTORS) else {
+            let found = configuration.rotors().map_or(0, |rotors| rotors.len());
             return Err(format!("{}: rotors: a flight controller commands {MOTORS}, found {found}", scenario.name));
         };
         let step = scenario.timing.step();
         let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial);
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
-        let curves = setup.rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+        let curves = rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
         Ok(Self {
             plant: Plant::new(configuration.vehicle(), configuration.limits(), step, state),
             ground,
-            rotors: SpinningRotors::stopped(setup, step),
+            rotors: SpinningRotors::stopped(rotors, scenario.rotor_lag, step),
             curves,
             steps: scenario.timing.steps_per_tick.into(),
             delay: scenario.delay_steps,
@@ -105,52 +105,4 @@ impl HilVehicle {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn study() -> Scenario {
-        Scenario::load(std::path::Path::new("../vehicles/study.toml")).unwrap()
-    }
-
-    fn all(command: f32) -> Controls {
-        Controls { time: 0, armed: true, commands: [command; MOTORS] }
-    }
-
-    /// The command that hovers: u^2 of 4 x 5.57e-6 x 800^2 N is the weight.
-    const HOVER: f32 = 0.562_486;
-
-    #[test]
-    fn it_stands_below_the_scenarios_start_until_it_is_told_to_rise() {
-        let mut vehicle = HilVehicle::new(&study()).unwrap();
-        for _ in 0..100 {
-            let moved = vehicle.advance(&all(HOVER - 0.01)).unwrap();
-            assert_eq!(moved.state.position, Vector3::new(1.0, 0.0, 0.0));
-            assert!((moved.specific_force - Vector3::z() * 9.81).norm() < 1e-5);
-        }
-        let mut height = 0.0;
-        for _ in 0..100 {
-            height = vehicle.advance(&all(HOVER + 0.01)).unwrap().state.position.z;
-        }
-        assert!((0.1..0.2).contains(&height), "{height}");
-    }
-
-    #[test]
-    fn a_command_acts_after_the_scenarios_delay() {
-        let mut vehicle = HilVehicle::new(&study()).unwrap();
-        assert_eq!(vehicle.advance(&all(1.0)).unwrap().thrust, 0.0);
-        assert!(vehicle.advance(&all(1.0)).unwrap().thrust > 0.1);
-    }
-
-    #[test]
-    fn impossible_commands_are_refused_in_words() {
-        let mut vehicle = HilVehicle::new(&study()).unwrap();
-        for command in [f32::NAN, -0.1, 1.1] {
-            assert!(vehicle.advance(&all(command)).unwrap_err().contains("0 to 1"));
-        }
-    }
-
-    #[test]
-    fn a_scenario_without_rotors_is_refused_in_words() {
-        assert!(HilVehicle::new(&Scenario::paper().unwrap()).unwrap_err().contains("rotors"));
-    }
-}
+mod tests;

@@ -2,7 +2,7 @@
 //!
 //! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also dashed.
 
-use super::FINE;
+use super::canvas::{DrawingResult, FINE};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
@@ -68,9 +68,6 @@ pub struct Panel {
     /// What it is measured against.
     pub bounds: Vec<Bound>,
 }
-
-/// What can go wrong while drawing.
-pub type DrawingResult<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 impl Panel {
     /// Draws into `area`.

@@ -3,10 +3,11 @@
 use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
 use super::record::Sample;
 use crate::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
-use crate::scenario::Scenario;
 use crate::table::short;
-use controller_core::certificate::{Certificate, Form};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Form;
 use plotters::style::RGBColor;
+use scenario::Scenario;
 
 /// The axes' colours, x (roll), y (pitch), z (yaw).
 const AXES: [RGBColor; 3] = [BLUE, VERMILION, GREEN];

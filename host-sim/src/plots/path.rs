@@ -3,9 +3,9 @@
 //! Parallel projection, the same scale along every axis. The floor's
 //! squares and the path's shadow on it give the depth. The vehicle is drawn larger than life.
 
-use super::panel::{BLUE, DrawingResult, INK, VERMILION};
+use super::canvas::{DrawingResult, FINE, PlotError, draw};
+use super::panel::{BLUE, INK, VERMILION};
 use super::record::Sample;
-use super::{FINE, PlotError, draw};
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::coord::Shift;
 use plotters::prelude::*;

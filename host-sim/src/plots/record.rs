@@ -106,7 +106,7 @@ fn nearest_turn(angle: f64, before: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::flight::Flight;
-    use crate::scenario::Scenario;
+    use scenario::Scenario;
 
     #[test]
     fn yaw_has_no_jumps_of_a_turn_and_ends_beside_the_desired_one() {

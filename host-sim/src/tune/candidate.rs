@@ -12,20 +12,21 @@
 //! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
-use super::Requirements;
-use crate::certify::loop_model;
-use crate::claims::Flown;
+use super::requirements::Requirements;
+use crate::claims::reached;
 use crate::flight::Flight;
-use crate::plant::{BodyState, attitude_from_euler};
-use crate::sampled_loop::Axis;
-use crate::scenario::Scenario;
-use crate::scenario::timing::Timing;
-use controller_core::certificate::Certificate;
+use crate::flown::Flown;
+use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::hover::Hover;
 use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::body::{BodyState, attitude_from_euler};
+use scenario::sampled_loop::Axis;
+use scenario::stability::{Lack, Shortfall};
+use scenario::timing::Timing;
 use std::sync::Arc;
 
 /// Coordinates of the search space.
@@ -56,6 +57,13 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Of a candidate that nobody judged.
+    #[must_use]
+    pub fn missing() -> Self {
+        let (failed, height_lost) = (Some("not judged".to_owned()), f64::INFINITY);
+        Self { violation: f64::INFINITY, failed, height_lost, position_gain: 0.0, tightest: None }
+    }
+
     /// Whether every requirement is met.
     #[must_use]
     pub fn accepted(&self) -> bool {
@@ -129,41 +137,42 @@ impl Judge {
         let undefined = (5, 1.0, "the law is undefined for these gains".to_owned());
         let scenario = self.scenario(point).ok_or(undefined.clone())?;
 
-        let certificate = Certificate::new(&scenario.configuration).map_err(|_| undefined.clone())?;
+        let judged = Certified::new(scenario.configuration.clone());
+        let certificate = match &judged {
+            Ok(certified) => certified.certificate(),
+            Err(Refused::Fails(certificate)) => certificate,
+            Err(Refused::Undefined(_)) => return Err(undefined),
+        };
         verdict.tightest = certificate.tightest();
         let missing: f64 =
             certificate.inequalities().map(|inequality| (needed.margin - inequality.margin()).max(0.0)).sum();
-        if missing > 0.0 {
+        let (Ok(certified), true) = (&judged, missing == 0.0) else {
             let name = verdict.tightest.map_or("", |inequality| inequality.name);
             return Err((4, missing, format!("certificate: {name}")));
-        }
+        };
 
-        let loops = loop_model(&scenario).map_err(|_| undefined)?;
+        let loops = scenario.loops().map_err(|_| undefined)?;
         for axis in Axis::ALL {
-            let radius = loops.spectral_radius(axis);
-            if radius >= 1.0 {
-                return Err((3, radius - 1.0 + 1.0, format!("sampled loop unstable: {}", axis.name())));
+            let spectral_radius = loops.spectral_radius(axis);
+            if spectral_radius >= 1.0 {
+                let lack = Lack { axis, missed: spectral_radius - 1.0, what: Shortfall::Unstable { spectral_radius } };
+                return Err((3, lack.missed, lack.to_string()));
             }
         }
-        for report in loops.reports() {
-            let (gain, delay) = report.margins.map_or((1.0, 0.0), |margins| (margins.gain_up, margins.delay));
-            let missing = (needed.gain_margin / gain - 1.0).max((needed.delay_margin - delay) / needed.delay_margin);
-            if missing > 0.0 {
-                return Err((2, missing, format!("sampled loop margin: {}", report.axis.name())));
-            }
+        if let Some(lack) = needed.loops.first_lacking(&loops.reports()) {
+            return Err((2, lack.missed, lack.to_string()));
         }
-        let loops = loops.with_position_feedback(needed.gain_margin);
+        let loops = loops.with_position_feedback(needed.loops.gain);
         for axis in Axis::ALL {
             let radius = loops.spectral_radius(axis);
             if radius >= 1.0 {
                 let what =
-                    format!("sampled loop unstable with {} times k_p and k_v: {}", needed.gain_margin, axis.name());
+                    format!("sampled loop {}: unstable with {} times k_p and k_v", axis.name(), needed.loops.gain);
                 return Err((2, radius - 1.0, what));
             }
         }
 
-        let recovery = Scenario { configuration: scenario.configuration.clone(), ..self.recovery.clone() };
-        let flown = fly(&recovery).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
+        let flown = fly(&self.recovery, certified).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
         verdict.height_lost = flown.height_lost;
         let restless =
             (flown.steady_position_error / STILL_POSITION - 1.0).max(flown.steady_mrp_error / STILL_MRP - 1.0);
@@ -172,16 +181,16 @@ impl Judge {
             return Err((1, restless, "recovery: not still at the end, or a clipped command".to_owned()));
         }
 
-        let flown = fly(&scenario).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
+        let flown = fly(&scenario, certified).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
         let beyond = (flown.steady_position_error / needed.position_error - 1.0)
             .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
             .max(flown.clipped as f64);
         if beyond > 0.0 {
-            return Err((
-                0,
-                beyond,
-                "the file's flight: errors beyond those asked for, or a clipped command".to_owned(),
-            ));
+            let what = "the file's flight: errors beyond those asked for, or a clipped command";
+            return Err((0, beyond, what.to_owned()));
+        }
+        if !reached(&scenario, &flown) {
+            return Err((0, 1.0, "the file's flight: its reference is not reached in time".to_owned()));
         }
         Ok(())
     }
@@ -202,13 +211,7 @@ pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
     recovery
 }
 
-/// Flies a whole scenario; none if it cannot be flown to its end.
-#[must_use]
-pub fn fly(scenario: &Scenario) -> Option<Flown> {
-    let mut flight = Flight::new(scenario).ok()?;
-    let mut flown = Flown::new(scenario);
-    for _ in 0..scenario.timing.ticks {
-        flown.observe(&flight.tick().ok()?);
-    }
-    Some(flown)
+/// Flies what is certified as `scenario` says; none if it cannot be flown to its end.
+fn fly(scenario: &Scenario, certified: &Certified) -> Option<Flown> {
+    Flown::over(scenario, Flight::certified(scenario, certified).ok()?).ok()
 }

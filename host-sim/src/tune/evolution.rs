@@ -7,8 +7,9 @@
 
 use super::candidate::{DIMENSIONS, Judge, Point, Verdict};
 use super::frontier::Frontier;
+use crate::interrupt::Interrupt;
+use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 /// Members of the population.
@@ -58,24 +59,24 @@ pub struct Evolution {
 impl Evolution {
     /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
     #[must_use]
-    pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier) -> Self {
+    pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let start = judge.start();
         let mut points = vec![start];
         points.resize_with(POPULATION, || start.map(|x| x + SPREAD * (random.random::<f64>() - 0.5)));
-        let members = judge_all(judge, points);
+        let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);
         }
-        Self { members, random, judged: POPULATION as u64 }
+        Self { members, random, judged }
     }
 
     /// One generation towards `goal`; accepted candidates go into `frontier` as well.
-    pub fn generation(&mut self, judge: &Judge, goal: Goal, frontier: &mut Frontier) {
+    pub fn generation(&mut self, judge: &Judge, goal: Goal, frontier: &mut Frontier, interrupt: &Interrupt) {
         let best = self.leader(goal);
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
-        let trials = judge_all(judge, trials);
-        self.judged += trials.len() as u64;
+        let (trials, judged) = judge_all(judge, trials, interrupt);
+        self.judged += judged;
         for ((point, verdict), member) in trials.into_iter().zip(&mut self.members) {
             if verdict.accepted() {
                 frontier.offer(&point, &verdict);
@@ -127,8 +128,13 @@ impl Evolution {
     }
 }
 
-fn judge_all(judge: &Judge, points: Vec<Point>) -> Vec<(Point, Verdict)> {
-    points.into_par_iter().map(|point| (point, judge.judge(&point))).collect()
+/// Judges all points, or as many as an interrupt leaves time for; and how many those were.
+fn judge_all(judge: &Judge, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(Point, Verdict)>, u64) {
+    let verdict = |point: &Point| interrupt.signal().is_none().then(|| judge.judge(point));
+    let verdicts: Vec<_> = points.into_par_iter().map(|point| (point, verdict(&point))).collect();
+    let judged = verdicts.iter().filter(|(_, verdict)| verdict.is_some()).count() as u64;
+    let complete = |(point, verdict): (Point, Option<Verdict>)| (point, verdict.unwrap_or_else(Verdict::missing));
+    (verdicts.into_iter().map(complete).collect(), judged)
 }
 
 #[cfg(test)]

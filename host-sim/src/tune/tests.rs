@@ -1,12 +1,12 @@
 //! A small search from beginning to end, and each requirement on its own.
 
 use super::*;
-use crate::scenario::PAPER;
+use scenario::PAPER;
+use scenario::stability::LoopMargin;
 
 const EASY: Requirements = Requirements {
     margin: 0.0,
-    gain_margin: 1.2,
-    delay_margin: 1e-3,
+    loops: LoopMargin::LEAST,
     position_error: 0.01,
     mrp_error: 1e-3,
     recovery: 40.0,
@@ -48,8 +48,14 @@ fn a_search_starts_from_the_files_gains_and_thrust_floor() {
 fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
     let refusals = [
         (Requirements { margin: 0.5, ..EASY }, "certificate: "),
-        (Requirements { gain_margin: 20.0, ..EASY }, "sampled loop margin: "),
-        (Requirements { delay_margin: 0.1, ..EASY }, "sampled loop margin: "),
+        (
+            Requirements { loops: LoopMargin { gain: 20.0, ..LoopMargin::LEAST }, ..EASY },
+            "sampled loop roll: unstable at 4.48",
+        ),
+        (
+            Requirements { loops: LoopMargin { delay: 0.1, ..LoopMargin::LEAST }, ..EASY },
+            "sampled loop roll: unstable with 7.5 ms",
+        ),
         (Requirements { recovery: 3.0, ..EASY }, "recovery: "),
         (Requirements { position_error: 1e-9, ..EASY }, "the file's flight: "),
         (Requirements { mrp_error: 1e-12, ..EASY }, "the file's flight: "),
@@ -63,7 +69,9 @@ fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
         last = verdict.violation.floor();
     }
     let unstable = Scenario::parse(&format!("{PAPER}\n[sampling]\ndelay = 0.01\n"), "f").unwrap();
-    assert!(verdict(&unstable, EASY).failed.is_some_and(|failed| failed.starts_with("sampled loop unstable: ")));
+    assert!(
+        verdict(&unstable, EASY).failed.is_some_and(|failed| failed.starts_with("sampled loop roll: unstable, spec"))
+    );
 }
 
 #[test]
@@ -71,14 +79,17 @@ fn the_position_feedback_needs_the_gain_margin_too() {
     // At the actuator's command the attitude loop dominates and k_p, k_v hardly count.
     let steep = PAPER.replace("k_p = 9.0", "k_p = 900.0").replace("k_v = 6.0", "k_v = 120.0");
     let steep = Scenario::parse(&steep, "f").unwrap();
-    let failed = |gain_margin| verdict(&steep, Requirements { gain_margin, ..EASY }).failed.unwrap_or_default();
-    assert!(!failed(1.2).contains("k_p and k_v"), "{}", failed(1.2));
-    assert!(failed(2.5).starts_with("sampled loop unstable with 2.5 times k_p and k_v"), "{}", failed(2.5));
+    let failed = |gain| {
+        let loops = LoopMargin { gain, ..LoopMargin::LEAST };
+        verdict(&steep, Requirements { loops, ..EASY }).failed.unwrap_or_default()
+    };
+    assert!(!failed(1.5).contains("k_p and k_v"), "{}", failed(1.5));
+    assert!(failed(2.5).ends_with(": unstable with 2.5 times k_p and k_v"), "{}", failed(2.5));
 }
 
 #[test]
 fn a_small_search_finds_something_at_least_as_good_as_its_start() {
-    let tuned = tune(&paper(), EASY, SMALL).unwrap_or_else(|closest| panic!("{closest:?}"));
+    let tuned = tune(&paper(), EASY, SMALL, &Interrupt::default()).unwrap_or_else(|closest| panic!("{closest:?}"));
     assert!(tuned.verdict.accepted());
     assert_eq!(tuned.judged, 48 * 5);
     let own = verdict(&paper(), EASY);
@@ -93,7 +104,7 @@ fn a_small_search_finds_something_at_least_as_good_as_its_start() {
 fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
     let gains = |seed| {
         let effort = Effort { seed, generations: 1 };
-        let tuned = tune(&paper(), EASY, effort).unwrap_or_else(|closest| panic!("{closest:?}"));
+        let tuned = tune(&paper(), EASY, effort, &Interrupt::default()).unwrap_or_else(|closest| panic!("{closest:?}"));
         *tuned.scenario.configuration.gains()
     };
     assert_eq!(gains(3), gains(3));
@@ -102,7 +113,7 @@ fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
 
 #[test]
 fn requirements_that_nothing_meets_give_the_closest_verdict() {
-    let closest = tune(&paper(), Requirements { margin: 0.97, ..EASY }, SMALL).err().unwrap();
+    let closest = tune(&paper(), Requirements { margin: 0.97, ..EASY }, SMALL, &Interrupt::default()).err().unwrap();
     assert!(closest.failed.is_some_and(|failed| failed.starts_with("certificate: ")));
 }
 

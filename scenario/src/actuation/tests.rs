@@ -24,21 +24,20 @@ fn read(sections: &str) -> Result<Scenario, String> {
 #[test]
 fn rotors_and_delay_become_what_the_file_says() {
     let scenario = read(ROTORS).unwrap();
-    let setup = scenario.rotors.as_ref().unwrap();
-    assert_eq!((setup.rotors.len(), setup.lag, scenario.delay_steps), (4, 0.005, 10));
-    assert_eq!(setup.rotors[1].position, Vector3::new(-0.12, 0.12, 0.0));
-    assert_eq!((setup.rotors[0].spin, setup.rotors[1].spin), (Spin::Clockwise, Spin::CounterClockwise));
-    assert!((setup.rotors[2].thrust_min - 0.0557).abs() < 1e-6 && (setup.rotors[2].thrust_max - 12.5325).abs() < 1e-5);
-    assert_eq!(scenario.configuration.rotors(), Some(&setup.rotors));
+    let rotors = scenario.configuration.rotors().unwrap();
+    assert_eq!((rotors.len(), scenario.rotor_lag, scenario.delay_steps), (4, 0.005, 10));
+    assert_eq!(rotors[1].position, Vector3::new(-0.12, 0.12, 0.0));
+    assert_eq!((rotors[0].spin, rotors[1].spin), (Spin::Clockwise, Spin::CounterClockwise));
+    assert!((rotors[2].thrust_min - 0.0557).abs() < 1e-6 && (rotors[2].thrust_max - 12.5325).abs() < 1e-5);
     assert!(!scenario.is_papers());
 }
 
 #[test]
 fn left_out_there_are_neither_rotors_nor_delay() {
     let scenario = read("").unwrap();
-    assert!(scenario.rotors.is_none() && scenario.configuration.rotors().is_none() && scenario.delay_steps == 0);
+    assert!(scenario.configuration.rotors().is_none() && scenario.rotor_lag == 0.0 && scenario.delay_steps == 0);
     assert_eq!(read("[sampling]").unwrap().delay_steps, 0);
-    assert_eq!(read(&ROTORS.replace("lag = 0.005", "")).unwrap().rotors.unwrap().lag, 0.0);
+    assert_eq!(read(&ROTORS.replace("lag = 0.005", "")).unwrap().rotor_lag, 0.0);
 }
 
 #[test]
@@ -71,6 +70,7 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("lag", "lagg = 0.005", "rotors.lagg", "did you mean \"lag\"?"),
         ("delay", "delay = 0.0105", "sampling.delay", "whole number of plant steps, found 0.0105 s (nearest:"),
         ("delay", "delay = -0.01", "sampling.delay", "from 0 to 1 s"),
+        ("delay", "delay = 0.65", "sampling.delay", "at most 64 control periods, 0.64 s, found 0.65"),
         ("delay", "delay = nan", "sampling.delay", "finite"),
         ("delay", "dealy = 0.01", "sampling.dealy", "did you mean \"delay\"?"),
         ("[sampling]", "[samplings]", "samplings", "did you mean \"sampling\"?"),

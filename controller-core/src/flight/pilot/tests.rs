@@ -3,7 +3,7 @@
 extern crate std;
 use super::super::example;
 use super::super::rules::REFUSALS_MAX;
-use super::super::{Reason, Stamped};
+use super::super::{Reason, Stamped, Velocity};
 use super::*;
 use nalgebra::{Quaternion, Vector3};
 use std::boxed::Box;
@@ -16,8 +16,8 @@ fn inputs(now: u64) -> Inputs {
 }
 
 fn pose(time: u64) -> Option<Stamped<Pose>> {
-    let value =
-        Pose { position: Vector3::zeros(), velocity: Vector3::zeros(), attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0) };
+    let still = Velocity::World(Vector3::zeros());
+    let value = Pose::new(Vector3::zeros(), still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     Some(Stamped { value, time })
 }
 

@@ -5,7 +5,8 @@ use crate::counter::Counter;
 use crate::stack;
 use controller_core::allocation::MinimumNorm;
 use controller_core::allocation::minimum_norm::Delivered;
-use controller_core::certificate::configuration::{Certified, Configuration, Refused};
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::{Command, Controller};
 use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
@@ -15,7 +16,6 @@ use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
-use core::panic::PanicInfo;
 use cortex_m_semihosting::hprintln;
 use firmware::boards::mps2::exit;
 use firmware::configuration;
@@ -59,11 +59,6 @@ type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     exit::end(measure())
-}
-
-#[panic_handler]
-fn panicked(info: &PanicInfo<'_>) -> ! {
-    exit::fail(info)
 }
 
 /// Everything, as a table; whether it could be measured at all.

@@ -1,6 +1,6 @@
 //! The two executors: flight interrupts background, and both interrupt thread mode, which only sleeps.
 
-use super::Interrupt;
+use super::lines::Interrupt;
 use embassy_executor::{InterruptExecutor, SendSpawner};
 
 static FLIGHT: InterruptExecutor = InterruptExecutor::new();

@@ -3,6 +3,8 @@
 //! The lines are plain text, not defmt: a fault may come while defmt's encoder is in use.
 
 use core::fmt::Display;
+use core::panic::PanicInfo;
+use cortex_m as _; // the critical section that printing takes
 use cortex_m_rt::{ExceptionFrame, exception};
 use cortex_m_semihosting::{debug, heprintln};
 
@@ -19,7 +21,12 @@ pub fn fail(why: impl Display) -> ! {
     end(false)
 }
 
-/// The processor could not go on; panics end here too, after printing themselves.
+#[panic_handler]
+fn panicked(info: &PanicInfo<'_>) -> ! {
+    fail(info)
+}
+
+/// The processor could not go on.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     heprintln!("error: hard fault at {:#010x}, called from {:#010x}", frame.pc(), frame.lr());

@@ -4,7 +4,7 @@
 //! runs timer 0 down from exactly the cycles that are left, so the processor sleeps from alarm to alarm, and an alarm is a
 //! cycle late at most, 40 ns.
 
-use super::CLOCK;
+use super::lines::CLOCK;
 use core::cell::{Cell, RefCell};
 use core::task::Waker;
 use cortex_m::peripheral::syst::SystClkSource;

@@ -3,7 +3,8 @@
 //! On a board the watchdog resets the processor and the vehicle falls with its motors stopped; nothing that runs in an
 //! emulator is worth going on with after that, and a test must see it.
 
-use super::{CLOCK, exit};
+use super::exit;
+use super::lines::CLOCK;
 
 const LOAD: *mut u32 = 0x4000_8000 as *mut u32;
 const CONTROL: *mut u32 = 0x4000_8008 as *mut u32;

@@ -66,7 +66,7 @@ fn done() -> Result<(), Fault> {
 
 /// Does `work` on the opened flash, and closes it again.
 fn opened(work: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
-    chip::open();
+    chip::open(KEYS);
     let worked = work();
     chip::close();
     worked

@@ -1,13 +1,12 @@
 //! What every STM32 board runs: its tasks by priority.
 //!
-//! Two executors work in interrupts that the board has no other use for, control above the sensor, both below the drivers' own
-//! interrupts; everything else shares the thread.
+//! Control and the sensor have executors of their own, in interrupts; everything else shares the thread.
 
 use super::clock::SystemClock;
+use super::executors::{CONTROL, SENSOR};
 use super::imu::BoardImu;
 use super::light::Lamp;
 use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::Cause;
 use super::storage::ParameterFlash;
 use crate::boards::chosen::{self, BoardBattery, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT};
 use crate::control::Control;
@@ -16,45 +15,13 @@ use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
 use crate::{boot, imu, link, status};
 use controller_core::flight::Pilot;
-use embassy_executor::{Executor, InterruptExecutor};
+use embassy_executor::Executor;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use static_cell::StaticCell;
 
 type Shared = crate::shared::Shared<CriticalSectionRawMutex>;
 type Hil = hil::Hil<CriticalSectionRawMutex>;
-
-/// Everything on the board, each part ready for the task that will own it.
-pub struct Board {
-    /// The sensor, powered up at its first sample.
-    pub imu: BoardImu,
-    /// The motors, silent.
-    pub motors: BoardMotors,
-    /// The watchdog, not started.
-    pub watchdog: BoardWatchdog,
-    /// The battery.
-    pub battery: BoardBattery,
-    /// The light, off.
-    pub light: Lamp,
-    /// What the link receives.
-    pub receiver: Receiver,
-    /// What the link sends.
-    pub transmitter: Transmitter,
-    /// What a simulator sends.
-    pub simulator_receiver: SimulatorReceiver,
-    /// What a simulator receives.
-    pub simulator_transmitter: SimulatorTransmitter,
-    /// Where parameters live.
-    pub storage: ParameterFlash,
-    /// Why the chip started.
-    pub restart: Cause,
-}
-
-/// Control interrupts everything but the drivers' own interrupts.
-static CONTROL: InterruptExecutor = InterruptExecutor::new();
-
-/// The sensor interrupts all but control.
-static SENSOR: InterruptExecutor = InterruptExecutor::new();
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
@@ -66,43 +33,25 @@ pub fn run() -> ! {
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
     static PLACE: boot::Place = boot::Place::new();
-    let (pilot, outputs) = defmt::unwrap!(boot::start(&PLACE, &shared.parameters));
+    let (pilot, outputs) = boot::start(&PLACE, &shared.parameters).unwrap();
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
-    spawner.spawn(defmt::unwrap!(control(shared, hil, pilot, outputs, board.motors, board.watchdog)));
+    spawner.spawn(control(shared, hil, pilot, outputs, board.motors, board.watchdog).unwrap());
 
     SENSOR_INTERRUPT.set_priority(Priority::P7);
     let spawner = SENSOR.start(SENSOR_INTERRUPT);
-    spawner.spawn(defmt::unwrap!(sample(shared, board.imu)));
+    spawner.spawn(sample(shared, board.imu).unwrap());
 
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
-        spawner.spawn(defmt::unwrap!(receive(shared, board.receiver)));
-        spawner.spawn(defmt::unwrap!(transmit(shared, board.transmitter)));
-        spawner.spawn(defmt::unwrap!(simulated_sensors(shared, hil, board.simulator_receiver)));
-        spawner.spawn(defmt::unwrap!(simulated_motors(shared, hil, board.simulator_transmitter)));
-        spawner.spawn(defmt::unwrap!(show(shared, board.light, board.battery)));
-        spawner.spawn(defmt::unwrap!(keep(shared, parameters)));
+        spawner.spawn(receive(shared, board.receiver).unwrap());
+        spawner.spawn(transmit(shared, board.transmitter).unwrap());
+        spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
+        spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
+        spawner.spawn(show(shared, board.light, board.battery).unwrap());
+        spawner.spawn(keep(shared, parameters).unwrap());
     })
-}
-
-/// What the handler of [`CONTROL_INTERRUPT`] does.
-///
-/// # Safety
-/// For that handler only.
-pub unsafe fn on_control_interrupt() {
-    // SAFETY: called from one handler, which runs no sooner than `start` has unmasked it.
-    unsafe { CONTROL.on_interrupt() }
-}
-
-/// What the handler of [`SENSOR_INTERRUPT`] does.
-///
-/// # Safety
-/// For that handler only.
-pub unsafe fn on_sensor_interrupt() {
-    // SAFETY: as above.
-    unsafe { SENSOR.on_interrupt() }
 }
 
 #[embassy_executor::task]

@@ -1,6 +1,6 @@
 use super::*;
 use crate::hil::messages::decode;
-use crate::hil::{HilError, Session, serve};
+use crate::hil::{End, HilError, Session, serve};
 use firmware::frames;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
@@ -18,7 +18,7 @@ const LONG: Duration = Duration::from_secs(30);
 fn connected(patience: Duration) -> (Port, TcpStream) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Connect(listener.local_addr().unwrap().to_string());
-    let port = Port::open(&address, patience).unwrap();
+    let port = Port::open(&address, patience, &Interrupt::default()).unwrap();
     let board = listener.accept().unwrap().0;
     board.set_read_timeout(Some(LONG)).unwrap();
     (port, board)
@@ -78,7 +78,7 @@ fn nobody_is_waited_for_without_end() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     for address in [Address::Connect(free.clone()), Address::Listen(free)] {
         let started = Instant::now();
-        let Err(PortError::Nobody(who, waited, _)) = Port::open(&address, PATIENCE) else {
+        let Err(PortError::Nobody(who, waited, _)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
             panic!("somebody is there")
         };
         assert_eq!((who, waited), (address, PATIENCE));
@@ -108,7 +108,8 @@ fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_ar
     });
     let summary = serve(&scenario, &mut port, &session, None).unwrap();
     board.join().unwrap();
-    assert_eq!((summary.pace.ticks(), summary.pace.missed(), summary.left), (3, 0, false));
+    assert_eq!((summary.pace.ticks(), summary.end), (3, End::Over));
+    assert!(summary.to_string().contains(", 0 missed"), "{summary}");
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! The F405's flash: one bank, programmed by words of four bytes.
 
-use super::KEYS;
 use crate::hardware::Fault;
 use embassy_stm32::pac::FLASH;
 use embassy_stm32::pac::flash::vals::Psize;
@@ -12,12 +11,12 @@ const FIRST_SECTOR: u8 = 10;
 /// The flags of the status register that say what went wrong; writing them clears them.
 const FAILURES: u32 = 0b1111_0010;
 
-/// Forgets what failed before, and opens the control register.
-pub fn open() {
+/// Forgets what failed before, and opens the control register with its two keys.
+pub fn open(keys: [u32; 2]) {
     FLASH.sr().write(|w| w.0 = FAILURES);
     // A second key would close it until the next reset.
     if FLASH.cr().read().lock() {
-        KEYS.iter().for_each(|key| FLASH.keyr().write_value(*key));
+        keys.iter().for_each(|key| FLASH.keyr().write_value(*key));
     }
 }
 

@@ -4,7 +4,6 @@
 //! would restart the chip at every boot: so records are read with faults masked, and the flash's own flag says whether to
 //! believe them.
 
-use super::KEYS;
 use crate::hardware::Fault;
 use core::arch::asm;
 use cortex_m::peripheral::SCB;
@@ -27,12 +26,12 @@ fn bank() -> Bank {
     FLASH.bank(1)
 }
 
-/// Forgets what failed before, and opens the bank's control register.
-pub fn open() {
+/// Forgets what failed before, and opens the bank's control register with its two keys.
+pub fn open(keys: [u32; 2]) {
     bank().ccr().write_value(Ccr(FAILURES));
     // A second key would close it until the next reset.
     if bank().cr().read().lock() {
-        KEYS.iter().for_each(|key| bank().keyr().write_value(*key));
+        keys.iter().for_each(|key| bank().keyr().write_value(*key));
     }
 }
 

@@ -1,0 +1,142 @@
+//! One evaluation of the inequalities on the wrench: the paper's bounds as printed, or the sharp ones.
+//!
+//! | inequality | source |
+//! |---|---|
+//! | K_a3 < g; m (g + sqrt(K_a12^2 + K_a3^2)) < T_max; torque for the reference alone | Assumption 1 |
+//! | M_p < g - K_a3 | Section IV |
+//! | greatest thrust <= T_max; least thrust > 0, or the floor's place under it | Theorem 1, [`projection`](crate::projection) |
+//! | J_ii U_omega' + \|J_jj - J_kk\| U_omega^2 / 2 + iota < tau_max,i, each axis | Theorem 2 |
+//!
+//! The proofs are worked out in double precision, once, before flight. The law flies in single precision, so each
+//! bound is raised by [`ARITHMETIC_ALLOWANCE`] before it is compared.
+
+use super::configuration::Configuration;
+use super::inequality::{self, Inequality};
+use super::printed;
+use super::reachable::Reachable;
+use super::sharp::{self, DesiredRates};
+use crate::math;
+use nalgebra::Vector3;
+
+/// By how much, relative, bounds are raised to cover the single-precision arithmetic of the law. One evaluation's relative
+/// error is below 2e-6 (tests/independent_law.rs); what the filters' rounding adds up to over many ticks is below 2e-5
+/// for ticks down to 0.25 ms and bandwidths down to 0.2 1/s (tests/sharp_derivation.rs).
+pub const ARITHMETIC_ALLOWANCE: f64 = 1e-4;
+
+/// Least and greatest of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub greatest: f64,
+}
+
+/// One evaluation of all inequalities on the wrench.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Form {
+    /// Lemma 1: bounds on omega_d and omega_d', and the torque they take.
+    pub rates: DesiredRates,
+    /// Every thrust the law can command, N.
+    pub thrust: Interval,
+    /// Greatest |torque| about each body axis, N m.
+    pub torque: Vector3<f64>,
+    /// iota: the greatest length of the attitude and body-rate feedback together, N m.
+    pub feedback_torque: f64,
+    /// Assumption 1, Theorem 1 and Theorem 2, in that order.
+    pub inequalities: [Inequality; 11],
+}
+
+impl Form {
+    /// Whether every inequality holds.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.inequalities.iter().all(Inequality::holds)
+    }
+
+    /// The inequality with the least margin.
+    #[must_use]
+    pub fn tightest(&self) -> Option<Inequality> {
+        inequality::tightest(&self.inequalities)
+    }
+}
+
+/// Which of the two derivations a form follows.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Derivation {
+    Printed,
+    Sharp,
+}
+
+/// Bounds on the desired rates with the position feedback at `m_p` (zero: the reference alone).
+fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation) -> DesiredRates {
+    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+    let gravity = f64::from(configuration.vehicle().gravity);
+    let inertia = configuration.vehicle().inertia.map(f64::from);
+    let (k_f, k_s) = (f64::from(gains.k_f), f64::from(gains.k_s));
+    let printed = printed::desired_rates(k_f, k_s, m_p, gravity, bounds, &inertia);
+    match derivation {
+        Derivation::Printed => printed,
+        // Both are bounds, so the lesser one is: far from hover the lemma can be the sharper of the two.
+        Derivation::Sharp => {
+            sharp::desired_rates(&Reachable::new(k_f, k_s, m_p, gravity, bounds), bounds, &inertia).min(&printed)
+        }
+    }
+}
+
+/// The inequalities of `configuration` after `derivation`.
+pub(super) fn form(configuration: &Configuration, derivation: Derivation) -> Form {
+    let (vehicle, limits, gains) = (configuration.vehicle(), configuration.limits(), configuration.gains());
+    let bounds = configuration.bounds();
+    let (mass, gravity, m_p) = (f64::from(vehicle.mass), f64::from(vehicle.gravity), f64::from(gains.m_p));
+    let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
+    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+
+    let reach = Reachable::new(f64::from(gains.k_f), f64::from(gains.k_s), m_p, gravity, bounds);
+    let magnitude = match derivation {
+        Derivation::Printed => math::SQRT_3 * m_p + math::hypot(horizontal, vertical + gravity),
+        Derivation::Sharp => reach.magnitude(),
+    };
+    let least_law = mass * reach.vertical_least;
+    let floor = configuration.thrust_floor().map_or(0.0, f64::from);
+    let least = if floor > 0.0 { floor } else { least_law };
+    let thrust = Interval { least: least / raised, greatest: mass * magnitude * raised };
+
+    let alone = desired_rates(configuration, 0.0, derivation).feedforward_torque * raised;
+    let rates = desired_rates(configuration, m_p, derivation);
+    let feedback_torque = feedback_torque(configuration, derivation);
+    let torque = rates.feedforward_torque.add_scalar(feedback_torque) * raised;
+    let available = limits.torque_max.map(f64::from);
+    let thrust_max = f64::from(limits.thrust_max);
+    let feasible = mass * (gravity + math::hypot(horizontal, vertical)) * raised;
+
+    let inequalities = [
+        Inequality::new("A1 vertical acceleration K_a3 < g", "m/s^2", vertical, gravity),
+        Inequality::new("A1 thrust for the reference", "N", feasible, thrust_max),
+        Inequality::new("A1 roll torque for the reference", "N m", alone.x, available.x),
+        Inequality::new("A1 pitch torque for the reference", "N m", alone.y, available.y),
+        Inequality::new("A1 yaw torque for the reference", "N m", alone.z, available.z),
+        Inequality::new("T1 saturation level M_p < g - K_a3", "m/s^2", m_p, gravity - vertical),
+        Inequality::new("T1 least thrust > 0, floor at most m (g - M_p - K_a3)", "N", floor, least_law).or_equal(),
+        Inequality::new("T1 greatest thrust", "N", thrust.greatest, thrust_max),
+        Inequality::new("T2 roll torque", "N m", torque.x, available.x),
+        Inequality::new("T2 pitch torque", "N m", torque.y, available.y),
+        Inequality::new("T2 yaw torque", "N m", torque.z, available.z),
+    ];
+    Form { rates, thrust, torque, feedback_torque, inequalities }
+}
+
+/// iota of Theorem 2. The sharp form uses what the saturation reaches at |theta| = 1 + delta instead of its limit.
+fn feedback_torque(configuration: &Configuration, derivation: Derivation) -> f64 {
+    let gains = configuration.gains();
+    let (m_theta, m_omega) = (f64::from(gains.m_theta), f64::from(gains.m_omega));
+    let radius = 1.0 + f64::from(gains.delta);
+    let attitude = match derivation {
+        Derivation::Printed => m_theta,
+        Derivation::Sharp => {
+            let argument = f64::from(gains.k_theta) * radius;
+            m_theta * argument / math::hypot(m_theta, argument)
+        }
+    };
+    (1.0 + radius * radius) * attitude / 4.0 + m_omega
+}

@@ -1,0 +1,68 @@
+use super::*;
+use crate::gains::{GainParameters, Gains};
+use crate::reference::ReferenceBounds;
+use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+use nalgebra::Vector3;
+
+/// The paper's experiment, Section VI.
+pub(crate) fn paper() -> Configuration {
+    let inertia = Vector3::new(2.24e-3, 2.9e-3, 5.3e-3);
+    let vehicle = Vehicle::new(VehicleParameters { mass: 0.46, inertia, gravity: 9.81 }).unwrap();
+    let torque_max = Vector3::repeat(0.5);
+    let limits = Limits::new(LimitParameters { thrust_max: 7.0, torque_max }, &vehicle).unwrap();
+    let f = 0.418_879_02_f32;
+    let swing = core::f32::consts::PI * f;
+    let bounds = ReferenceBounds {
+        horizontal_acceleration: f * f,
+        vertical_acceleration: f * f,
+        jerk: core::f32::consts::SQRT_2 * f * f * f,
+        snap: core::f32::consts::SQRT_2 * f * f * f * f,
+        heading_rate: swing,
+        heading_second_derivative: swing * swing,
+    };
+    Configuration::new(vehicle, limits, Gains::new(GainParameters::TABLE_1, &vehicle).unwrap(), bounds).unwrap()
+}
+
+#[test]
+fn table_1_is_refused_as_printed_and_in_yaw_only() {
+    let printed = Certificate::new(&paper()).unwrap().printed;
+    assert!(!printed.holds());
+    assert!((printed.torque - Vector3::new(0.379, 0.446, 0.664)).amax() < 1e-3, "{}", printed.torque);
+    let failing = printed.inequalities.iter().filter(|inequality| !inequality.holds());
+    assert!(failing.map(|inequality| inequality.name).eq(["T2 yaw torque"]));
+}
+
+#[test]
+fn table_1_is_certified_by_the_sharp_bound_within_the_published_figures() {
+    let sharp = Certificate::new(&paper()).unwrap().sharp;
+    assert!(sharp.holds());
+    let published = Vector3::new(0.29, 0.33, 0.48);
+    assert!(sharp.torque.iter().zip(published.iter()).all(|(ours, theirs)| ours <= theirs), "{}", sharp.torque);
+    assert!(sharp.thrust.greatest <= 6.19 && (sharp.thrust.least - 3.512).abs() < 1e-3, "{:?}", sharp.thrust);
+}
+
+#[test]
+fn theorem_1s_interval_is_the_published_one() {
+    let thrust = Certificate::new(&paper()).unwrap().printed.thrust;
+    assert!((thrust.least - 3.512).abs() < 1e-3 && (thrust.greatest - 6.188).abs() < 1e-3, "{thrust:?}");
+}
+
+#[test]
+fn references_that_the_vehicle_cannot_follow_at_all_fail_assumption_1() {
+    let paper = paper();
+    let fails = |bounds: ReferenceBounds, name: &str| {
+        let certificate = Certificate::new(&paper.with_bounds(bounds).unwrap()).unwrap();
+        let failing = |form: &Form| form.inequalities.iter().any(|i| i.name == name && !i.holds());
+        assert!(failing(&certificate.printed) && failing(&certificate.sharp) && !certificate.holds(), "{name}");
+    };
+    // 7 N on 0.46 kg is 15.2 m/s^2: with gravity, less than 12 sideways.
+    fails(ReferenceBounds { horizontal_acceleration: 12.0, ..*paper.bounds() }, "A1 thrust for the reference");
+    fails(ReferenceBounds { snap: 2500.0, ..*paper.bounds() }, "A1 yaw torque for the reference");
+}
+
+#[test]
+fn a_reference_that_leaves_no_upward_thrust_is_no_configuration() {
+    let paper = paper();
+    let falling = ReferenceBounds { vertical_acceleration: 7.9, ..*paper.bounds() };
+    assert_eq!(paper.with_bounds(falling).unwrap_err().field, "gains.m_p");
+}

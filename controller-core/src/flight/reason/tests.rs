@@ -1,0 +1,51 @@
+use super::*;
+use crate::flight::example;
+extern crate std;
+use std::format;
+use std::string::ToString;
+use std::vec::Vec;
+
+/// A name longer than any.
+const LONG: &str = "a_name.that_is_longer_than_the_fifty_characters_of_a_status_text";
+
+#[test]
+fn every_text_fits_a_statustext_and_is_unlike_the_others() {
+    let grounded = [Grounded::Inequality(LONG), Grounded::Parameter(LONG), Grounded::NoRotors];
+    let refusals = [
+        Refusal::AlreadyArmed,
+        Refusal::MotorTestRunning,
+        Refusal::DisarmCommanded,
+        Refusal::ImuStale,
+        Refusal::PoseStale,
+        Refusal::Unusable(LONG),
+        Refusal::Tilted,
+        Refusal::GroundStationSilent,
+        Refusal::Reference(LONG),
+        Refusal::NoSuchRotor,
+        Refusal::MotorTestLevel,
+        Refusal::MotorTestDuration,
+        Refusal::NotFlying,
+        Refusal::Setpoint(LONG),
+    ];
+    let reasons = Reason::ALL.iter().map(ToString::to_string);
+    let refusals = refusals.into_iter().chain(grounded.map(Refusal::Grounded));
+    let mut texts: Vec<_> = reasons.chain(refusals.map(|refusal| refusal.to_string())).collect();
+    for text in &texts {
+        assert!(text.len() <= TEXT_MAX && text.len() > 4, "{text}");
+    }
+    let count = texts.len();
+    texts.sort();
+    texts.dedup();
+    assert_eq!(texts.len(), count);
+}
+
+#[test]
+fn every_inequality_of_the_certificate_is_told_from_the_others_in_its_text() {
+    let certified = example::certified();
+    let certificate = certified.certificate();
+    let mut texts: Vec<_> =
+        certificate.inequalities().map(|i| format!("{:.44}", Grounded::Inequality(i.name).to_string())).collect();
+    texts.sort();
+    texts.dedup();
+    assert_eq!(texts.len(), certificate.inequalities().count());
+}

@@ -1,0 +1,33 @@
+//! What a board hands to its tasks.
+
+use super::imu::BoardImu;
+use super::light::Lamp;
+use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::restart::Cause;
+use super::storage::ParameterFlash;
+
+/// Everything on the board, each part ready for the task that will own it.
+pub struct Board<Motors, Watchdog, Battery> {
+    /// The sensor, powered up at its first sample.
+    pub imu: BoardImu,
+    /// The motors, silent.
+    pub motors: Motors,
+    /// The watchdog, not started.
+    pub watchdog: Watchdog,
+    /// The battery.
+    pub battery: Battery,
+    /// The light, off.
+    pub light: Lamp,
+    /// What the link receives.
+    pub receiver: Receiver,
+    /// What the link sends.
+    pub transmitter: Transmitter,
+    /// What a simulator sends.
+    pub simulator_receiver: SimulatorReceiver,
+    /// What a simulator receives.
+    pub simulator_transmitter: SimulatorTransmitter,
+    /// Where parameters live.
+    pub storage: ParameterFlash,
+    /// Why the chip started.
+    pub restart: Cause,
+}

@@ -1,0 +1,91 @@
+use super::*;
+
+/// Ticks of a bit on the MicoAir: 200 MHz / 300 kHz.
+const PERIOD: u16 = 666;
+
+fn values(command: MotorCommand) -> [u16; MOTORS] {
+    frames(command).unwrap().map(|frame| frame.inner() >> 5)
+}
+
+/// What a controller at the end of `channel` reads: a bit is one if it is high for more than half its time.
+fn read(waveform: &Waveform<u16>, channel: usize) -> u16 {
+    let rows: &[[u16; MOTORS]] = waveform.words().as_chunks().0;
+    let bit = |row: &[u16; MOTORS]| u16::from(row[channel] > PERIOD / 2);
+    rows[..BITS].iter().fold(0, |frame, row| frame << 1 | bit(row))
+}
+
+#[test]
+fn stop_is_the_value_zero_with_the_checksum_zero() {
+    assert_eq!(frames(MotorCommand::Stop).unwrap().map(|frame| frame.inner()), [0; MOTORS]);
+}
+
+#[test]
+fn a_motor_test_turns_one_motor_and_stops_the_others() {
+    assert_eq!(values(MotorCommand::One { motor: 2, level: 0.0 }), [0, 0, 48, 0]);
+    assert!(frames(MotorCommand::One { motor: 4, level: 0.1 }).is_err());
+    assert!(frames(MotorCommand::One { motor: 0, level: f32::NAN }).is_err());
+}
+
+#[test]
+fn commands_cover_48_to_2047_and_never_the_settings_between() {
+    assert_eq!(values(MotorCommand::Run([0.0, 1.0, 0.5, 0.25])), [48, 2047, 1048, 548]);
+    assert_eq!(values(MotorCommand::Run([-0.0, f32::MIN_POSITIVE, 1.0 - f32::EPSILON, 1.5])), [48, 48, 2047, 2047]);
+    assert_eq!(values(MotorCommand::Run([-1.0, f32::MIN, f32::MAX, 2.0])), [48, 48, 2047, 2047]);
+    for step in 0..=10_000 {
+        let [value, ..] = values(MotorCommand::Run([step as f32 / 10_000.0; MOTORS]));
+        assert!((48..=2047).contains(&value));
+    }
+}
+
+#[test]
+fn a_command_that_is_not_finite_is_a_fault_for_all_motors() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for motor in 0..MOTORS {
+            let mut commands = [0.5; MOTORS];
+            commands[motor] = bad;
+            assert_eq!(frames(MotorCommand::Run(commands)).err(), Some(Fault));
+        }
+    }
+}
+
+#[test]
+fn frames_carry_value_no_telemetry_and_checksum() {
+    // 1046 = 0b10000010110, telemetry 0; nibbles 1000 0010 1100, their exclusive or 0110.
+    let command = (1046.0 - 48.0) / STEPS;
+    let [frame, ..] = frames(MotorCommand::Run([command; MOTORS])).unwrap();
+    assert_eq!(frame.inner(), 0b1000_0010_1100_0110);
+}
+
+#[test]
+fn each_motors_frame_comes_out_of_its_channel() {
+    let frames = frames(MotorCommand::Run([0.0, 0.3, 0.7, 1.0])).unwrap();
+    let channels = [3, 2, 0, 1];
+    let mut waveform = Waveform::silent();
+    waveform.draw(&frames, &channels, PERIOD);
+    for (frame, channel) in frames.iter().zip(channels) {
+        assert_eq!(read(&waveform, channel), frame.inner(), "channel {channel}");
+    }
+}
+
+#[test]
+fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
+    let mut waveform = Waveform::<u16>::silent();
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3], PERIOD);
+    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
+    assert!((first - 0.75).abs() < 0.003, "{first}");
+    waveform.draw(&stop(), &[0, 1, 2, 3], PERIOD);
+    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
+    assert!((first - 0.375).abs() < 0.003, "{first}");
+    assert!(waveform.words()[0].abs_diff(zero_width(PERIOD)) <= 1);
+}
+
+#[test]
+fn a_waveform_ends_silent_and_fills_whole_bursts() {
+    let mut waveform = Waveform::<u16>::silent();
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3], PERIOD);
+    let words = waveform.words();
+    assert!(words[BITS * MOTORS..].iter().all(|word| *word == 0) && words.len() == ROWS * MOTORS);
+    assert_eq!(size_of_val(words) % 16, 0);
+    assert_eq!(size_of_val(Waveform::<u32>::silent().words()) % 16, 0);
+    assert_eq!(align_of::<Waveform<u16>>(), 16);
+}

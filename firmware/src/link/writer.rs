@@ -1,0 +1,37 @@
+//! Frames to send: messages of the `mavlink` crate's types as frames of version 2, numbered in the order they are sent.
+
+use super::COMPONENT;
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+
+/// Where frames are written, one after the other.
+pub struct Writer {
+    frame: MAVLinkV2MessageRaw,
+    sequence: u8,
+}
+
+impl Writer {
+    /// Nothing written yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { frame: MAVLinkV2MessageRaw::new(), sequence: 0 }
+    }
+
+    /// Writes a message from this component of `system` over the one before.
+    pub fn write(&mut self, system: u8, message: &impl MessageData) {
+        let header = MavHeader { system_id: system.into(), component_id: COMPONENT, sequence: self.sequence };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.frame.serialize_message_data(header, message);
+    }
+
+    /// The frame last written.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        self.frame.raw_bytes()
+    }
+}
+
+impl Default for Writer {
+    fn default() -> Self {
+        Self::new()
+    }
+}

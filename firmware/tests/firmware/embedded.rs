@@ -1,0 +1,77 @@
+//! What the build embeds is what the file says, to the bit; and it embeds nothing that cannot be flown.
+
+#[path = "../../build/embed.rs"]
+mod embed;
+
+use embed::{Embedded, embedded};
+use scenario::Scenario;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The file that is embedded when SCENARIO names none: see build.rs.
+const DEFAULT: &str = "vehicles/study.toml";
+
+fn file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
+/// What becomes of a file with a line of it changed.
+fn changed(name: &str, line: &str, into: &str) -> Result<Embedded, String> {
+    let text = fs::read_to_string(file(name)).unwrap();
+    assert_eq!(text.matches(line).count(), 1, "{line} in {name}");
+    embedded(&text.replace(line, into), name)
+}
+
+#[test]
+fn the_embedded_configuration_is_the_files_to_the_bit() {
+    let name = option_env!("SCENARIO").unwrap_or(DEFAULT);
+    let scenario = Scenario::load(&file(name)).unwrap();
+    assert_eq!(firmware::configuration::NAME, scenario.name);
+    assert_eq!(firmware::configuration::embedded().unwrap(), scenario.configuration);
+}
+
+#[test]
+fn the_default_is_tuned_for_a_sample_of_delay() {
+    let scenario = Scenario::load(&file(DEFAULT)).unwrap();
+    assert!(scenario.delay() >= scenario.timing.period());
+}
+
+#[test]
+fn the_vehicles_of_this_repository_are_built_without_a_word() {
+    for name in [DEFAULT, "vehicles/hummingbird.toml"] {
+        let text = fs::read_to_string(file(name)).unwrap();
+        let Embedded { source, warning } = embedded(&text, name).unwrap();
+        assert!(warning.is_none() && source.contains("Rotors::new(&["), "{name}: {warning:?}");
+    }
+}
+
+#[test]
+fn a_vehicle_whose_loop_is_unstable_is_not_built_and_the_loop_is_named() {
+    // Rotors that follow a second late: the certificate, which is about commands, holds all the same.
+    let refused = changed("vehicles/hummingbird.toml", "lag = 0.005 ", "lag = 1.0 ").unwrap_err();
+    let loop_and_reason = "vehicles/hummingbird.toml: sampled loop roll: unstable, spectral radius 1.0";
+    assert!(refused.starts_with(loop_and_reason) && refused.lines().count() == 1, "{refused}");
+}
+
+#[test]
+fn a_vehicle_whose_loop_is_stable_without_its_margin_is_not_built_either() {
+    let with_lag = |lag: u32| changed("vehicles/hummingbird.toml", "lag = 0.005 ", &format!("lag = {}e-3 ", lag));
+    let refused = (5..1000).find_map(|lag| with_lag(lag).err()).unwrap();
+    assert!(refused.contains("sampled loop") && refused.contains("must") && !refused.contains("radius"), "{refused}");
+}
+
+#[test]
+fn a_vehicle_that_is_not_certified_is_built_with_a_warning_that_names_the_inequality() {
+    let warning = changed("vehicles/hummingbird.toml", "torque_max = [1.0, 1.0, 0.2]", "torque_max = [1.0, 1.0, 0.05]");
+    let warning = warning.unwrap().warning.unwrap();
+    assert!(warning.contains("T2 yaw torque") && warning.ends_with("this firmware will refuse to arm"), "{warning}");
+    assert_eq!(warning.lines().count(), 1);
+}
+
+#[test]
+fn what_the_boards_cannot_drive_is_refused_by_field() {
+    let rate = changed("vehicles/hummingbird.toml", "rate = 100.0 ", "rate = 200.0 ").unwrap_err();
+    assert!(rate.starts_with("vehicles/hummingbird.toml: control.rate: the firmware flies at 100 Hz"), "{rate}");
+    let paper = fs::read_to_string(file("scenarios/paper.toml")).unwrap();
+    assert!(embedded(&paper, "paper.toml").unwrap_err().starts_with("paper.toml: rotors: missing"));
+}

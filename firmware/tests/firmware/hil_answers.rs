@@ -1,0 +1,117 @@
+//! A simulator's answers: which become IMU and pose, with which time, and which are refused.
+
+use crate::support::line::{Delivery, Incoming, Line};
+use crate::support::receiver::Local;
+use crate::support::simulator::{COMMANDED, Hil, command, commanded, odometry, sensor};
+use crate::support::{Simulated, patched, v2};
+use controller_core::flight::PERIOD;
+use firmware::hil;
+use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
+use nalgebra::Vector3;
+
+/// What is shared after the simulator has said `bytes`, 5 ms after its command.
+fn said(hil: &Hil, bytes: Vec<u8>) -> Local {
+    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
+    clock.0.set(COMMANDED + 5_000);
+    line.borrow_mut().push_back(Delivery::Bytes(bytes));
+    clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, &shared), |_| ());
+    shared
+}
+
+#[test]
+fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
+    let hil = commanded();
+    assert!(hil.active() && hil.awaiting());
+    let shared = said(&hil, [v2(1, &odometry(COMMANDED)), v2(2, &sensor(COMMANDED))].concat());
+    let (imu, pose) = (shared.imu.get().unwrap(), shared.pose.get().unwrap());
+    assert_eq!((imu.time, pose.time), (COMMANDED + PERIOD, COMMANDED + PERIOD));
+    assert_eq!(imu.value.angular_velocity, Vector3::new(0.5, -0.25, -0.125));
+    assert_eq!(imu.value.specific_force, Vector3::new(1.0, -2.0, 9.0));
+    assert_eq!(pose.value.position(), Vector3::new(2.0, 1.0, 3.0));
+    assert!((pose.value.velocity() - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-6, "{}", pose.value.velocity());
+    assert!(!hil.awaiting());
+}
+
+#[test]
+fn a_pose_alone_does_not_end_the_exchange() {
+    let hil = commanded();
+    assert!(said(&hil, v2(1, &odometry(COMMANDED))).pose.get().is_some());
+    assert!(hil.awaiting());
+}
+
+#[test]
+fn no_answer_is_fresher_than_the_last_command_makes_it() {
+    // One microsecond later, though that has passed by now; now; a second to come; whatever a clock of its own says.
+    for time in [COMMANDED + 1, COMMANDED + 5_000, COMMANDED + 1_000_000, u64::MAX - 1, u64::MAX] {
+        let hil = commanded();
+        let shared = said(&hil, [v2(1, &odometry(time)), v2(2, &sensor(time))].concat());
+        assert!(shared.imu.get().is_none() && shared.pose.get().is_none(), "{time}");
+        assert!(hil.awaiting());
+    }
+}
+
+#[test]
+fn a_late_answer_keeps_its_own_time_and_is_not_the_one_awaited() {
+    let hil = Hil::new();
+    command(&hil, COMMANDED - PERIOD);
+    command(&hil, COMMANDED);
+    let late = COMMANDED - PERIOD;
+    let shared = said(&hil, [v2(1, &odometry(late)), v2(2, &sensor(late))].concat());
+    assert_eq!(shared.imu.get().unwrap().time, COMMANDED);
+    assert_eq!(shared.pose.get().unwrap().time, COMMANDED);
+    assert!(hil.awaiting());
+}
+
+#[test]
+fn no_field_of_an_answer_may_be_nan_or_infinite() {
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        // Accelerometer and gyro; what is behind them (magnetometer, barometer) is not used.
+        for field in 0..13 {
+            let hil = commanded();
+            let shared = said(&hil, patched(&sensor(COMMANDED), 8 + 4 * field, value));
+            assert_eq!(shared.imu.get().is_none(), field < 6, "HIL_SENSOR field {field}: {value}");
+            assert_eq!(hil.awaiting(), field < 6);
+        }
+        // Position, attitude, velocity, body rates.
+        for field in 0..13 {
+            let shared = said(&commanded(), patched(&odometry(COMMANDED), 8 + 4 * field, value));
+            assert!(shared.pose.get().is_none(), "ODOMETRY field {field}: {value}");
+        }
+    }
+}
+
+#[test]
+fn a_simulator_that_does_not_know_a_rate_or_a_force_has_not_answered() {
+    use HilSensorUpdatedFlags as Field;
+    for unknown in [
+        Field::HIL_SENSOR_UPDATED_XACC,
+        Field::HIL_SENSOR_UPDATED_YACC,
+        Field::HIL_SENSOR_UPDATED_ZACC,
+        Field::HIL_SENSOR_UPDATED_XGYRO,
+        Field::HIL_SENSOR_UPDATED_YGYRO,
+        Field::HIL_SENSOR_UPDATED_ZGYRO,
+    ] {
+        let fields_updated = Field::all().difference(unknown);
+        let shared = said(&commanded(), v2(1, &HIL_SENSOR_DATA { fields_updated, ..sensor(COMMANDED) }));
+        assert!(shared.imu.get().is_none(), "{unknown:?}");
+    }
+}
+
+#[test]
+fn a_pose_in_other_frames_or_without_a_rotation_is_refused() {
+    for wrong in [
+        ODOMETRY_DATA { frame_id: MavFrame::MAV_FRAME_LOCAL_ENU, ..odometry(COMMANDED) },
+        ODOMETRY_DATA { child_frame_id: MavFrame::MAV_FRAME_LOCAL_FRD, ..odometry(COMMANDED) },
+        ODOMETRY_DATA { q: [0.0; 4], ..odometry(COMMANDED) },
+    ] {
+        assert!(said(&commanded(), v2(1, &wrong)).pose.get().is_none(), "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_simulator_that_was_given_no_command_says_nothing_that_counts() {
+    let hil = Hil::new();
+    let shared = said(&hil, [v2(1, &odometry(0)), v2(2, &sensor(0))].concat());
+    assert!(shared.imu.get().is_none() && shared.pose.get().is_none());
+    assert!(!hil.active());
+}

@@ -1,0 +1,123 @@
+//! When a simulator takes over from sensors and motors, and what becomes of those.
+
+use crate::support::receiver::{Fed, Local, texts};
+use crate::support::simulator::{Hil, Pins, now, odometry};
+use crate::support::{Simulated, v2};
+use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
+use firmware::boot;
+use firmware::control::Control;
+use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, Watchdog};
+use firmware::hil::SelectedMotors;
+use firmware::imu;
+use firmware::shared::{Asked, Flag, Reply};
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavCmd, MavResult};
+use nalgebra::Vector3;
+
+/// A sensor with a sample every millisecond.
+struct Steady<'a>(&'a Simulated);
+
+impl Imu for Steady<'_> {
+    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+        self.0.until(self.0.now() + 1_000).await;
+        Ok(ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() })
+    }
+}
+
+#[test]
+fn the_vehicles_own_sensors_count_for_nothing_while_a_simulator_is_wanted() {
+    for wanted in [false, true] {
+        let (clock, shared) = (Simulated::default(), Local::new());
+        if wanted {
+            shared.hil.raise();
+        }
+        clock.run(10_000, imu::run(&shared, &clock, &mut Steady(&clock)), |_| ());
+        assert_eq!(shared.imu.get().is_none(), wanted);
+        let mut fed = Fed::new(&shared);
+        fed.message(&odometry(1_000), 10_000);
+        assert_eq!(shared.pose.take().is_none(), wanted);
+        let mut fed = Fed::new(&shared);
+        for (sequence, time_usec) in [(1, 1_000), (2, 11_000)] {
+            let mocap = ATT_POS_MOCAP_DATA { time_usec, q: [1.0, 0.0, 0.0, 0.0], ..Default::default() };
+            fed.bytes(&v2(sequence, &mocap), 10_000 + time_usec);
+        }
+        assert_eq!(shared.pose.get().is_none(), wanted);
+    }
+}
+
+#[test]
+fn the_simulator_takes_over_at_a_stop_and_the_pins_carry_stop_from_then_on() {
+    let (run, one) = (MotorCommand::Run([0.5; 4]), MotorCommand::One { motor: 1, level: 0.1 });
+    let (mut pins, hil, wanted) = (Pins::default(), Hil::new(), Flag::new());
+    let mut motors = SelectedMotors { pins: &mut pins, hil: &hil, wanted: &wanted, clock: Simulated::default() };
+    for command in [MotorCommand::Stop, one, run] {
+        now(motors.write(command)).unwrap();
+    }
+    wanted.raise();
+    now(motors.write(run)).unwrap();
+    assert!(!hil.active(), "taken over in flight");
+    for command in [MotorCommand::Stop, run, one, MotorCommand::Stop, run] {
+        now(motors.write(command)).unwrap();
+        assert!(hil.active());
+    }
+    // Nothing gives the motors back.
+    assert!(wanted.take());
+    now(motors.write(run)).unwrap();
+    assert_eq!(pins.0[..4], [MotorCommand::Stop, one, run, run]);
+    assert_eq!(pins.0[4..], [MotorCommand::Stop; 6]);
+}
+
+/// Never hungry.
+struct Bench;
+
+impl Watchdog for Bench {
+    fn feed(&mut self) {}
+}
+
+/// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being wanted
+/// from 45 ms on; and the answer.
+fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, Vec<String>) {
+    let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
+    let place = Box::leak(Box::new(boot::Place::new()));
+    let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
+    let mut pins = Pins::default();
+    let mut motors = SelectedMotors { pins: &mut pins, hil: &hil, wanted: &shared.hil, clock: Simulated::default() };
+    let still = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() * 9.81 };
+    let mut control = Control::new(&shared, pilot, outputs);
+    clock.run(100_000, control.run(&clock, &mut motors, &mut Bench), |now| {
+        if shared.hil.is_raised() {
+            return;
+        }
+        shared.imu.put(still, now);
+        shared.ground_station.put((), now);
+        Fed::new(&shared).message(&odometry(0), now);
+        if now == asked {
+            let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
+            shared.request(Asked { request, command }).unwrap();
+        }
+        if now == 45_000 {
+            shared.hil.raise();
+        }
+    });
+    assert!(hil.active());
+    assert_eq!(shared.report.get().unwrap().value.mode, Mode::Disarmed);
+    let Some(Reply::Command { result, .. }) = shared.answers.take() else { panic!("no answer") };
+    (pins.0, result, texts(&shared))
+}
+
+#[test]
+fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
+    // Both between the same two ticks: neither finds the other done.
+    let (pins, answer, texts) = handed_over(Request::Arm, 45_000);
+    assert_eq!(pins, [MotorCommand::Stop; 9]);
+    assert_eq!(answer, MavResult::MAV_RESULT_DENIED);
+    assert_eq!(texts, ["Refused: disarm commanded"]);
+}
+
+#[test]
+fn a_motor_test_ends_where_the_simulator_is_asked_for() {
+    let test = MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 };
+    let (pins, answer, _) = handed_over(Request::MotorTest(test), 15_000);
+    assert_eq!(pins[1..4], [MotorCommand::One { motor: 1, level: 0.1 }; 3]);
+    assert_eq!(pins[4..], [MotorCommand::Stop; 5]);
+    assert_eq!(answer, MavResult::MAV_RESULT_ACCEPTED);
+}

@@ -1,0 +1,78 @@
+//! The IMU task on a sensor that faults, hangs or says what is no number.
+
+use crate::support::Simulated;
+use crate::support::receiver::{Local, texts};
+use controller_core::flight::ImuSample;
+use core::future::pending;
+use firmware::hardware::{Clock, Fault, Imu};
+use firmware::imu::{PATIENCE, run};
+use nalgebra::Vector3;
+
+/// What a sensor says a millisecond after it is asked.
+#[derive(Clone, Copy)]
+enum Says {
+    Sample,
+    Number(usize, f32),
+    Fault,
+    Nothing,
+}
+
+/// A sensor that says one thing before a time, us, another up to a second one, and samples afterwards.
+struct Sensor<'a> {
+    clock: &'a Simulated,
+    trouble: Says,
+    from: u64,
+    to: u64,
+}
+
+impl Imu for Sensor<'_> {
+    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+        self.clock.until(self.clock.now() + 1_000).await;
+        let now = self.clock.now();
+        let mut sample = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() };
+        match if (self.from..self.to).contains(&now) { self.trouble } else { Says::Sample } {
+            Says::Sample => {}
+            Says::Number(index @ 0..3, value) => sample.angular_velocity[index] = value,
+            Says::Number(index, value) => sample.specific_force[index - 3] = value,
+            Says::Fault => return Err(Fault),
+            Says::Nothing => pending().await,
+        }
+        Ok(sample)
+    }
+}
+
+/// The newest sample's times, once a millisecond, and what was said, with a sensor in trouble from 50 to 350 ms.
+fn sampled(trouble: Says) -> (Vec<u64>, Vec<String>) {
+    let (clock, shared) = (Simulated::default(), Local::new());
+    let mut sensor = Sensor { clock: &clock, trouble, from: 50_000, to: 350_000 };
+    let mut times = Vec::new();
+    clock.run(1_000_000, run(&shared, &clock, &mut sensor), |_| {
+        if let Some(sample) = shared.imu.get() {
+            let numbers = sample.value.angular_velocity.iter().chain(&sample.value.specific_force);
+            assert!(numbers.into_iter().all(|number| number.is_finite()));
+            times.push(sample.time);
+        }
+    });
+    (times, texts(&shared))
+}
+
+#[test]
+fn every_trouble_leaves_the_last_sample_to_age_and_is_told_once() {
+    let numbers = (0..6).flat_map(|index| [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(|n| Says::Number(index, n)));
+    for trouble in numbers.chain([Says::Fault, Says::Nothing]) {
+        let (times, texts) = sampled(trouble);
+        assert!(times.iter().all(|time| !(50_000..350_000).contains(time)));
+        assert!(times.contains(&49_000));
+        assert_eq!(texts, ["IMU does not answer", "IMU answers again"]);
+        // A sensor that hangs is asked again after so long, and found well.
+        let back = times.iter().find(|time| **time >= 350_000).unwrap();
+        assert!(*back <= 350_000 + PATIENCE + 10_000, "{back}");
+    }
+}
+
+#[test]
+fn samples_carry_the_time_they_were_read() {
+    let (times, texts) = sampled(Says::Sample);
+    assert!(times.windows(2).all(|pair| pair[1] - pair[0] <= 1_000));
+    assert!(times.len() > 990 && texts.is_empty());
+}

@@ -1,0 +1,129 @@
+//! The journal under power cuts: after any of them, the value before or the new one, and room for the next.
+
+use crate::support::chip::{Chip, RECORDS, SECTOR, Torn, Words};
+use firmware::parameters::journal::Journal;
+use std::cell::RefCell;
+
+/// Every way in which a word can be left behind.
+const TORN: [Torn; 3] = [Torn::Bits, Torn::Unreadable, Torn::Blank];
+
+/// The journal that a boot finds, and the newest value; 0 where there is none.
+fn opened<const WORD: usize>(chip: &RefCell<Chip>) -> (Journal<Words<'_, WORD>>, f32) {
+    let mut values = [0.0; 5];
+    let (journal, _) = Journal::open(Words(chip), &mut values);
+    (journal, values[4])
+}
+
+/// Boots, saves a value in no more than two attempts, and says whether that went well.
+fn saved<const WORD: usize>(chip: &RefCell<Chip>, value: f32) -> bool {
+    let (mut journal, _) = opened::<WORD>(chip);
+    (0..2).any(|_| journal.append(&[-1.0, 1.0, 2.0, 3.0, value]).is_ok())
+}
+
+/// Saves `value` with the power failing at each word in turn, and hands each chip on as it is then, with power.
+fn cut_everywhere<const WORD: usize>(
+    chip: &RefCell<Chip>,
+    torn: Torn,
+    value: f32,
+    check: &dyn Fn(&RefCell<Chip>, bool),
+) {
+    for power in 1.. {
+        let cut = chip.clone();
+        (cut.borrow_mut().power, cut.borrow_mut().torn) = (power, torn);
+        let done = saved::<WORD>(&cut, value);
+        let whole = cut.borrow().power > 0;
+        cut.borrow_mut().power = usize::MAX;
+        check(&cut, done);
+        if whole {
+            assert!(done, "a save with power throughout");
+            return;
+        }
+    }
+}
+
+fn survives_cuts<const WORD: usize>(nested: bool) {
+    // From blank flash to a second time through both sectors.
+    let chip = Chip::erased();
+    for round in 0..2 * RECORDS + 3 {
+        let (before, new) = (round as f32, round as f32 + 1.0);
+        for torn in TORN {
+            cut_everywhere::<WORD>(&chip, torn, new, &|cut, done| {
+                let (_, found) = opened::<WORD>(cut);
+                assert!(found == new || found == before && !done, "{found} after {before}, {torn:?}");
+                let (recovered, next) = (cut.clone(), 1e6);
+                assert!(saved::<WORD>(&recovered, next), "no room after a cut, {torn:?}");
+                assert_eq!(opened::<WORD>(&recovered).1, next);
+                if nested {
+                    cut_everywhere::<WORD>(cut, torn, next, &|cut, done| {
+                        let (_, again) = opened::<WORD>(cut);
+                        assert!(again == next || again == found && !done, "{again} after {found}, {torn:?}");
+                        assert!(saved::<WORD>(cut, 2e6) && opened::<WORD>(cut).1 == 2e6, "{torn:?}");
+                    });
+                }
+            });
+        }
+        assert!(saved::<WORD>(&chip, new));
+    }
+}
+
+#[test]
+fn flash_of_32_byte_words_survives_a_cut_at_any_word_and_another_after_it() {
+    survives_cuts::<32>(true);
+}
+
+#[test]
+fn flash_of_4_byte_words_survives_a_cut_at_any_word() {
+    survives_cuts::<4>(false);
+}
+
+#[test]
+fn flash_of_single_bytes_survives_a_cut_at_any_byte() {
+    survives_cuts::<1>(false);
+}
+
+#[test]
+fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
+    for round in 1..=2 * RECORDS {
+        let chip = Chip::erased();
+        for value in 1..=round {
+            assert!(saved::<32>(&chip, value as f32));
+        }
+        chip.borrow_mut().worn = true;
+        let (mut journal, _) = opened::<32>(&chip);
+        for _ in 0..5 * RECORDS {
+            assert!(journal.append(&[0.0; 5]).is_err());
+        }
+        assert_eq!(opened::<32>(&chip).1, round as f32);
+        // Nor does a boot in between change that.
+        for _ in 0..5 * RECORDS {
+            assert!(!saved::<32>(&chip, 0.0));
+        }
+        assert_eq!(opened::<32>(&chip).1, round as f32);
+    }
+}
+
+#[test]
+fn blank_flash_holds_nothing_and_anything_else_is_told() {
+    let chip = Chip::erased();
+    assert!(Journal::open(Words::<4>(&chip), &mut [0.0]).1.is_ok());
+    for byte in 0..2 * SECTOR {
+        let chip = chip.clone();
+        chip.borrow_mut().bytes[byte] = 0;
+        let mut values = [7.0];
+        assert!(Journal::open(Words::<4>(&chip), &mut values).1.is_err(), "byte {byte}");
+        assert_eq!(values, [7.0]);
+    }
+}
+
+#[test]
+fn a_record_is_erased_no_sooner_than_there_is_no_other_place() {
+    let chip = Chip::erased();
+    for value in 1..=RECORDS {
+        assert!(saved::<4>(&chip, value as f32));
+    }
+    let first = chip.borrow().bytes.clone();
+    assert!(saved::<4>(&chip, 0.5));
+    let both = chip.borrow().bytes.clone();
+    // One sector is full, the other has the newest.
+    assert!(first.iter().zip(&both).filter(|(old, new)| old != new).count() <= 64);
+}

@@ -1,0 +1,321 @@
+//! Commands, parameters, heartbeats and pings in: what they do, and what is answered.
+
+use crate::support::receiver::{Fed, Local, report, texts};
+use crate::support::{patched, v1, v2, v2_of_payload};
+use controller_core::flight::{Mode, MotorTest, Request};
+use firmware::parameters::table::{Name, PARAMETERS};
+use firmware::shared::{Asked, Ping, REPLIES, REQUESTS, Reply};
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavResult, MavType, PARAM_REQUEST_LIST_DATA,
+    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+};
+
+const ARM_DISARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
+
+fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
+    let [param1, param2, param3, param4, param5] = parameters;
+    COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
+}
+
+fn arm() -> COMMAND_LONG_DATA {
+    command(ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0])
+}
+
+fn disarm() -> COMMAND_LONG_DATA {
+    command(ARM_DISARM, [0.0; 5])
+}
+
+fn requests(shared: &Local) -> usize {
+    std::iter::from_fn(|| shared.requests.take()).count()
+}
+
+fn replies(shared: &Local) -> Vec<Reply> {
+    std::iter::from_fn(|| shared.replies.take()).collect()
+}
+
+/// The answer to a command that is not put to control.
+fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
+    let shared = Local::new();
+    report(&shared, mode, 0);
+    Fed::new(&shared).message(message, 0);
+    assert!(shared.requests.take().is_none());
+    match replies(&shared)[..] {
+        [Reply::Command { command, result }] if command == message.command => result,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_arm_command_becomes_a_request_that_control_answers() {
+    for bytes in [v1(1, &arm()), v2(1, &arm())] {
+        let shared = Local::new();
+        Fed::new(&shared).bytes(&bytes, 0);
+        let asked = shared.requests.take().unwrap();
+        assert_eq!(asked, Asked { request: Request::Arm, command: ARM_DISARM });
+        assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
+    }
+}
+
+#[test]
+fn a_command_whose_end_comes_a_tenth_of_a_second_late_does_nothing() {
+    for (late, taken) in [(100_000, true), (100_001, false)] {
+        let shared = Local::new();
+        let mut fed = Fed::new(&shared);
+        let bytes = v2(1, &arm());
+        let (begin, end) = bytes.split_at(bytes.len() - 1);
+        fed.bytes(begin, 0);
+        fed.bytes(end, late);
+        assert_eq!(shared.requests.take().is_some(), taken, "{late}");
+        // What follows is understood.
+        fed.bytes(&v2(2, &disarm()), late);
+        assert!(shared.disarm.take());
+    }
+}
+
+#[test]
+fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    for _ in 0..REQUESTS + 3 {
+        fed.message(&arm(), 0);
+    }
+    let rejected = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+    assert_eq!(replies(&shared), [rejected.clone(), rejected.clone(), rejected]);
+    fed.message(&disarm(), 0);
+    assert!(shared.disarm.take());
+    assert!(shared.requests.take().is_none());
+    let refused = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_DENIED };
+    for _ in 0..REQUESTS {
+        assert_eq!(shared.answers.take(), Some(refused.clone()));
+    }
+    assert_eq!(replies(&shared), [Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_ACCEPTED }]);
+}
+
+#[test]
+fn the_same_frame_again_does_not_act_again() {
+    let test = command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [2.0, 0.0, 5.0, 1.0, 0.0]);
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.bytes(&v2(7, &test), 0);
+    fed.bytes(&v2(7, &test), 900_000);
+    assert_eq!(requests(&shared), 1);
+    // Sent again on purpose, or so late that the sequence number has come round.
+    fed.bytes(&v2(8, &test), 910_000);
+    fed.bytes(&v2(8, &test), 1_910_000);
+    assert_eq!(requests(&shared), 2);
+}
+
+#[test]
+fn a_motor_test_names_motor_level_and_time() {
+    let shared = Local::new();
+    Fed::new(&shared).message(&command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [4.0, 0.0, 12.5, 1.5, 1.0]), 0);
+    let request = Request::MotorTest(MotorTest { rotor: 3, level: 0.125, duration: 1_500_000 });
+    assert_eq!(shared.requests.take().unwrap().request, request);
+}
+
+#[test]
+fn nonsense_is_denied() {
+    let test = MavCmd::MAV_CMD_DO_MOTOR_TEST;
+    let nan = f32::NAN;
+    for message in [
+        command(ARM_DISARM, [nan; 5]),
+        command(ARM_DISARM, [2.0, 0.0, 0.0, 0.0, 0.0]),
+        command(ARM_DISARM, [0.5, 21196.0, 0.0, 0.0, 0.0]),
+        command(test, [0.0, 0.0, 5.0, 1.0, 0.0]),
+        command(test, [5.0, 0.0, 5.0, 1.0, 0.0]),
+        command(test, [1.5, 0.0, 5.0, 1.0, 0.0]),
+        command(test, [1.0, 1.0, 1100.0, 1.0, 0.0]),
+        command(test, [1.0, 0.0, 5.0, 1.0, 4.0]),
+        command(MavCmd::MAV_CMD_DO_SET_MODE, [nan, 6.0, 0.0, 0.0, 0.0]),
+        command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 3.0, 0.0, 0.0]),
+    ] {
+        assert_eq!(answer(&message, Mode::Disarmed), MavResult::MAV_RESULT_DENIED, "{message:?}");
+    }
+}
+
+#[test]
+fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
+    let messages = [
+        (arm(), 1),
+        (command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [1.0, 0.0, 5.0, 1.0, 0.0]), 5),
+        (command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0, 0.0, 0.0, 0.0]), 2),
+    ];
+    for (message, used) in messages {
+        for parameter in 0..7 {
+            for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                let shared = Local::new();
+                Fed::new(&shared).bytes(&patched(&message, 4 * parameter, value), 0);
+                let denied = Reply::Command { command: message.command, result: MavResult::MAV_RESULT_DENIED };
+                assert_eq!(replies(&shared).contains(&denied), parameter < used, "{message:?} {parameter} {value}");
+                assert!((requests(&shared) == 0) || parameter >= used);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_mode_is_guided_flight_and_nothing_else() {
+    let set_mode = |base: f32, custom: f32| command(MavCmd::MAV_CMD_DO_SET_MODE, [base, custom, 0.0, 0.0, 0.0]);
+    // PX4's OFFBOARD, and GUIDED.
+    for message in [set_mode(1.0, 6.0), set_mode(129.0, 6.0), set_mode(8.0, 0.0), set_mode(216.0, 0.0)] {
+        assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_ACCEPTED, "{message:?}");
+    }
+    for message in [set_mode(64.0, 0.0), set_mode(4.0, 0.0), set_mode(256.0, 0.0), set_mode(-1.0, 0.0)] {
+        assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_DENIED, "{message:?}");
+    }
+}
+
+#[test]
+fn a_simulator_takes_over_only_while_disarmed() {
+    let message = command(MavCmd::MAV_CMD_DO_SET_MODE, [32.0, 0.0, 0.0, 0.0, 0.0]);
+    for (mode, taken) in [(Mode::Disarmed, true), (Mode::Flying, false), (Mode::Levelling, false)] {
+        let shared = Local::new();
+        report(&shared, mode, 0);
+        Fed::new(&shared).message(&message, 0);
+        assert_eq!(shared.hil.is_raised(), taken, "{mode:?}");
+        assert_eq!(replies(&shared).len(), 1);
+    }
+}
+
+#[test]
+fn commands_nobody_knows_are_answered_as_unsupported() {
+    for known in [MavCmd::MAV_CMD_REQUEST_MESSAGE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, MavCmd::MAV_CMD_NAV_TAKEOFF] {
+        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Disarmed), MavResult::MAV_RESULT_UNSUPPORTED);
+    }
+    // One that is not in the dialect at all is no command: nobody is told that it was for us.
+    let mut payload = [0; 33];
+    payload[28..30].copy_from_slice(&65_000_u16.to_le_bytes());
+    let shared = Local::new();
+    Fed::new(&shared).bytes(&v2_of_payload(1, COMMAND_LONG_DATA::ID, COMMAND_LONG_DATA::EXTRA_CRC, &payload), 0);
+    assert!(replies(&shared).is_empty());
+}
+
+#[test]
+fn commands_for_other_vehicles_are_left_to_them() {
+    for (target_system, target_component, ours) in
+        [(0, 0, true), (1, 1, true), (1, 0, true), (2, 1, false), (1, 100, false)]
+    {
+        let shared = Local::new();
+        Fed::new(&shared).message(&COMMAND_LONG_DATA { target_system, target_component, ..disarm() }, 0);
+        assert_eq!(shared.disarm.is_raised(), ours, "{target_system}/{target_component}");
+    }
+}
+
+#[test]
+fn a_line_that_echoes_does_not_command() {
+    let shared = Local::new();
+    shared.parameters.set(Name::SystemId, 255.0).unwrap();
+    let mut bytes = v2(1, &COMMAND_LONG_DATA { target_system: 0, ..disarm() });
+    bytes[6] = 1;
+    let end = bytes.len() - 2;
+    let checksum = mavlink::calculate_crc(&bytes[1..end], COMMAND_LONG_DATA::EXTRA_CRC);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    Fed::new(&shared).bytes(&bytes, 0);
+    assert!(!shared.disarm.is_raised());
+}
+
+#[test]
+fn a_ground_station_is_heard_by_its_heartbeat_and_nobody_else() {
+    for (mavtype, heard) in [(MavType::MAV_TYPE_GCS, true), (MavType::MAV_TYPE_ONBOARD_CONTROLLER, false)] {
+        let shared = Local::new();
+        let autopilot = MavAutopilot::MAV_AUTOPILOT_INVALID;
+        Fed::new(&shared).message(&HEARTBEAT_DATA { mavtype, autopilot, ..Default::default() }, 1234);
+        assert_eq!(shared.ground_station.get().map(|heard| heard.time), heard.then_some(1234));
+    }
+}
+
+#[test]
+fn a_ping_to_everybody_is_answered_and_an_answer_is_not() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 0, target_component: 0 }, 0);
+    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 1, target_component: 1 }, 0);
+    assert_eq!(
+        replies(&shared),
+        [Reply::Ping(Ping { time_usec: 5, seq: 6, target_system: 255, target_component: 190 })]
+    );
+}
+
+fn set(name: &str, param_value: f32) -> PARAM_SET_DATA {
+    let param_type = MavParamType::MAV_PARAM_TYPE_REAL32;
+    PARAM_SET_DATA { param_value, target_system: 1, target_component: 1, param_id: name.into(), param_type }
+}
+
+#[test]
+fn a_parameter_is_set_and_its_value_told() {
+    let shared = Local::new();
+    Fed::new(&shared).message(&set("TLM_RATE", 50.0), 0);
+    assert_eq!(shared.parameters.get(Name::TelemetryRate), 50.0);
+    assert_eq!(replies(&shared), [Reply::Parameter(Name::TelemetryRate)]);
+}
+
+#[test]
+fn a_value_that_is_not_allowed_changes_nothing_and_is_told_in_words() {
+    for value in [51.0, 9.0, 20.5, f32::NAN, f32::INFINITY, -25.0] {
+        let shared = Local::new();
+        Fed::new(&shared).message(&set("TLM_RATE", value), 0);
+        assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0, "{value}");
+        assert_eq!(texts(&shared), ["TLM_RATE: allowed are 10.0 to 50.0 Hz"]);
+        assert_eq!(replies(&shared), [Reply::Parameter(Name::TelemetryRate)]);
+    }
+    let shared = Local::new();
+    let param_type = MavParamType::MAV_PARAM_TYPE_INT32;
+    Fed::new(&shared).message(&PARAM_SET_DATA { param_type, ..set("TLM_RATE", 50.0) }, 0);
+    assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0);
+}
+
+#[test]
+fn parameters_do_not_change_in_flight() {
+    for mode in Mode::ALL {
+        let shared = Local::new();
+        report(&shared, mode, 0);
+        Fed::new(&shared).message(&set("TLM_RATE", 50.0), 0);
+        assert_eq!(shared.parameters.get(Name::TelemetryRate) == 50.0, !mode.is_armed(), "{mode:?}");
+    }
+}
+
+#[test]
+fn parameters_are_read_by_name_by_index_and_all_together() {
+    let read = |param_index: i16, name: &str| PARAM_REQUEST_READ_DATA {
+        param_index,
+        target_system: 1,
+        target_component: 0,
+        param_id: name.into(),
+    };
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    for (index, row) in PARAMETERS.iter().enumerate() {
+        fed.message(&read(-1, row.name), 0);
+        fed.message(&read(index as i16, ""), 0);
+        assert_eq!(replies(&shared), [Reply::Parameter(row.parameter), Reply::Parameter(row.parameter)]);
+    }
+    for nobody in [read(-1, "K_P"), read(PARAMETERS.len() as i16, ""), read(i16::MIN, "")] {
+        fed.message(&nobody, 0);
+    }
+    fed.message(&set("K_P", 1.0), 0);
+    assert!(replies(&shared).is_empty());
+    fed.message(&PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
+    assert_eq!(replies(&shared), [Reply::AllParameters]);
+}
+
+#[test]
+fn the_vehicle_answers_to_its_new_number_at_once() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.message(&set("SYS_ID", 9.0), 0);
+    fed.message(&disarm(), 0);
+    assert!(!shared.disarm.is_raised());
+    fed.message(&COMMAND_LONG_DATA { target_system: 9, ..disarm() }, 0);
+    assert!(shared.disarm.is_raised());
+}
+
+#[test]
+fn a_flood_of_questions_overflows_nothing() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    for _ in 0..1000 {
+        fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [148.0, 0.0, 0.0, 0.0, 0.0]), 0);
+    }
+    assert_eq!(replies(&shared).len(), REPLIES);
+}

@@ -1,0 +1,272 @@
+//! The link's two tasks on lines that deliver in pieces, fail, end or take nothing more.
+
+use crate::support::line::{Delivery, Incoming, Line, Outgoing};
+use crate::support::receiver::{Local, report};
+use crate::support::{Simulated, v2};
+use controller_core::flight::{Mode, Refusal};
+use controller_core::state::State;
+use core::cell::RefCell;
+use embedded_io_async::{ErrorKind, ErrorType, Read};
+use firmware::link::frame::Parser;
+use firmware::link::receive::receive;
+use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
+use firmware::parameters::table::{Name, PARAMETERS};
+use firmware::shared::{Event, Ping, Reply, Report, Severity, Timing, Traffic};
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
+    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA,
+    SYS_STATUS_DATA,
+};
+use nalgebra::{Quaternion, Vector3};
+
+fn disarm(sequence: u8) -> Vec<u8> {
+    v2(sequence, &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..Default::default() })
+}
+
+#[test]
+fn a_frame_in_pieces_between_faults_is_received() {
+    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
+    let frame = disarm(1);
+    let pieces = frame.chunks(5).map(|piece| Delivery::Bytes(piece.to_vec()));
+    let pieces = pieces.flat_map(|piece| [piece, Delivery::Fault, Delivery::End]);
+    line.borrow_mut().extend(pieces.take(3));
+    line.borrow_mut().push_back(Delivery::Bytes(frame[5..].to_vec()));
+    clock.run(200_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    assert!(shared.disarm.is_raised());
+    assert_eq!(shared.traffic.get().unwrap().value.frames, 1);
+}
+
+#[test]
+fn a_broken_line_does_not_take_all_the_time() {
+    struct Broken(u32);
+    impl ErrorType for Broken {
+        type Error = ErrorKind;
+    }
+    impl Read for Broken {
+        async fn read(&mut self, _: &mut [u8]) -> Result<usize, ErrorKind> {
+            self.0 += 1;
+            assert!(self.0 <= 101, "more than a hundred attempts in a second");
+            Err(ErrorKind::Other)
+        }
+    }
+    let (clock, shared) = (Simulated::default(), Local::new());
+    clock.run(1_000_000, receive(Broken(0), &clock, &shared), |_| ());
+}
+
+#[test]
+fn a_long_burst_is_received_whole() {
+    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
+    let burst = (0..=255).flat_map(disarm).collect();
+    line.borrow_mut().push_back(Delivery::Bytes(burst));
+    clock.run(10_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    assert_eq!(shared.traffic.get().unwrap().value.frames, 256);
+}
+
+/// Everything of one type in what was written.
+fn sent<D: MessageData>(written: &RefCell<Vec<u8>>) -> Vec<D> {
+    let mut parser = Parser::new();
+    let mut found = Vec::new();
+    for &byte in written.borrow().iter() {
+        let frame = parser.push(byte, 0);
+        found.extend(frame.and_then(|frame| frame.decode()));
+    }
+    assert_eq!(parser.discarded(), 0);
+    found
+}
+
+/// Transmits for `duration` us.
+fn transmitted(shared: &Local, duration: u64, each: impl FnMut(u64)) -> RefCell<Vec<u8>> {
+    let (clock, written) = (Simulated::default(), RefCell::default());
+    clock.run(duration, transmit(Outgoing { written: &written, at_once: 7 }, &clock, shared), each);
+    written
+}
+
+fn flying(shared: &Local, time: u64) {
+    let state = State {
+        position: Vector3::new(2.0, 1.0, 3.0),
+        velocity: Vector3::new(0.2, 0.1, 0.3),
+        attitude: Quaternion::identity(),
+        angular_velocity: Vector3::new(0.5, 0.25, 0.125),
+    };
+    let timing = Timing { worst_duration: 2_500, ..Default::default() };
+    shared.report.put(Report { mode: Mode::Flying, state: Some(state), wrench: None, timing }, time);
+}
+
+#[test]
+fn a_heartbeat_goes_out_every_second() {
+    let shared = Local::new();
+    let heartbeats: Vec<HEARTBEAT_DATA> = sent(&transmitted(&shared, 10_000_000, |_| ()));
+    assert_eq!(heartbeats.len(), 10);
+    let HEARTBEAT_DATA { mavtype, autopilot, base_mode, system_status, .. } = heartbeats[0];
+    assert_eq!((mavtype, autopilot), (MavType::MAV_TYPE_QUADROTOR, MavAutopilot::MAV_AUTOPILOT_GENERIC));
+    assert_eq!(system_status, MavState::MAV_STATE_BOOT);
+    assert!(!base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED));
+}
+
+#[test]
+fn the_heartbeat_says_armed_in_the_armed_modes_only() {
+    for mode in Mode::ALL {
+        let shared = Local::new();
+        report(&shared, mode, 0);
+        let heartbeats: Vec<HEARTBEAT_DATA> = sent(&transmitted(&shared, 100_000, |_| ()));
+        let armed = heartbeats[0].base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        assert_eq!(armed, mode.is_armed(), "{mode:?}");
+    }
+}
+
+#[test]
+fn attitude_and_position_go_out_in_mavlinks_frames_as_often_as_asked() {
+    for rate in [10.0, 25.0, 50.0] {
+        let shared = Local::new();
+        shared.parameters.set(Name::TelemetryRate, rate).unwrap();
+        let written = transmitted(&shared, 2_000_000, |now| flying(&shared, now));
+        let attitudes: Vec<ATTITUDE_QUATERNION_DATA> = sent(&written);
+        let positions: Vec<LOCAL_POSITION_NED_DATA> = sent(&written);
+        assert_eq!((attitudes.len(), positions.len()), (2 * rate as usize, 2 * rate as usize));
+        let LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz } = positions[1];
+        assert_eq!(time_boot_ms, 1000 / rate as u32);
+        assert_eq!([x, y, z, vx, vy, vz], [1.0, 2.0, -3.0, 0.1, 0.2, -0.3]);
+        let a = &attitudes[0];
+        // No rotation of ours faces east.
+        let east = [a.q1 - 0.5_f32.sqrt(), a.q2, a.q3, a.q4 - 0.5_f32.sqrt()];
+        assert!(east.iter().all(|part| part.abs() < 1e-6), "{a:?}");
+        assert_eq!([a.rollspeed, a.pitchspeed, a.yawspeed], [0.5, -0.25, -0.125]);
+    }
+}
+
+#[test]
+fn an_old_report_is_not_sent_as_the_present() {
+    let shared = Local::new();
+    let written = transmitted(&shared, 5_000_000, |now| {
+        if now < 1_000_000 {
+            flying(&shared, now);
+        }
+    });
+    let attitudes: Vec<ATTITUDE_QUATERNION_DATA> = sent(&written);
+    assert!(attitudes.len() <= 51, "{}", attitudes.len());
+    let heartbeats: Vec<HEARTBEAT_DATA> = sent(&written);
+    assert_eq!(heartbeats[4].system_status, MavState::MAV_STATE_BOOT);
+}
+
+#[test]
+fn the_battery_is_told_while_it_is_known() {
+    let shared = Local::new();
+    let written = transmitted(&shared, 3_000_000, |now| {
+        flying(&shared, now);
+        shared.traffic.put(Traffic { refused: 70_000, ..Default::default() }, now);
+        if now == 500_000 {
+            shared.voltage.put(11.1, now);
+        }
+    });
+    let statuses: Vec<SYS_STATUS_DATA> = sent(&written);
+    let voltages: Vec<_> = statuses.iter().map(|status| status.voltage_battery).collect();
+    assert_eq!(voltages, [u16::MAX, 11_100, u16::MAX]);
+    let expected = SYS_STATUS_DATA {
+        load: 250,
+        voltage_battery: u16::MAX,
+        current_battery: -1,
+        errors_comm: u16::MAX,
+        battery_remaining: -1,
+        ..statuses[2].clone()
+    };
+    assert_eq!(statuses[2], expected);
+    assert!(statuses[2].onboard_control_sensors_present.is_empty() && statuses[2].drop_rate_comm == 0);
+}
+
+#[test]
+fn commands_are_answered_with_number_and_result() {
+    let shared = Local::new();
+    let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
+    shared.answer(command, Ok(()));
+    shared.answer(command, Err(Refusal::PoseStale));
+    let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
+    shared.replies.put(Reply::Command { command: other, result }).unwrap();
+    let written = transmitted(&shared, 100_000, |_| ());
+    let answers: Vec<COMMAND_ACK_DATA> = sent(&written);
+    let expected = [
+        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_ACCEPTED },
+        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_DENIED },
+        COMMAND_ACK_DATA { command: other, result },
+    ];
+    assert_eq!(answers, expected);
+    // The refusal also goes out in words.
+    let texts: Vec<STATUSTEXT_DATA> = sent(&written);
+    assert_eq!(texts[0].text.to_str().unwrap(), "Refused: no pose for 100 ms");
+    assert_eq!(texts[0].severity, MavSeverity::MAV_SEVERITY_WARNING);
+}
+
+#[test]
+fn what_is_said_to_an_idle_line_goes_out_at_once() {
+    type Say = fn(&Local);
+    let say: [(Say, u32); 3] = [
+        (|shared| shared.answer(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
+        (|shared| shared.announce(Event::new(Severity::Information, "now")), STATUSTEXT_DATA::ID),
+    ];
+    for (say, message) in say {
+        let shared = Local::new();
+        // The next heartbeat is due at a second; telemetry has nothing to tell.
+        shared.parameters.set(Name::TelemetryRate, 10.0).unwrap();
+        let written = transmitted(&shared, 460_000, |now| {
+            if now == 455_000 {
+                say(&shared);
+            }
+        });
+        let mut parser = Parser::new();
+        let mut sent = Vec::new();
+        parser.feed(&written.borrow(), 0, &mut |frame| sent.push(frame.message));
+        assert_eq!(sent.last(), Some(&message), "{sent:?}");
+    }
+}
+
+#[test]
+fn a_ping_goes_back_to_its_sender_as_it_came() {
+    let shared = Local::new();
+    let (time_usec, seq) = (0x0102_0304_0506_0708, 0x090A_0B0C);
+    let ping = Ping { time_usec, seq, target_system: 255, target_component: 190 };
+    shared.replies.put(Reply::Ping(ping.clone())).unwrap();
+    let pings: Vec<Ping> = sent(&transmitted(&shared, 100_000, |_| ()));
+    assert_eq!(pings, [ping]);
+}
+
+#[test]
+fn every_parameter_is_listed_with_its_place() {
+    let shared = Local::new();
+    shared.replies.put(Reply::AllParameters).unwrap();
+    let values: Vec<PARAM_VALUE_DATA> = sent(&transmitted(&shared, 1_000_000, |_| ()));
+    assert_eq!(values.len(), PARAMETERS.len());
+    for (index, (value, row)) in values.iter().zip(&PARAMETERS).enumerate() {
+        assert_eq!((usize::from(value.param_index), usize::from(value.param_count)), (index, PARAMETERS.len()));
+        assert_eq!((value.param_id.to_str().unwrap(), value.param_value), (row.name, row.default));
+    }
+}
+
+#[test]
+fn too_many_events_lose_the_last_ones_and_say_how_many() {
+    let shared = Local::new();
+    for number in 0..11 {
+        shared.announce(Event::new(Severity::Information, number));
+    }
+    let texts: Vec<STATUSTEXT_DATA> = sent(&transmitted(&shared, 2_000_000, |_| ()));
+    let texts: Vec<_> = texts.iter().map(|text| text.text.to_str().unwrap()).collect();
+    let told: Vec<_> = texts.iter().filter(|text| text.ends_with("lost")).collect();
+    assert_eq!(told, [&"3 events lost"]);
+    let rest: Vec<_> = texts.iter().filter(|text| !text.ends_with("lost")).copied().collect();
+    assert_eq!(rest, ["0", "1", "2", "3", "4", "5", "6", "7"]);
+}
+
+#[test]
+fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
+    let (clock, shared, written) = (Simulated::default(), Local::new(), RefCell::default());
+    let stuck = Outgoing { written: &written, at_once: 0 };
+    let mut waiting = Vec::new();
+    clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, &shared), |now| {
+        flying(&shared, now);
+        if shared.events.put(Event::new(Severity::Warning, "one of many")).is_ok() {
+            waiting.push(now);
+        }
+    });
+    // Events are taken, each one given up in its time, even though telemetry is always due.
+    assert!(waiting.iter().any(|&time| time > 10 * WRITE_TIME_MAX), "{waiting:?}");
+}

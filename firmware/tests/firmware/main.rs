@@ -1,0 +1,20 @@
+//! The tasks as the boards run them, under a simulated clock, with the `mavlink` crate as the other end of the line.
+
+#![expect(deprecated, reason = "PING's fields are, and clients still send it")]
+
+mod control;
+mod embedded;
+mod hil_answers;
+mod hil_lines;
+mod hil_takeover;
+mod imu;
+mod journal;
+mod link_commands;
+mod link_frames;
+mod link_messages;
+mod link_poses;
+mod link_setpoints;
+mod link_tasks;
+mod parameters;
+mod status;
+mod support;

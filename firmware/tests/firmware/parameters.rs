@@ -1,0 +1,157 @@
+//! Parameters over a reboot, in flash like that of the boards, and in flash that fails.
+
+use crate::support::Simulated;
+use crate::support::chip::{Chip, RECORDS, Words};
+use crate::support::receiver::{Local, report, texts};
+use controller_core::flight::Mode;
+use firmware::hardware::{Flash, Record};
+use firmware::parameters::storage::Storage;
+use firmware::parameters::table::{Name, PARAMETERS};
+use std::cell::RefCell;
+
+/// What a boot finds.
+fn booted<const WORD: usize>(chip: &RefCell<Chip>) -> Local {
+    let shared = Local::new();
+    Storage::load(Words::<WORD>(chip), &shared);
+    shared
+}
+
+/// Boots, and keeps parameters for `duration`, us.
+fn kept<const WORD: usize>(chip: &RefCell<Chip>, shared: &Local, duration: u64, each: impl FnMut(u64)) {
+    let (clock, mut storage) = (Simulated::default(), Storage::load(Words::<WORD>(chip), shared));
+    clock.run(duration, storage.keep(&clock, shared), each);
+}
+
+fn values_survive_a_reboot<const WORD: usize>() {
+    let chip = Chip::erased();
+    let shared = booted::<WORD>(&chip);
+    assert!(texts(&shared).is_empty(), "an empty flash is no fault");
+    // More values than fit in both sectors.
+    kept::<WORD>(&chip, &shared, 600_000, |now| {
+        shared.parameters.set(Name::HorizontalSpeed, 1.0 + now as f32 * 1e-5).unwrap();
+        shared.parameters.set(Name::SystemId, 42.0).unwrap();
+    });
+    assert!(chip.borrow().writes > 2 * RECORDS);
+    let last = shared.parameters.get(Name::HorizontalSpeed);
+    let shared = booted::<WORD>(&chip);
+    assert_eq!(shared.parameters.get(Name::SystemId), 42.0);
+    assert_eq!(shared.parameters.get(Name::HorizontalSpeed), last);
+    assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0);
+}
+
+#[test]
+fn values_survive_a_reboot_on_flash_of_32_byte_words() {
+    values_survive_a_reboot::<32>();
+}
+
+#[test]
+fn values_survive_a_reboot_on_flash_of_4_byte_words() {
+    values_survive_a_reboot::<4>();
+}
+
+#[test]
+fn nothing_is_written_while_armed() {
+    let (chip, shared) = (Chip::erased(), Local::new());
+    kept::<4>(&chip, &shared, 3_000_000, |now| {
+        report(&shared, if now < 2_000_000 { Mode::Flying } else { Mode::Disarmed }, now);
+        shared.parameters.set(Name::BatteryLow, 10.0).unwrap();
+        assert!(now >= 2_000_000 || chip.borrow().writes == 0);
+    });
+    assert_eq!(booted::<4>(&chip).parameters.get(Name::BatteryLow), 10.0);
+}
+
+#[test]
+fn a_value_that_did_not_change_wears_nothing() {
+    let (chip, shared) = (Chip::erased(), Local::new());
+    kept::<4>(&chip, &shared, 100_000, |_| shared.parameters.set(Name::BatteryLow, 10.0).unwrap());
+    let writes = chip.borrow().writes;
+    let shared = booted::<4>(&chip);
+    kept::<4>(&chip, &shared, 100_000, |_| shared.parameters.set(Name::BatteryLow, 10.0).unwrap());
+    assert_eq!(chip.borrow().writes, writes);
+}
+
+#[test]
+fn damaged_bytes_never_become_a_value_out_of_range() {
+    for place in 0..200 {
+        for damage in [0x00, 0x55] {
+            let (chip, shared) = (Chip::erased(), Local::new());
+            kept::<4>(&chip, &shared, 10_000, |_| shared.parameters.set(Name::SystemId, 42.0).unwrap());
+            chip.borrow_mut().bytes[place] = damage;
+            let shared = booted::<4>(&chip);
+            assert!([1.0, 42.0].contains(&shared.parameters.get(Name::SystemId)), "byte {place}");
+        }
+    }
+}
+
+/// A record as it is in flash, from the values' bits; its checksum by dividing bit after bit, the highest first.
+fn record(number: u32, values: &[f32]) -> Record {
+    let mut record = [u32::MAX; 16];
+    (record[0], record[1]) = (number, values.len() as u32);
+    record[2..].iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
+    let bits = record[..15].iter().flat_map(|word| (0..32).map(move |bit| (word >> bit) & 1));
+    let remainder = bits.fold(u32::MAX, |remainder, bit| {
+        let divisor = if remainder >> 31 == bit { 0 } else { 0x04C1_1DB7 };
+        (remainder << 1) ^ divisor
+    });
+    record[15] = !remainder.reverse_bits();
+    record
+}
+
+/// A chip in which another firmware left these values.
+fn chip_with(values: &[f32]) -> RefCell<Chip> {
+    let chip = Chip::erased();
+    Words::<4>(&chip).write(0, &record(1, values)).unwrap();
+    chip
+}
+
+#[test]
+fn a_stored_value_out_of_range_is_told_and_the_default_taken() {
+    for value in [0.0_f32, 256.0, f32::NAN] {
+        let shared = booted::<4>(&chip_with(&[value, 25.0, 7.0, 2.0, 0.0]));
+        assert_eq!(shared.parameters.get(Name::SystemId), 1.0);
+        assert_eq!(shared.parameters.get(Name::HorizontalSpeed), 7.0);
+        assert_eq!(texts(&shared), ["SYS_ID: stored value unusable, default taken"]);
+    }
+}
+
+#[test]
+fn records_of_firmware_with_fewer_parameters_and_with_more_are_read() {
+    let shared = booted::<4>(&chip_with(&[42.0, 30.0]));
+    let values = PARAMETERS.map(|row| shared.parameters.get(row.parameter));
+    assert_eq!(values, [42.0, 30.0, 5.0, 2.0, 0.0]);
+    let shared = booted::<4>(&chip_with(&[42.0, 30.0, 7.0, 3.0, 11.0, 1e9, f32::NAN]));
+    let values = PARAMETERS.map(|row| shared.parameters.get(row.parameter));
+    assert_eq!(values, [42.0, 30.0, 7.0, 3.0, 11.0]);
+    assert!(texts(&shared).is_empty());
+}
+
+#[test]
+fn flash_that_fails_is_told_and_flown_without() {
+    let chip = Chip::erased();
+    chip.borrow_mut().fails = true;
+    let shared = booted::<4>(&chip);
+    assert_eq!(texts(&shared), ["Parameters: stored values unusable, defaults taken"]);
+    let shared = Local::new();
+    kept::<4>(&chip, &shared, 10_000, |_| shared.parameters.set(Name::SystemId, 42.0).unwrap());
+    let texts = texts(&shared);
+    assert_eq!(texts, ["Parameters: stored values unusable, defaults taken", "SYS_ID: set, but could not be saved"]);
+}
+
+#[test]
+fn a_value_that_could_not_be_saved_is_not_tried_again_and_again() {
+    let (chip, shared) = (Chip::erased(), Local::new());
+    chip.borrow_mut().worn = true;
+    kept::<4>(&chip, &shared, 60_000_000, |_| shared.parameters.set(Name::SystemId, 42.0).unwrap());
+    assert_eq!(chip.borrow().writes, 2);
+    assert_eq!(texts(&shared), ["SYS_ID: set, but could not be saved"]);
+}
+
+#[test]
+fn the_table_is_in_order_and_within_mavlinks_limits() {
+    for (index, row) in PARAMETERS.iter().enumerate() {
+        assert_eq!(row.parameter as usize, index);
+        assert!(row.name.len() <= 16 && row.allows(row.default) && row.least < row.most, "{row:?}");
+        assert!(PARAMETERS.iter().filter(|other| other.name == row.name).count() == 1);
+        assert_eq!(Name::from_name(row.name), Some(row.parameter));
+    }
+}

@@ -1,0 +1,266 @@
+//! What the program can be asked on its command line, in clap's terms, and what of it is refused.
+
+use clap::{ArgGroup, Args, Parser, Subcommand};
+use host_sim::hil::Session;
+use host_sim::hil::port::Address;
+use host_sim::tune::requirements::Requirements;
+use scenario::stability::LoopMargin;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Longest recovery that a search may fly thousands of times, s.
+const GREATEST_RECOVERY: f64 = 3600.0;
+
+/// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = false, after_help = HELP)]
+pub struct Arguments {
+    /// What to do; left out: fly the paper's scenario.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+const HELP: &str = "\
+Examples:
+  host-sim                                   the paper's experiment: 40 s from upside down
+  host-sim fly scenarios/circle.toml         another flight; results in flights/circle
+  host-sim fly mine.toml --out results       choose where the results go
+  host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
+  host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
+  host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
+  host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
+                                             the vehicle alone, for firmware in an emulator or on a board
+
+A scenario file is TOML: start from one in scenarios/ or vehicles/; docs/scenario-file.md describes every key.
+
+Exit status:
+  0         every claim holds (certify: the scenario may fly; tune: gains were found; law: the input ended)
+  1         a well-posed run that fails: a claim, an inequality of the certificate, a sampled loop that is unstable or without
+            margin, a flight that does not reach or hold its reference, gains that were not found
+  2         input that cannot be used, or output that cannot be written; one line on stderr says what and why
+  130, 143  interrupted by SIGINT or SIGTERM";
+
+const FLY_HELP: &str = "\
+Besides the file's limits and the certificate's bounds a flight claims
+- that its sampled loops are stable, with 1.5 times the gain, 1 / 1.5 of it or 2 ms more delay;
+- that it reached its reference for good within the first 90 % of its duration: from then on its position is within 0.2 m
+  of the reference's and its attitude, heading included, within 0.05 (modified Rodrigues parameters; 11 degrees).
+It is flown whatever it claims. Interrupted, it leaves no file.";
+
+const CERTIFY_HELP: &str = "\
+CERTIFIED means two things. The commands are proven to stay within every limit, whatever the vehicle does: that is the
+certificate, and it says nothing about stability. And small motions about hover die out at this rate, delay and rotor lag:
+that is an analysis of the sampled loops, each of which must be stable with 1.5 times its gain, with 1 / 1.5 of it, and with
+2 ms more delay. docs/certificate.md and docs/sampled-loop.md tell how to read the tables.";
+
+/// One command.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Fly a scenario; write log.csv, figures and a report; print claims and verdicts.
+    #[command(after_help = FLY_HELP)]
+    Fly {
+        /// Scenario file [default: the paper's, built in]
+        file: Option<PathBuf>,
+        /// Directory for the results [default: flights/<name>]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Fly even if log.csv will take more than 1 GB
+        #[arg(long)]
+        large_log: bool,
+    },
+    /// Say whether a scenario may fly: prove its commands' limits, down to each rotor, and judge its sampled loops.
+    #[command(after_help = CERTIFY_HELP)]
+    Certify {
+        /// Scenario file [default: the paper's, built in]
+        file: Option<PathBuf>,
+    },
+    /// Search gains: everything certifies; then the least height lost from upside down; then the greatest k_p.
+    #[command(after_help = TUNE_HELP)]
+    Tune(TuneArguments),
+    /// Serve the control law alone, lock-step on standard input and output.
+    #[command(after_help = LAW_HELP)]
+    Law {
+        /// Scenario file whose vehicle and gains are used [default: the paper's, built in]
+        file: Option<PathBuf>,
+    },
+    /// Be the vehicle of a flight controller that runs elsewhere, lock-step over MAVLink.
+    #[command(after_help = HIL_HELP)]
+    Hil(HilArguments),
+}
+
+/// What a session with a flight controller is asked to be.
+#[derive(Args)]
+#[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
+pub struct HilArguments {
+    /// Scenario file: vehicle, rotors, delay; it starts on the ground below its initial position
+    pub file: PathBuf,
+    /// Find the flight controller at this address
+    #[arg(long, value_name = "HOST:PORT")]
+    connect: Option<String>,
+    /// Wait at this address for the flight controller
+    #[arg(long, value_name = "HOST:PORT")]
+    listen: Option<String>,
+    /// End after so much vehicle time, s [default: when the other side goes]
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+    /// Withhold the pose from this vehicle time on, s: a pose source that fails
+    #[arg(long, value_name = "SECONDS")]
+    pose_until: Option<f64>,
+    /// Longest wait for the other side, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    patience: f64,
+    /// Write a row for each command: state, commands, thrust
+    #[arg(long, value_name = "FILE.csv")]
+    pub log: Option<PathBuf>,
+}
+
+/// What a search is asked for.
+#[derive(Args)]
+pub struct TuneArguments {
+    /// Scenario file: vehicle, limits, rotors, delay, reference; its gains are where the search starts
+    pub file: PathBuf,
+    /// Scenario file to write [default: <name>-tuned.toml]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Least margin of every inequality, as a fraction
+    #[arg(long, default_value_t = 0.05)]
+    margin: f64,
+    /// Least gain margin of every sampled loop, as a factor, 1.5 or more: at the actuators, and of k_p and k_v together
+    #[arg(long, default_value_t = 2.0)]
+    gain_margin: f64,
+    /// Least delay margin of every sampled loop, ms, 2 or more
+    #[arg(long, default_value_t = 3.0)]
+    delay_margin: f64,
+    /// Greatest position error of the file's own flight in its last quarter, m
+    #[arg(long, default_value_t = 1e-3)]
+    position_error: f64,
+    /// Greatest norm of its modified Rodrigues parameters there
+    #[arg(long, default_value_t = 1e-4)]
+    mrp_error: f64,
+    /// How long a recovery from upside down may take, s; its last quarter must be still
+    #[arg(long, default_value_t = 20.0)]
+    recovery: f64,
+    /// Keep the paper's thrust T = m |u|: no thrust projection
+    #[arg(long)]
+    no_projection: bool,
+    /// Generations of each of the two stages; 48 candidates each
+    #[arg(long, default_value_t = 150)]
+    pub generations: u32,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Also report the largest factor by which the reference bounds could grow with these gains
+    #[arg(long)]
+    pub widen: bool,
+}
+
+const TUNE_HELP: &str = "\
+The height lost is the start less the lowest point of a flight from the paper's first attitude (roll -179 degrees, yaw
+100 degrees off the heading), at rest, on a hover reference where it starts. Printed at the end: the frontier of height lost against k_p with the inequality that limits each, and
+the answer: the greatest k_p within 5 % of the least height.
+
+Interrupted, a search writes the best it has found so far and says so; the exit status is then 130 or 143. If it has found
+nothing yet, it writes nothing.";
+
+const LAW_HELP: &str = "\
+One line of 33 numbers in, one line of 4 numbers out, flushed, until end of input. SI units, rad, world z up.
+  in:   t dt | x(3) v(3) | q(4) as x y z w, body to world | omega(3) body |
+        reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
+  out:  thrust [N], torque x y z [N m]; not clipped to any limit
+The output uses the filters as they stand, which then advance by the line's dt (0 < dt <= 0.1 s). A line that cannot
+be used is answered by \"error: ...\" on its turn and changes nothing.";
+
+const HIL_HELP: &str = "\
+The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the file's order. Each moves
+the vehicle on by one control period, and is answered by ODOMETRY and HIL_SENSOR with the time of the command. Vehicle time
+counts from the first command.
+
+With QEMU, from the top of the repository (this firmware's emulated board; its second serial port is for the ground station):
+  cargo build --profile board -p firmware --target thumbv7em-none-eabihf --no-default-features --features mps2 --bin mps2
+  qemu-system-arm -M mps2-an386 -display none -monitor none -icount shift=0,sleep=off \\
+    -serial tcp:127.0.0.1:5760,server=on,nodelay=on -serial tcp:127.0.0.1:5761,server=on,wait=off,nodelay=on \\
+    -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
+  cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
+With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
+
+Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is then 130 or 143.";
+
+impl HilArguments {
+    /// Where the other side is to be found.
+    ///
+    /// # Errors
+    /// If neither is given; clap does not let that pass.
+    pub fn address(&self) -> Result<Address, String> {
+        match (&self.connect, &self.listen) {
+            (Some(address), _) => Ok(Address::Connect(address.clone())),
+            (None, Some(address)) => Ok(Address::Listen(address.clone())),
+            (None, None) => Err("--connect or --listen: one is needed".to_owned()),
+        }
+    }
+
+    /// The longest wait for the other side.
+    ///
+    /// # Errors
+    /// Names the argument if it is no time.
+    pub fn patience(&self) -> Result<Duration, String> {
+        let patience = Duration::try_from_secs_f64(self.patience).ok().filter(|patience| !patience.is_zero());
+        patience.ok_or_else(|| format!("--patience: must be greater than zero, found {}", self.patience))
+    }
+
+    /// The session's times.
+    ///
+    /// # Errors
+    /// Names the argument that is no time.
+    pub fn session(&self) -> Result<Session, String> {
+        let times = [("--duration", self.duration), ("--pose-until", self.pose_until)];
+        for (name, time) in times {
+            if let Some(time) = time.filter(|time| !(*time >= 0.0 && time.is_finite())) {
+                return Err(format!("{name}: must not be negative, found {time}"));
+            }
+        }
+        Ok(Session { duration: self.duration, pose_until: self.pose_until })
+    }
+}
+
+impl TuneArguments {
+    /// What gains must meet.
+    ///
+    /// # Errors
+    /// Names the argument that asks for something impossible, or for less than what may fly.
+    pub fn requirements(&self) -> Result<Requirements, String> {
+        let least = LoopMargin::LEAST;
+        let positive =
+            [("--position-error", self.position_error), ("--mrp-error", self.mrp_error), ("--recovery", self.recovery)];
+        if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
+            return Err(format!("{name}: must be greater than zero and finite, found {value}"));
+        }
+        if self.recovery > GREATEST_RECOVERY {
+            return Err(format!("--recovery: must be at most {GREATEST_RECOVERY} s, found {}", self.recovery));
+        }
+        if !(0.0..1.0).contains(&self.margin) {
+            return Err(format!("--margin: must be from 0 to below 1, found {}", self.margin));
+        }
+        let margins = [
+            ("--gain-margin", self.gain_margin, least.gain, ""),
+            ("--delay-margin", self.delay_margin, 1e3 * least.delay, " ms"),
+        ];
+        for (name, found, least, unit) in margins {
+            if !(found >= least && found.is_finite()) {
+                return Err(format!(
+                    "{name}: must be at least {least}{unit}, which certify asks for, and finite; found {found}"
+                ));
+            }
+        }
+        if self.generations == 0 {
+            return Err("--generations: must be at least 1, found 0".to_owned());
+        }
+        Ok(Requirements {
+            margin: self.margin,
+            loops: LoopMargin { gain: self.gain_margin, delay: 1e-3 * self.delay_margin },
+            position_error: self.position_error,
+            mrp_error: self.mrp_error,
+            recovery: self.recovery,
+            projection: !self.no_projection,
+        })
+    }
+}

@@ -1,0 +1,66 @@
+//! Each claim holds where it should and can fail.
+
+use super::*;
+use crate::flight::Flight;
+
+fn judged(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
+    claims(scenario, &Verdict::of(scenario).unwrap(), flown)
+}
+
+fn flown(scenario: &Scenario) -> Flown {
+    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
+}
+
+#[test]
+fn theorem_1_gives_the_papers_published_interval() {
+    let thrust = Certificate::new(&Scenario::paper().unwrap().configuration).unwrap().printed.thrust;
+    assert!((thrust.least - 3.51).abs() < 0.005 && (thrust.greatest - 6.19).abs() < 0.005, "{thrust:?}");
+}
+
+#[test]
+fn only_the_papers_scenario_carries_the_published_figures() {
+    let paper = Scenario::paper().unwrap();
+    let renamed = Scenario { name: "mine".into(), ..paper.clone() };
+    let mut other = paper.clone();
+    other.initial.position.x += 1.0;
+    let count = |scenario: &Scenario| {
+        let claims = judged(scenario, &Flown::new(scenario));
+        claims.iter().filter(|claim| claim.claim.contains("published")).count()
+    };
+    assert_eq!((count(&paper), count(&renamed), count(&other)), (4, 4, 0));
+}
+
+#[test]
+fn each_claim_can_fail() {
+    let paper = Scenario::paper().unwrap();
+    let good = flown(&paper);
+    assert!(all_hold(&judged(&paper, &good)), "{}", table(&judged(&paper, &good)));
+    let broken: [fn(&mut Flown); 9] = [
+        |flown| flown.steady_position_error = 1.1e-3,
+        |flown| flown.steady_mrp_error = 1.1e-4,
+        |flown| flown.thrust = (3.5, 6.0),
+        |flown| flown.thrust = (3.6, 6.2),
+        |flown| flown.torque = [0.3, 0.1, 0.1],
+        |flown| flown.torque = [0.1, 0.34, 0.1],
+        |flown| flown.torque = [0.1, 0.1, 0.49],
+        |flown| flown.filter = 2.000_001,
+        |flown| flown.clipped = 1,
+    ];
+    for spoil in broken {
+        let mut flown = good.clone();
+        spoil(&mut flown);
+        assert!(!all_hold(&judged(&paper, &flown)), "{flown:?}");
+    }
+}
+
+#[test]
+fn what_a_weak_vehicle_cannot_deliver_is_counted_and_fails() {
+    let text = scenario::PAPER.replace("thrust_max = 7.0", "thrust_max = 4.9");
+    let weak = Scenario::parse(&text, "weak").unwrap();
+    let seen = flown(&weak);
+    assert!(seen.clipped > 100, "{seen:?}");
+    let failed: Vec<String> =
+        judged(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
+    let late = "within 0.2 m of the reference for good";
+    assert_eq!(failed, [late, "thrust, vehicle's limit", "ticks with a clipped command"]);
+}

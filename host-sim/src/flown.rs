@@ -1,0 +1,137 @@
+//! What a flight showed, gathered tick by tick: the extremes that claims and searches judge.
+//!
+//! "Steady state" is the last quarter of a flight: of the paper's 40 s, the last 10. A flight has *reached* its reference once
+//! it is near it and stays near it until the end: in position within [`NEAR_POSITION`], in attitude, heading included,
+//! within [`NEAR_MRP`].
+
+use crate::flight::{Flight, FlightError, Tick};
+use scenario::Scenario;
+
+/// How near to its reference's position a vehicle must stay, m: less than a quadrotor's own size.
+pub const NEAR_POSITION: f64 = 0.2;
+/// How near to the desired attitude, norm of the modified Rodrigues parameters: 11 degrees.
+pub const NEAR_MRP: f64 = 0.05;
+/// Extremes of no value at all.
+const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+/// The extremes of a flight, gathered tick by tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flown {
+    steady_from_us: u64,
+    /// Until when the vehicle was, or may have been, away from its reference in position and in attitude, us.
+    away_until_us: (u64, u64),
+    period_us: u64,
+    last_sign: Option<f32>,
+    start_height: Option<f64>,
+    /// Ticks seen.
+    pub ticks: u64,
+    /// Least and greatest commanded thrust, N.
+    pub thrust: (f64, f64),
+    /// Greatest commanded |torque| about each body axis, N m.
+    pub torque: [f64; 3],
+    /// Least and greatest thrust commanded of each rotor, N; empty without rotors.
+    pub rotors: Vec<(f64, f64)>,
+    /// Greatest component of u_f and u_s, m/s^2.
+    pub filter: f64,
+    /// Ticks at which the plant clipped a command.
+    pub clipped: u64,
+    /// Changes of m*.
+    pub lift_changes: u64,
+    /// Greatest position error in steady state, m.
+    pub steady_position_error: f64,
+    /// Greatest norm of the modified Rodrigues parameters in steady state.
+    pub steady_mrp_error: f64,
+    /// Start minus lowest height, m.
+    pub height_lost: f64,
+}
+
+impl Flown {
+    /// Nothing seen yet of a flight of `scenario`.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        let timing = &scenario.timing;
+        Self {
+            steady_from_us: (timing.ticks - timing.ticks / 4) * timing.period_us,
+            away_until_us: (0, 0),
+            period_us: timing.period_us,
+            last_sign: None,
+            start_height: None,
+            ticks: 0,
+            thrust: NOTHING_YET,
+            torque: [0.0; 3],
+            rotors: Vec::new(),
+            filter: 0.0,
+            clipped: 0,
+            lift_changes: 0,
+            steady_position_error: 0.0,
+            steady_mrp_error: 0.0,
+            height_lost: 0.0,
+        }
+    }
+
+    /// Takes one tick into account.
+    pub fn observe(&mut self, tick: &Tick) {
+        let (wrench, diagnostics) = (&tick.wrench, &tick.diagnostics);
+        let thrust = f64::from(wrench.thrust);
+        self.ticks += 1;
+        self.thrust = (self.thrust.0.min(thrust), self.thrust.1.max(thrust));
+        for (greatest, torque) in self.torque.iter_mut().zip(wrench.torque.iter()) {
+            *greatest = greatest.max(f64::from(torque.abs()));
+        }
+        self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
+        // While the first command is on its way there is none.
+        self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), NOTHING_YET);
+        for (extremes, thrust) in self.rotors.iter_mut().zip(&tick.rotor_thrusts) {
+            let thrust = f64::from(*thrust);
+            *extremes = (extremes.0.min(thrust), extremes.1.max(thrust));
+        }
+        self.clipped += u64::from(tick.clipped);
+        self.lift_changes += u64::from(self.last_sign.is_some_and(|sign| sign != diagnostics.lift_sign));
+        self.last_sign = Some(diagnostics.lift_sign);
+        let height = tick.state.position.z;
+        self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
+        let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
+        let mrp_error = f64::from(diagnostics.mrp.norm());
+        if position_error > NEAR_POSITION {
+            self.away_until_us.0 = tick.time_us + self.period_us;
+        }
+        if mrp_error > NEAR_MRP {
+            self.away_until_us.1 = tick.time_us + self.period_us;
+        }
+        if tick.time_us >= self.steady_from_us {
+            self.steady_position_error = self.steady_position_error.max(position_error);
+            self.steady_mrp_error = self.steady_mrp_error.max(mrp_error);
+        }
+    }
+
+    /// When the vehicle reached its reference's position for good, s; none if it was away from it at the last tick.
+    #[must_use]
+    pub fn position_reached(&self) -> Option<f64> {
+        self.reached(self.away_until_us.0)
+    }
+
+    /// When it reached the desired attitude for good, s; none likewise.
+    #[must_use]
+    pub fn attitude_reached(&self) -> Option<f64> {
+        self.reached(self.away_until_us.1)
+    }
+
+    fn reached(&self, away_until_us: u64) -> Option<f64> {
+        (away_until_us < self.ticks * self.period_us).then_some(away_until_us as f64 / 1e6)
+    }
+
+    /// Flies a whole `flight` of `scenario` from its start.
+    ///
+    /// # Errors
+    /// If it cannot be flown to its end.
+    pub fn over(scenario: &Scenario, mut flight: Flight) -> Result<Self, FlightError> {
+        let mut flown = Self::new(scenario);
+        for _ in 0..scenario.timing.ticks {
+            flown.observe(&flight.tick()?);
+        }
+        Ok(flown)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,20 @@
+//! What is asked of gains that a search may present.
+
+use scenario::stability::LoopMargin;
+
+/// What every accepted candidate meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Requirements {
+    /// Least relative margin of every inequality.
+    pub margin: f64,
+    /// Least margin of every sampled loop; not below [`LoopMargin::LEAST`].
+    pub loops: LoopMargin,
+    /// Greatest position error of the file's own flight in its last quarter, m.
+    pub position_error: f64,
+    /// Greatest norm of its modified Rodrigues parameters there.
+    pub mrp_error: f64,
+    /// How long a recovery from upside down may take, s; its last quarter must be still.
+    pub recovery: f64,
+    /// Whether the thrust projection may be used.
+    pub projection: bool,
+}

@@ -1,0 +1,186 @@
+//! A whole scenario file: its sections, read into one flight that can be flown.
+
+use crate::body::BodyState;
+use crate::reference::ReferenceKind;
+use crate::sampled_loop::{self, LoopModel};
+use crate::section::{FieldError, Section};
+use crate::timing::Timing;
+use crate::{actuation, bounds, initial, vehicle};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
+use controller_core::reference::Trajectory;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+use toml::Table;
+
+/// The paper's Section VI, built in.
+pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
+
+/// What a scenario file may hold at its top level.
+const SECTIONS: [&str; 12] = [
+    "name",
+    "duration",
+    "vehicle",
+    "limits",
+    "gains",
+    "control",
+    "plant",
+    "rotors",
+    "sampling",
+    "initial",
+    "reference",
+    "reference_bounds",
+];
+
+/// A flight that can be flown.
+#[derive(Clone)]
+pub struct Scenario {
+    /// Names the flight and its output directory.
+    pub name: String,
+    /// Duration, control period, plant step.
+    pub timing: Timing,
+    /// Vehicle, limits, gains, the reference's bounds, thrust floor, rotors: what a certificate would be about. Without
+    /// rotors thrust and torque act directly.
+    pub configuration: Configuration,
+    /// First-order lag of the rotors' speeds, s; zero for none.
+    pub rotor_lag: f64,
+    /// From a tick to the moment its wrench acts, plant steps.
+    pub delay_steps: u64,
+    /// Where it starts.
+    pub initial: BodyState,
+    /// What it is asked to do, as the file says it.
+    pub reference: ReferenceKind,
+    /// The same, ready to be evaluated.
+    pub trajectory: Arc<dyn Trajectory + Send + Sync>,
+}
+
+impl Scenario {
+    /// The paper's scenario.
+    ///
+    /// # Errors
+    /// Never, as long as the built-in file is right; a test reads it.
+    pub fn paper() -> Result<Self, ScenarioError> {
+        Self::parse(PAPER, "scenarios/paper.toml (built in)")
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ScenarioError`]: unreadable, no TOML, or a field that was refused.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&text, &file),
+            Err(error) => Err(ScenarioError { file, what: format!("cannot be read: {error}") }),
+        }
+    }
+
+    /// Reads `text`; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
+        let refuse = |what: String| ScenarioError { file: file.to_owned(), what };
+        let table: Table = text.parse().map_err(|error| refuse(syntax(text, &error)))?;
+        Self::read(&Section::root(&table)).map_err(|error| refuse(error.to_string()))
+    }
+
+    fn read(root: &Section) -> Result<Self, FieldError> {
+        root.allow(&SECTIONS)?;
+        let name = read_name(root)?;
+        let timing = Timing::read(root)?;
+        let reference = ReferenceKind::read(root)?;
+        let trajectory = reference.build().map_err(|error| root.refused(&error))?;
+        let bounds = bounds::read_bounds(root, &trajectory.bounds())?;
+        let delay_steps = actuation::read_delay(root, &timing)?;
+        let configuration = vehicle::read_configuration(root, &bounds)?;
+        let (configuration, rotor_lag) = actuation::read_rotors(root, configuration)?;
+        let start = trajectory.at(0).position.map(f64::from);
+        let initial = initial::read_initial(root, start, timing.step())?;
+        Ok(Self { name, timing, configuration, rotor_lag, delay_steps, initial, reference, trajectory })
+    }
+
+    /// From a tick to the moment its wrench acts, s.
+    #[must_use]
+    pub fn delay(&self) -> f64 {
+        self.delay_steps as f64 * self.timing.step()
+    }
+
+    /// The sampled loops of its vehicle, gains, rotors and timing.
+    ///
+    /// # Errors
+    /// If the timing is outside the model's range; no file that was read leads there.
+    pub fn loops(&self) -> Result<LoopModel, ParameterError> {
+        let period = self.timing.period();
+        let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples: self.delay() / period };
+        LoopModel::new(self.configuration.vehicle(), self.configuration.gains(), timing)
+    }
+
+    /// Whether `other` is the same flight, whatever its name.
+    #[must_use]
+    pub fn flies_like(&self, other: &Self) -> bool {
+        self.timing == other.timing
+            && self.configuration == other.configuration
+            && self.rotor_lag == other.rotor_lag
+            && self.delay_steps == other.delay_steps
+            && self.initial == other.initial
+            && self.reference == other.reference
+    }
+
+    /// Whether this is the paper's scenario, whatever its name: then the paper's published figures are claims about it.
+    #[must_use]
+    pub fn is_papers(&self) -> bool {
+        Self::paper().is_ok_and(|paper| self.flies_like(&paper))
+    }
+}
+
+/// A scenario that cannot be flown: one line with the file, the field, what is wrong and what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScenarioError {
+    /// The file as given.
+    pub file: String,
+    /// Field and problem, or the place of a syntax error.
+    pub what: String,
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.file, self.what)
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// Refuses a scenario's name that is not safe as a directory's.
+///
+/// # Errors
+/// Names `name`.
+pub fn check_name(name: &str) -> Result<(), FieldError> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    if !name.is_empty() && name.len() <= 64 && name.chars().all(plain) && !name.starts_with('.') {
+        Ok(())
+    } else {
+        let allowed = "must be 1 to 64 letters, digits, '-', '_' or '.', not starting with '.'";
+        Err(FieldError::new("name", format!("{allowed}, found {name:?}")))
+    }
+}
+
+fn read_name(root: &Section) -> Result<String, FieldError> {
+    let name = root.text("name")?;
+    check_name(name).map(|()| name.to_owned())
+}
+
+/// A syntax error in one line, with its place.
+fn syntax(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().replace('\n', "; ");
+    let Some(before) = error.span().and_then(|span| text.get(..span.start)) else {
+        return format!("not TOML: {message}");
+    };
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    format!("line {line}, column {column}: not TOML: {message}")
+}
+
+#[cfg(test)]
+mod tests;

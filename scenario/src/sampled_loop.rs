@@ -1,0 +1,211 @@
+//! The sampled loop with real actuators, linearised about hover: will these gains hold still on this vehicle?
+//!
+//! The paper's proofs are for continuous time and ideal actuators. On a vehicle the law is evaluated every h seconds, its
+//! wrench arrives d samples late and is held, and rotors follow it with a first-order lag. Near the origin the saturations
+//! have unit slope and the axes separate, so each axis is a linear sampled loop whose transition matrix is known exactly:
+//!
+//! | [`Axis`] | command | what follows it |
+//! |---|---|---|
+//! | `Roll`, `Pitch`, `Yaw` | tau_i from MRP and rate error | body rate, angle |
+//! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, omega_d, omega_d' | rate, tilt, velocity, position |
+//! | `Vertical` | thrust from z and filters | velocity, position |
+//!
+//! For each: the spectral radius per sample, and the gain and delay margins at the actuator's command. `docs/sampled-loop.md`
+//! derives the matrices. Mass and gravity drop out.
+//!
+//! It cannot speak about large errors: a saturated loop has less gain, so a loop with a lower gain limit
+//! ([`Margins::gain_down`]) or a small one may still hang in a limit cycle far from the origin. Nor about noise, flexible
+//! frames, the thrust that a rotor loses in moving air, or the torque of a rotor's own acceleration, which helps yaw.
+
+mod chain;
+mod lag;
+mod law;
+mod margins;
+mod spectral_radius;
+
+use chain::SampledLoop;
+use controller_core::error::{ParameterError, Reason};
+use controller_core::gains::{GainParameters, Gains};
+use controller_core::vehicle::Vehicle;
+use law::{Law, PositionGains, TorqueGains};
+
+/// The longest period between ticks, s; the law's own limit.
+const LONGEST_PERIOD: f32 = 0.1;
+
+/// The greatest delay looked at, samples: the delay line is part of the matrix.
+pub const GREATEST_DELAY: f32 = 64.0;
+
+/// When commands are computed and how they reach the vehicle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Time h between ticks, s, in (0, 0.1].
+    pub period: f64,
+    /// Time constant of the rotors' thrust, s; zero for ideal ones.
+    pub rotor_lag: f64,
+    /// From the sample to the moment its wrench is applied, in periods, in [0, 64].
+    pub delay_samples: f64,
+}
+
+/// One loop of the vehicle near hover. World axes are those of the heading: x forward, y left, z up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Attitude about body x, its reference at rest.
+    Roll,
+    /// Attitude about body y, its reference at rest.
+    Pitch,
+    /// Attitude about body z: the heading.
+    Yaw,
+    /// Position forward, through pitch.
+    LateralX,
+    /// Position to the left, through roll.
+    LateralY,
+    /// Height, through the thrust.
+    Vertical,
+}
+
+impl Axis {
+    /// All of them, in the order of [`LoopModel::reports`].
+    pub const ALL: [Self; 6] = [Self::Roll, Self::Pitch, Self::Yaw, Self::LateralX, Self::LateralY, Self::Vertical];
+
+    /// What reports call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Roll => "roll",
+            Self::Pitch => "pitch",
+            Self::Yaw => "yaw",
+            Self::LateralX => "lateral x",
+            Self::LateralY => "lateral y",
+            Self::Vertical => "vertical",
+        }
+    }
+}
+
+/// How far a stable loop is from instability, each margin alone and taken at the actuator's command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Margins {
+    /// Least factor > 1 on the loop's gain that destabilises it; infinite if none does.
+    pub gain_up: f64,
+    /// Greatest factor < 1 that destabilises it; zero if none does.
+    pub gain_down: f64,
+    /// Least additional delay that destabilises it, s.
+    pub delay: f64,
+    /// Highest frequency at which the loop's gain is one, rad/s.
+    pub crossover: f64,
+}
+
+/// What the linear model says about one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopReport {
+    /// Which loop.
+    pub axis: Axis,
+    /// Largest magnitude of a closed-loop eigenvalue, per sample: stable below one.
+    pub spectral_radius: f64,
+    /// None if the loop is unstable as it is.
+    pub margins: Option<Margins>,
+}
+
+/// A vehicle, its gains and its timing, as far as small motions are concerned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopModel {
+    inertia: [f64; 3],
+    gains: GainParameters,
+    timing: Timing,
+}
+
+impl LoopModel {
+    /// The loops of `vehicle` flown with `gains` at the given timing.
+    ///
+    /// # Errors
+    /// Names `control.period`, `rotors.lag` or `sampling.delay` if it is not finite or outside its range.
+    pub fn new(vehicle: &Vehicle, gains: &Gains, timing: Timing) -> Result<Self, ParameterError> {
+        let Timing { period, rotor_lag, delay_samples } = timing;
+        for (value, field) in [(period, "control.period"), (rotor_lag, "rotors.lag"), (delay_samples, "sampling.delay")]
+        {
+            require(value.is_finite(), field, Reason::NotFinite)?;
+        }
+        require(period > 0.0, "control.period", Reason::NotPositive)?;
+        require(period <= f64::from(LONGEST_PERIOD), "control.period", Reason::NotBelow(LONGEST_PERIOD))?;
+        require(rotor_lag >= 0.0, "rotors.lag", Reason::Negative)?;
+        require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
+        require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::NotBelow(GREATEST_DELAY))?;
+        let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
+        Ok(Self { inertia, gains: **gains, timing })
+    }
+
+    /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
+    /// gain margin at the position feedback. The gains need not be ones that may fly.
+    #[must_use]
+    pub fn with_position_feedback(&self, factor: f64) -> Self {
+        let scaled = |gain: f32| (f64::from(gain) * factor) as f32;
+        let gains = GainParameters { k_p: scaled(self.gains.k_p), k_v: scaled(self.gains.k_v), ..self.gains };
+        Self { gains, ..*self }
+    }
+
+    /// Spectral radius and margins of one loop.
+    #[must_use]
+    pub fn report(&self, axis: Axis) -> LoopReport {
+        let Timing { period, delay_samples, .. } = self.timing;
+        let chain = self.chain(axis);
+        let spectral_radius = chain.spectral_radius();
+        let margins = (spectral_radius < 1.0).then(|| {
+            let margins = margins::margins(&chain, delay_samples);
+            Margins {
+                gain_up: margins.gain_up,
+                gain_down: margins.gain_down,
+                delay: margins.delay * period,
+                crossover: margins.crossover / period,
+            }
+        });
+        LoopReport { axis, spectral_radius, margins }
+    }
+
+    /// All loops, in the order of [`Axis::ALL`].
+    #[must_use]
+    pub fn reports(&self) -> [LoopReport; 6] {
+        Axis::ALL.map(|axis| self.report(axis))
+    }
+
+    /// The spectral radius of one loop alone: a tenth of a report's cost.
+    #[must_use]
+    pub fn spectral_radius(&self, axis: Axis) -> f64 {
+        self.chain(axis).spectral_radius()
+    }
+
+    fn chain(&self, axis: Axis) -> SampledLoop {
+        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let law = match axis {
+            Axis::Roll => Law::attitude(self.torque_gains(0)),
+            Axis::Pitch => Law::attitude(self.torque_gains(1)),
+            Axis::Yaw => Law::attitude(self.torque_gains(2)),
+            Axis::LateralX => Law::lateral(self.position_gains(), self.torque_gains(1)),
+            Axis::LateralY => Law::lateral(self.position_gains(), self.torque_gains(0)),
+            Axis::Vertical => Law::vertical(self.position_gains()),
+        };
+        SampledLoop::new(law, rotor_lag / period, delay_samples)
+    }
+
+    fn torque_gains(&self, axis: usize) -> TorqueGains {
+        let h = self.timing.period;
+        let inertia = self.inertia[axis];
+        TorqueGains {
+            angle: f64::from(self.gains.k_theta) * h * h / (16.0 * inertia),
+            rate: f64::from(self.gains.k_omega) * h / inertia,
+        }
+    }
+
+    fn position_gains(&self) -> PositionGains {
+        let h = self.timing.period;
+        PositionGains {
+            k_p: f64::from(self.gains.k_p) * h * h,
+            k_v: f64::from(self.gains.k_v) * h,
+            k_f: f64::from(self.gains.k_f) * h,
+            k_s: f64::from(self.gains.k_s) * h,
+        }
+    }
+}
+
+/// Refuses `field` for `reason` unless `condition` holds.
+fn require(condition: bool, field: &'static str, reason: Reason) -> Result<(), ParameterError> {
+    if condition { Ok(()) } else { Err(ParameterError { field, reason }) }
+}

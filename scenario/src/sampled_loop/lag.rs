@@ -1,0 +1,76 @@
+//! A first-order lag followed by integrators, solved exactly over a stretch of held input.
+//!
+//! ```text
+//! a' = (w - a) / lag,   y_1' = a,   y_2' = y_1,   y_3' = y_2,   y_4' = y_3
+//! ```
+//!
+//! The m-fold integral of e^(-s/lag) from 0 to t is t^m phi_m(t/lag), where phi_0(x) = e^-x and
+//! phi_m(x) = sum over k of (-x)^k / (k + m)!. What a held w adds to y_m is the rest: t^m (1/m! - phi_m) =
+//! t^m x phi_(m+1). Those are the entries of the matrix exponential, without forming one; no step of it cancels, for
+//! any ratio of t to the lag, and a lag of zero is an ordinary case.
+
+/// The longest chain: from the torque through rate, tilt and velocity to the position.
+pub(super) const INTEGRATORS: usize = 4;
+
+/// 1/m!.
+pub(super) const INVERSE_FACTORIAL: [f64; INTEGRATORS + 2] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0];
+
+/// Entry m tells about y_m (y_0 = a) at the end of a stretch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LagResponse {
+    /// What a unit of `a` at the start leaves in y_m.
+    pub free: [f64; INTEGRATORS + 1],
+    /// What a unit of held input adds to y_m.
+    pub forced: [f64; INTEGRATORS + 1],
+}
+
+impl LagResponse {
+    /// Over a stretch of `duration` > 0, with `lag` >= 0 in the same unit of time.
+    pub fn over(duration: f64, lag: f64) -> Self {
+        // Without lag the input is integrated as it stands: 1/m!.
+        let mut response = Self { free: [0.0; _], forced: core::array::from_fn(|m| INVERSE_FACTORIAL[m]) };
+        let x = duration / lag;
+        if x.is_finite() {
+            let phi = phi(x);
+            for (m, (free, forced)) in response.free.iter_mut().zip(&mut response.forced).enumerate() {
+                *free = phi[m];
+                *forced = x * phi[m + 1];
+            }
+        }
+        let mut power = 1.0;
+        for (free, forced) in response.free.iter_mut().zip(&mut response.forced) {
+            *free *= power;
+            *forced *= power;
+            power *= duration;
+        }
+        response
+    }
+}
+
+/// phi_0 to phi_(INTEGRATORS + 1) at x > 0, linked by phi_m = 1/m! - x phi_(m+1).
+fn phi(x: f64) -> [f64; INTEGRATORS + 2] {
+    /// Terms of the series; at x = 1 the first one left out is below 1e-20 of the sum.
+    const TERMS: u32 = 18;
+    const LAST: usize = INTEGRATORS + 1;
+    let mut phi = [0.0; INTEGRATORS + 2];
+    if x <= 1.0 {
+        // The series for the last one, then downwards: each step shrinks the error by x.
+        let mut term = INVERSE_FACTORIAL[LAST];
+        for k in 1..=TERMS {
+            phi[LAST] += term;
+            term *= -x / (f64::from(k) + LAST as f64);
+        }
+        for m in (0..LAST).rev() {
+            phi[m] = INVERSE_FACTORIAL[m] - x * phi[m + 1];
+        }
+    } else {
+        phi[0] = (-x).exp();
+        for m in 0..LAST {
+            phi[m + 1] = (INVERSE_FACTORIAL[m] - phi[m]) / x;
+        }
+    }
+    phi
+}
+
+#[cfg(test)]
+mod tests;

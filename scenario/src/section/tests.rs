@@ -1,0 +1,58 @@
+//! What each reading accepts, and how it names what it refuses.
+
+use super::*;
+
+fn table(text: &str) -> Table {
+    text.parse().unwrap()
+}
+
+#[test]
+fn an_unknown_key_names_the_nearest_known_one() {
+    let table = table("[vehicle]\nmas = 1.0");
+    let section = Section::root(&table).section("vehicle").unwrap();
+    let error = section.allow(&["mass", "inertia", "gravity"]).unwrap_err();
+    assert_eq!(error.field, "vehicle.mas");
+    assert!(error.problem.contains("did you mean \"mass\"?"), "{error}");
+}
+
+#[test]
+fn numbers_may_be_integers_but_nothing_else() {
+    let table = table("a = 3\nb = \"3\"\nc = nan\nd = -inf\ne = 1e39\nf = true");
+    let section = Section::root(&table);
+    assert_eq!(section.number("a"), Ok(3.0));
+    for (key, word) in
+        [("b", "found string"), ("c", "found NaN"), ("d", "found -inf"), ("e", "within"), ("f", "found boolean")]
+    {
+        let error = section.number(key).unwrap_err();
+        assert!(error.problem.contains(word) && error.field == key, "{error}");
+    }
+}
+
+#[test]
+fn a_vector_has_three_elements_and_names_the_bad_one() {
+    let table = table("a = [1, 2.5, 3]\nb = [1, 2]\nc = [1, 2, inf]\nd = 7");
+    let section = Section::root(&table);
+    assert_eq!(section.vector("a"), Ok(Vector3::new(1.0, 2.5, 3.0)));
+    assert_eq!(section.vector("b").unwrap_err().problem, "must be a list of three numbers, found 2");
+    assert_eq!(section.vector("c").unwrap_err().field, "c[2]");
+    assert!(section.vector("d").unwrap_err().problem.contains("found integer"));
+    assert_eq!(section.vector("x").unwrap_err().problem, "missing, must be a list of three numbers");
+}
+
+#[test]
+fn lookup_follows_dotted_paths_and_indices() {
+    let table = table("[a]\nb = [1, 2]\np = [{ t = 3 }]\n[a.c]\nd = 0.5");
+    let section = Section::root(&table);
+    assert_eq!(section.lookup("a.b[1]").as_deref(), Some("2"));
+    assert_eq!(section.lookup("a.c.d").as_deref(), Some("0.5"));
+    assert_eq!(section.lookup("a.p[0].t").as_deref(), Some("3"));
+    assert_eq!(section.lookup("a.p[1].t"), None);
+    assert_eq!(section.lookup("a.x.d"), None);
+}
+
+#[test]
+fn lists_of_tables_carry_their_index() {
+    let table = table("[r]\npoints = [{ t = 0 }, { t = \"x\" }]");
+    let points = Section::root(&table).section("r").unwrap().sections("points").unwrap();
+    assert_eq!(points[1].number("t").unwrap_err().field, "r.points[1].t");
+}

@@ -1,0 +1,54 @@
+//! The paper's clock, and times that do not fit.
+
+use super::*;
+
+fn read(text: &str) -> Result<Timing, FieldError> {
+    Timing::read(&Section::root(&text.parse().unwrap()))
+}
+
+#[test]
+fn the_papers_clock_ticks_4000_times() {
+    let timing = read("duration = 40.0\ncontrol.rate = 100\nplant.step = 0.001").unwrap();
+    assert_eq!(timing, Timing { ticks: 4000, period_us: 10_000, steps_per_tick: 10 });
+    assert_eq!(read("duration = 40.0").unwrap(), timing);
+    assert!((timing.duration() - 40.0).abs() < 1e-12 && (timing.step() - 1e-3).abs() < 1e-18);
+}
+
+#[test]
+fn a_period_between_microseconds_is_refused_with_the_nearest_rate() {
+    let error = read("duration = 1\ncontrol.rate = 300").unwrap_err();
+    assert_eq!(error.field, "control.rate");
+    assert!(error.problem.contains("nearest: 300.03"), "{error}");
+}
+
+#[test]
+fn a_step_that_does_not_divide_the_period_is_refused_with_the_nearest_step() {
+    let error = read("duration = 1\ncontrol.rate = 400\nplant.step = 0.001").unwrap_err();
+    assert_eq!(error.field, "plant.step");
+    let error = read("duration = 1\nplant.step = 0.02").unwrap_err();
+    assert!(error.field == "plant.step" && error.problem.contains("nearest: 1e-2 s"), "{error}");
+}
+
+#[test]
+fn zero_and_negative_times_are_refused_by_name() {
+    for (text, field) in [
+        ("duration = 0", "duration"),
+        ("duration = -1", "duration"),
+        ("duration = 0.001", "duration"),
+        ("duration = 1e8", "duration"),
+        ("duration = 1\ncontrol.rate = 0", "control.rate"),
+        ("duration = 1\ncontrol.rate = -100", "control.rate"),
+        ("duration = 1\ncontrol.rate = 5", "control.rate"),
+        ("duration = 1\nplant.step = 0", "plant.step"),
+        ("duration = 1\nplant.step = -0.001", "plant.step"),
+        ("duration = 1\nplant.step = 1e-12", "plant.step"),
+    ] {
+        assert_eq!(read(text).unwrap_err().field, field, "{text}");
+    }
+}
+
+#[test]
+fn the_default_step_divides_any_period() {
+    let timing = read("duration = 1\ncontrol.rate = 400").unwrap();
+    assert_eq!((timing.period_us, timing.steps_per_tick), (2500, 3));
+}

@@ -1,0 +1,224 @@
+//! What cannot be written, what is interrupted, and what would fill the disk. `/dev/full` is a disk that is always full.
+
+use crate::support::binary;
+use crate::support::binary::{PAPER, brief, files, host_sim, search, status, stderr, stdout, with};
+use std::fs::File;
+use std::io::Write;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const STUDY: &str = include_str!("../vehicles/study.toml");
+const FULL: &str = "/dev/full";
+
+/// A directory of this suite.
+fn directory(test: &str) -> PathBuf {
+    binary::directory("cli_output", test)
+}
+
+fn full() -> File {
+    File::options().write(true).open(FULL).unwrap_or_else(|error| panic!("this test needs {FULL}: {error}"))
+}
+
+fn command(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    command.args(arguments).current_dir(directory).stdin(Stdio::null());
+    command
+}
+
+/// With nowhere left to write on standard output.
+fn into_full(directory: &Path, arguments: &[&str]) -> Output {
+    command(directory, arguments).stdout(full()).stderr(Stdio::piped()).output().unwrap()
+}
+
+fn assert_not_written(output: &Output, words: &str) {
+    let message = stderr(output);
+    assert_eq!((status(output), message.lines().count()), (2, 1), "{message}");
+    assert!(message.contains(words) && message.contains("cannot be written: No space left on device"), "{message}");
+}
+
+#[test]
+fn a_report_that_standard_output_does_not_take_exits_with_2() {
+    let directory = directory("stdout");
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    for arguments in [
+        &["certify"][..],
+        &["fly", "brief.toml", "--out", "out"],
+        &search("brief.toml", "tuned.toml", "1"),
+        &["--help"],
+        &["fly", "--help"],
+        &["--version"],
+    ] {
+        assert_not_written(&into_full(&directory, arguments), "standard output");
+    }
+    // What was flown and found is there nevertheless, whole.
+    assert_eq!(files(&directory.join("out")).len(), 6);
+    assert!(directory.join("tuned.toml").exists());
+}
+
+#[test]
+fn an_answer_that_standard_output_does_not_take_exits_with_2() {
+    let directory = directory("law");
+    let mut child =
+        command(&directory, &["law"]).stdin(Stdio::piped()).stdout(full()).stderr(Stdio::piped()).spawn().unwrap();
+    writeln!(child.stdin.take().unwrap(), "0 0.01 0 0 0 0 0 0 0 0 0 1 {}", "0 ".repeat(21)).unwrap();
+    assert_not_written(&child.wait_with_output().unwrap(), "standard output");
+}
+
+#[test]
+fn a_sessions_summary_that_standard_output_does_not_take_exits_with_2() {
+    let directory = directory("hil");
+    std::fs::write(directory.join("study.toml"), STUDY).unwrap();
+    let board = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = board.local_addr().unwrap().to_string();
+    let leaves = std::thread::spawn(move || drop(board.accept().unwrap()));
+    assert_not_written(&into_full(&directory, &["hil", "study.toml", "--connect", &address]), "standard output");
+    leaves.join().unwrap();
+}
+
+#[test]
+fn files_that_a_full_disk_does_not_take_exit_with_2_and_leave_nothing_half_written() {
+    let directory = directory("files");
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    drop(full());
+    std::fs::create_dir(directory.join("out")).unwrap();
+    for name in ["log.csv", "fig1.svg", "report.md"] {
+        let place = directory.join("out").join(name);
+        std::os::unix::fs::symlink(FULL, &place).unwrap();
+        let output = host_sim(&directory, &["fly", "brief.toml", "--out", "out"]);
+        assert_not_written(&output, &format!("out/{name}"));
+        assert_eq!((stdout(&output), files(&directory.join("out"))), (String::new(), vec![name.to_owned()]));
+        std::fs::remove_file(place).unwrap();
+    }
+    std::os::unix::fs::symlink(FULL, directory.join("tuned.toml")).unwrap();
+    let tuned = host_sim(&directory, &search("brief.toml", "tuned.toml", "1"));
+    assert_not_written(&tuned, "tuned.toml");
+    assert_eq!(files(&directory), ["brief.toml", "out", "tuned.toml"]);
+}
+
+#[test]
+fn a_disk_that_fills_up_in_flight_exits_with_2_and_keeps_the_last_flight() {
+    let directory = directory("filling");
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    assert_eq!(status(&host_sim(&directory, &["fly", "brief.toml", "--out", "out"])), 0);
+    let read = |name: &str| std::fs::read(directory.join("out").join(name)).unwrap();
+    let before: Vec<_> = files(&directory.join("out")).iter().map(|name| read(name)).collect();
+    // A hundred rows are some seventy blocks of a kilobyte; a file may grow to thirty.
+    let limited = "trap '' XFSZ; ulimit -f 30; exec \"$@\"";
+    let output = Command::new("sh")
+        .args(["-c", limited, "sh", env!("CARGO_BIN_EXE_host-sim"), "fly", "brief.toml", "--out", "out"])
+        .current_dir(&directory)
+        .output()
+        .unwrap();
+    let message = stderr(&output);
+    assert_eq!((status(&output), message.lines().count()), (2, 1), "{message}");
+    assert!(message.contains("out/log.csv: cannot be written: File too large"), "{message}");
+    let after: Vec<_> = files(&directory.join("out")).iter().map(|name| read(name)).collect();
+    assert!(before == after, "{:?}", files(&directory.join("out")));
+}
+
+#[test]
+fn a_reader_that_goes_away_changes_no_verdict() {
+    let directory = directory("pipe");
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    for arguments in [&["certify"][..], &["fly", "brief.toml", "--out", "out"], &["--help"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = command(&directory, arguments).stdout(writer).stderr(Stdio::piped()).output().unwrap();
+        assert_eq!((status(&output), stderr(&output)), (0, String::new()), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_wants_to_be_asked_for() {
+    let directory = directory("large");
+    std::fs::write(directory.join("month.toml"), with(PAPER, "duration", "duration = 2592000")).unwrap();
+    let output = host_sim(&directory, &["fly", "month.toml", "--out", "out"]);
+    let message = stderr(&output);
+    assert_eq!((status(&output), message.lines().count()), (2, 1), "{message}");
+    for words in ["month.toml", "log.csv", "GB", "259200000 rows", "--large-log", "duration", "control.rate"] {
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    assert_eq!(files(&directory), ["month.toml"]);
+    // Asked for, it is flown, and says the same on the way.
+    let mut child = spawn(&directory, &["fly", "month.toml", "--out", "out", "--large-log"]);
+    wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
+    interrupt(&mut child, "TERM");
+    let output = child.wait_with_output().unwrap();
+    assert!(stderr(&output).lines().next().is_some_and(|line| line.contains("GB")), "{}", stderr(&output));
+}
+
+fn spawn(directory: &Path, arguments: &[&str]) -> Child {
+    command(directory, arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn wait_for(condition: impl Fn() -> bool) {
+    let started = Instant::now();
+    while !condition() {
+        assert!(started.elapsed() < Duration::from_secs(60), "waited in vain");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Sends a signal by its name.
+fn interrupt(child: &mut Child, signal: &str) {
+    let sent = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status().unwrap();
+    assert!(sent.success());
+}
+
+#[test]
+fn an_interrupted_flight_leaves_no_file() {
+    let directory = directory("interrupted");
+    std::fs::write(directory.join("long.toml"), with(PAPER, "duration", "duration = 10000")).unwrap();
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let mut child = spawn(&directory, &["fly", "long.toml", "--out", "out"]);
+        wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
+        interrupt(&mut child, signal);
+        let output = child.wait_with_output().unwrap();
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (code, 1), "{message}");
+        assert!(message.contains("interrupted") && message.contains("nothing is written"), "{message}");
+        assert_eq!((stdout(&output), files(&directory.join("out"))), (String::new(), vec![]));
+    }
+}
+
+#[test]
+fn an_interrupted_search_writes_the_best_it_has_and_says_so() {
+    let directory = directory("search");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    // How long the first accepted candidate takes depends on the machine.
+    for patience in [1, 4, 16, 64] {
+        let mut child = spawn(&directory, &search("start.toml", "best.toml", "100000"));
+        std::thread::sleep(Duration::from_secs(patience));
+        interrupt(&mut child, "INT");
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(status(&output), 130, "{}", stderr(&output));
+        if directory.join("best.toml").exists() {
+            let text = stdout(&output);
+            assert!(text.contains("best: CERTIFIED") && text.contains("interrupted: the best so far"), "{text}");
+            assert_eq!(files(&directory), ["best.toml", "start.toml"]);
+            assert_eq!(status(&host_sim(&directory, &["certify", "best.toml"])), 0);
+            return;
+        }
+        assert_eq!((stdout(&output), files(&directory)), (String::new(), vec!["start.toml".to_owned()]));
+        assert!(stderr(&output).contains("interrupted") && stderr(&output).contains("nothing is written"));
+    }
+    panic!("nothing acceptable within a minute");
+}
+
+#[test]
+fn an_interrupted_session_ends_as_if_its_time_were_over() {
+    let directory = directory("session");
+    std::fs::write(directory.join("study.toml"), STUDY).unwrap();
+    let board = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = board.local_addr().unwrap().to_string();
+    let mut child = spawn(&directory, &["hil", "study.toml", "--connect", &address, "--log", "log.csv"]);
+    let connection = board.accept().unwrap();
+    wait_for(|| files(&directory).len() == 2);
+    interrupt(&mut child, "INT");
+    let output = child.wait_with_output().unwrap();
+    assert!(status(&output) == 130 && stdout(&output).contains("interrupted"), "{}", stderr(&output));
+    assert_eq!(files(&directory), ["log.csv", "study.toml"]);
+    drop(connection);
+}

@@ -1,0 +1,104 @@
+//! Verdicts that tell the truth: a loop that cannot hold still, a flight that does not arrive.
+
+use crate::support::binary;
+use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
+use std::path::PathBuf;
+
+const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
+
+/// A directory of this suite.
+fn directory(test: &str) -> PathBuf {
+    binary::directory("cli_verdicts", test)
+}
+
+/// The Hummingbird with rotors that follow a second late: every command within its limits, five of six loops unstable.
+fn sluggish() -> String {
+    with(HUMMINGBIRD, "lag", "lag = 1.0")
+}
+
+/// The same with a lag that leaves its roll loop 1.3 ms of delay: stable, and certified as far as commands go.
+fn weak() -> String {
+    with(HUMMINGBIRD, "lag", "lag = 0.045")
+}
+
+#[test]
+fn certify_refuses_an_unstable_loop_and_names_it() {
+    let directory = directory("certify");
+    std::fs::write(directory.join("sluggish.toml"), sluggish()).unwrap();
+    let output = host_sim(&directory, &["certify", "sluggish.toml"]);
+    let text = stdout(&output);
+    assert_eq!((status(&output), stderr(&output)), (1, String::new()), "{text}");
+    let refusal = "hummingbird: NOT certified: sampled loop roll: unstable, spectral radius 1.";
+    assert!(text.starts_with(refusal), "{text}");
+    // The proof holds all the same, and the verdict says what it is a proof of.
+    for words in ["commands (a proof): within every limit", "small motions (an analysis): NOT stable", "UNSTABLE"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
+
+#[test]
+fn certify_refuses_a_loop_without_margin_and_says_which_margin() {
+    let directory = directory("margin");
+    std::fs::write(directory.join("weak.toml"), weak()).unwrap();
+    let output = host_sim(&directory, &["certify", "weak.toml"]);
+    let text = stdout(&output);
+    assert_eq!(status(&output), 1, "{text}");
+    let refusal = "hummingbird: NOT certified: sampled loop roll: unstable with 1.3 ms more delay, must bear 2.0 ms\n";
+    assert!(text.starts_with(refusal) && !text.contains("UNSTABLE"), "{text}");
+}
+
+#[test]
+fn fly_flies_an_unstable_loop_reports_it_and_fails() {
+    let directory = directory("fly");
+    std::fs::write(directory.join("sluggish.toml"), sluggish()).unwrap();
+    let output = host_sim(&directory, &["fly", "sluggish.toml", "--out", "out"]);
+    let text = stdout(&output);
+    assert_eq!(status(&output), 1, "{text}");
+    let failing: Vec<&str> = text.lines().filter(|line| line.ends_with("FAILS")).collect();
+    assert!(failing.iter().any(|line| line.starts_with("sampled loops") && line.contains("roll: unstable")), "{text}");
+    assert!(failing.iter().any(|line| line.starts_with("within 0.2 m") && line.contains("never")), "{text}");
+    assert!(text.contains("NOT every claim holds") && text.contains("not certified: sampled loop roll"), "{text}");
+    assert_eq!(files(&directory.join("out")).len(), 6);
+    assert!(std::fs::read_to_string(directory.join("out/report.md")).unwrap().contains("Not every claim holds."));
+}
+
+#[test]
+fn a_loop_without_margin_fails_a_flight_that_arrives() {
+    let directory = directory("arrives");
+    std::fs::write(directory.join("weak.toml"), weak()).unwrap();
+    let output = host_sim(&directory, &["fly", "weak.toml", "--out", "out"]);
+    let text = stdout(&output);
+    let failing: Vec<&str> = text.lines().filter(|line| line.ends_with("FAILS")).collect();
+    let [only] = failing[..] else { panic!("{text}") };
+    assert!(status(&output) == 1 && only.starts_with("sampled loops") && only.contains("must bear 2.0 ms"), "{text}");
+}
+
+#[test]
+fn a_flight_that_does_not_reach_its_reference_in_time_fails_with_the_numbers() {
+    let directory = directory("late");
+    // Table I needs nineteen seconds from the paper's start.
+    std::fs::write(directory.join("short.toml"), with(PAPER, "duration", "duration = 5.0")).unwrap();
+    let output = host_sim(&directory, &["fly", "short.toml", "--out", "out"]);
+    let text = stdout(&output);
+    assert_eq!(status(&output), 1, "{text}");
+    let row = text.lines().find(|line| line.starts_with("within 0.2 m of the reference for good")).unwrap();
+    let words: Vec<&str> = row.split("  ").map(str::trim).filter(|word| !word.is_empty()).collect();
+    assert_eq!(words[1..], ["<= 4.5 s", "never", "FAILS"], "{row}");
+    let row = text.lines().find(|line| line.starts_with("within 0.05 of its attitude (MRP) for good")).unwrap();
+    assert!(row.ends_with("holds"), "{row}");
+}
+
+#[test]
+fn tune_does_not_ask_for_less_than_certify_does() {
+    let directory = directory("tune");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    for (name, value, words) in
+        [("--gain-margin", "1.4", "at least 1.5, which certify asks for"), ("--delay-margin", "1.9", "at least 2 ms")]
+    {
+        let output = host_sim(&directory, &["tune", "start.toml", name, value]);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{name} {value}: {message}");
+        assert!(message.contains(name) && message.contains(words), "{message}");
+    }
+    assert_eq!(files(&directory), ["start.toml"]);
+}

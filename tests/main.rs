@@ -1,0 +1,38 @@
+//! Whole-system tests: everything here runs the crates as they are put together, none of them from the inside. One binary,
+//! because linking it once is quicker than linking each suite; `cargo test -p host-sim hysteresis` runs one suite.
+//!
+//! | what is tested | suites |
+//! |---|---|
+//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | its proof | [`adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
+//! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
+//! | references from setpoints | [`governor_campaign`] |
+//! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
+//! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`documentation`] |
+
+mod adversary;
+mod attitude_sign;
+mod bad_inputs;
+mod bounds;
+mod certified_flights;
+mod cli;
+mod cli_certify;
+mod cli_output;
+mod cli_verdicts;
+mod documentation;
+mod emulated_bits;
+mod governor_campaign;
+mod hysteresis;
+mod independent_law;
+mod kinematics;
+mod lockstep;
+mod lyapunov;
+mod paper;
+mod recovery;
+mod rotor_lag;
+mod sampled_loop;
+mod sharp_derivation;
+mod support;
+mod tuned;
+mod vehicles;

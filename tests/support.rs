@@ -1,0 +1,7 @@
+//! What several suites share.
+
+pub mod adversary_search;
+pub mod binary;
+pub mod body;
+pub mod oracle;
+pub mod random;
