@@ -10,8 +10,8 @@
 //! body z. The wrenches they can deliver, the *polytope*, are the image of a box.
 //!
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
-//! - [`minimum_norm`]: wrench to rotor thrusts by B+, each within its range: what a certified flight needs;
-//! - [`mixer`]: what any other needs on top of it, giving up yaw first, then thrust, roll and pitch last;
+//! - [`mixer`]: wrench to rotor thrusts; what does not fit is given up, yaw first, then thrust, roll and pitch last;
+//! - [`minimum_norm`]: its first step, B+ w, which is all that a certified flight needs;
 //! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks;
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
 //! - [`support`]: which thrusts a whole set of wrenches can ask of each rotor: the certificate's last link.
@@ -33,7 +33,7 @@ use heapless::Vec;
 
 /// Collects what fits; heapless' own `collect` panics when full, which the callers' counts rule out and a panic-free
 /// core must not contain.
-fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
+pub(crate) fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     for item in items {
         if list.push(item).is_err() {

@@ -40,7 +40,8 @@
 use crate::attitude::{AttitudeLaw, TorqueCommand};
 use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::certified::Certified;
-use crate::error::{InputError, ParameterError};
+use crate::certificate::configuration::PaperLaw;
+use crate::error::{InputError, ParameterError, Reason};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
 use crate::position::{CommandRates, FilterState, FilterTransition, PositionLaw};
@@ -128,13 +129,16 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller for a certified configuration, as after a reset. `period` is the time between steps, s, in (0, 0.1].
+    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
+    /// (0, 0.1].
     ///
     /// # Errors
-    /// Names `control.period` if it is outside.
+    /// Names `control.period` if it is outside, `control.law` if the configuration's is another.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
-        Self::build(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
+        let other = ParameterError { field: "control.law", reason: Reason::OtherLaw };
+        let PaperLaw { gains, thrust_floor } = *configuration.paper().ok_or(other)?;
+        Self::build(*configuration.vehicle(), gains, thrust_floor, period)
     }
 
     /// A controller for gains that nothing is proven about: for simulation, never for flight. `thrust_floor` in N turns the
@@ -152,7 +156,7 @@ impl Controller {
         Self::build(vehicle, gains, thrust_floor, period)
     }
 
-    fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
+    pub(crate) fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(gains.k_f, gains.k_s, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);

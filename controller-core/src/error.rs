@@ -34,6 +34,8 @@ pub enum Reason {
     NotOnCircle,
     /// Geometry that cannot produce the wrench asked of it.
     DoesNotSpan,
+    /// An option of a law other than the one that flies.
+    OtherLaw,
 }
 
 impl fmt::Display for Reason {
@@ -55,6 +57,7 @@ impl fmt::Display for Reason {
             Self::NotZero => write!(f, "must be zero"),
             Self::NotIncreasing => write!(f, "must be strictly increasing"),
             Self::NotOnCircle => write!(f, "must be a unit vector with derivatives along the circle"),
+            Self::OtherLaw => write!(f, "belongs to another law than control.law"),
             Self::DoesNotSpan => write!(f, "cannot produce thrust and all three torques independently"),
         }
     }

@@ -137,7 +137,8 @@ impl Governor {
         let windows = Windows::design(bounds, limits, period)?;
         governor.turning.design(bounds, limits, period)?;
         governor.smoother.design(&windows, period);
-        governor.pursuit = Pursuit::new(&windows, limits.horizontal_speed, limits.vertical_speed, period);
+        let horizontal_speed = limits.horizontal_speed.min(bounds.horizontal_speed);
+        governor.pursuit = Pursuit::new(&windows, horizontal_speed, limits.vertical_speed, period);
         governor.lead = Lead {
             delay: windows.delay() * period,
             variance: windows.variance() * period * period,

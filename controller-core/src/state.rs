@@ -94,6 +94,12 @@ pub struct Wrench {
 }
 
 impl Wrench {
+    /// The same wrench, `factor` times as strong.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        Self { thrust: self.thrust * factor, torque: self.torque * factor }
+    }
+
     /// Whether every component is.
     pub(crate) fn is_finite(&self) -> bool {
         self.thrust.is_finite() && self.torque.iter().all(|component| component.is_finite())

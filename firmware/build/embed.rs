@@ -4,6 +4,7 @@
 //! the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::certificate::configuration::{ExtendedLaw, LawParameters, PaperLaw};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
@@ -54,10 +55,9 @@ pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
 fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+    let bounds = configuration.bounds();
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
-    let floor = configuration.thrust_floor();
-    let floor = floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:?})"));
+    let law = law_source(configuration.law());
     format!(
         "/// The scenario's name.
 pub const NAME: &str = {name:?};
@@ -67,12 +67,10 @@ fn built() -> Result<Configuration, ParameterError> {{
     let vehicle = Vehicle::new(vehicle)?;
     let limits = LimitParameters {{ thrust_max: {thrust_max:?}, torque_max: {torque_max} }};
     let limits = Limits::new(limits, &vehicle)?;
-    let gains = Gains::new({gains:?}, &vehicle)?;
     let bounds = {bounds:?};
     let rotors = Rotors::new(&[
 {rotors}    ])?;
-    Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
-}}
+{law}}}
 ",
         name = scenario.name,
         mass = vehicle.mass,
@@ -80,8 +78,35 @@ fn built() -> Result<Configuration, ParameterError> {{
         gravity = vehicle.gravity,
         thrust_max = limits.thrust_max,
         torque_max = vector(&limits.torque_max),
-        gains = **gains,
     )
+}
+
+/// The law's constants, and the configuration made of them.
+fn law_source(law: &LawParameters) -> String {
+    match law {
+        LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
+            let floor = thrust_floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:?})"));
+            format!(
+                "    use controller_core::gains::{{GainParameters, Gains}};
+    let gains = Gains::new({:?}, &vehicle)?;
+    Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
+",
+                **gains
+            )
+        }
+        LawParameters::Extended(ExtendedLaw { parameters, actuators }) => format!(
+            "    use controller_core::certificate::configuration::ExtendedLaw;
+    use controller_core::extended::actuators::ActuatorParameters;
+    use controller_core::extended::parameters::{{
+        AttitudeParameters, EstimateParameters, Extended, ExtendedParameters, HeadingParameters, PositionParameters,
+    }};
+    let parameters = Extended::new({:?}, &vehicle)?;
+    let law = ExtendedLaw {{ parameters, actuators: {actuators:?} }};
+    Configuration::extended(vehicle, limits, law, bounds)?.with_rotors(rotors)
+",
+            **parameters
+        ),
+    }
 }
 
 fn rotor_source(rotor: &Rotor) -> String {

@@ -4,14 +4,13 @@ use crate::hardware::MOTORS;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
-use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
 include!(concat!(env!("OUT_DIR"), "/configuration.rs"));
 
-/// Vehicle, limits, gains, rotors and reference bounds as the scenario file gave them.
+/// Vehicle, limits, law, rotors and reference bounds as the scenario file gave them.
 ///
 /// # Errors
 /// Never for a file that the build accepted: the same checks have seen the same bits.

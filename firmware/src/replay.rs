@@ -13,7 +13,7 @@
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Controller;
-use controller_core::error::InputError;
+use controller_core::error::{InputError, ParameterError};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
@@ -48,6 +48,17 @@ const REFERENCE: HarmonicParameters = HarmonicParameters {
     heading: HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 3.141_592_65, frequency: TURN },
 };
 
+/// The paper's vehicle, limits and Table I, for its own reference.
+///
+/// # Errors
+/// None on a machine that computes right.
+pub fn configuration() -> Result<Configuration, ParameterError> {
+    let vehicle = Vehicle::new(VEHICLE)?;
+    let limits = Limits::new(LIMITS, &vehicle)?;
+    let gains = Gains::new(GainParameters::TABLE_1, &vehicle)?;
+    Configuration::new(vehicle, limits, gains, Harmonic::new(REFERENCE)?.bounds())
+}
+
 /// The flight, as far as it has been replayed.
 pub struct Replay {
     controller: Controller,
@@ -60,12 +71,8 @@ impl Replay {
     /// At the start; certifies Table I. None if that fails, which no machine that computes right sees.
     #[must_use]
     pub fn new() -> Option<Self> {
-        let vehicle = Vehicle::new(VEHICLE).ok()?;
-        let limits = Limits::new(LIMITS, &vehicle).ok()?;
-        let gains = Gains::new(GainParameters::TABLE_1, &vehicle).ok()?;
+        let certified = Certified::new(configuration().ok()?).ok()?;
         let reference = Harmonic::new(REFERENCE).ok()?;
-        let configuration = Configuration::new(vehicle, limits, gains, reference.bounds()).ok()?;
-        let certified = Certified::new(configuration).ok()?;
         let controller = Controller::new(&certified, PERIOD_US as f32 * 1e-6).ok()?;
         Some(Self { controller, reference, hash: Sha256::new(), tick: 0 })
     }

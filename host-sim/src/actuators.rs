@@ -7,8 +7,7 @@
 //! ```
 //!
 //! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it acts;
-//! - *allocation*: what the boards use, [`MinimumNorm`], wherever a certificate says that the rotors have what it asks for; outside
-//!   of one the core's [`Mixer`], with its order of giving up what they do not have;
+//! - *allocation*: the core's [`Mixer`], as on the boards;
 //! - *lag*: of the rotors' speeds ([`rotors`]).
 //!
 //! A tick counts as clipped if its wrench could not be delivered in full. Rotors start at the speeds that hover.
@@ -16,7 +15,7 @@
 pub mod rotors;
 
 use crate::plant::{Diverged, Plant};
-use controller_core::allocation::{MinimumNorm, Mixer, Thrusts};
+use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
 use nalgebra::Vector3;
@@ -48,36 +47,10 @@ impl From<Diverged> for ActuationError {
     }
 }
 
-/// How a wrench becomes rotor thrusts.
-#[derive(Debug, Clone)]
-pub enum Allocation {
-    /// As on the boards, for a certified flight.
-    Certified(Box<MinimumNorm>),
-    /// For a flight that nothing certifies.
-    Prioritised(Box<Mixer>),
-}
-
-impl Allocation {
-    /// The thrusts for a wrench, N, and whether they fall short of it.
-    fn thrusts(&self, wrench: &Wrench) -> Result<(Thrusts, bool), InputError> {
-        match self {
-            Self::Certified(minimum_norm) => {
-                let delivered = minimum_norm.allocate(wrench)?;
-                Ok((delivered.thrusts, delivered.clipped))
-            }
-            Self::Prioritised(mixer) => {
-                let allocation = mixer.allocate(wrench)?;
-                let short = !allocation.is_exact();
-                Ok((allocation.thrusts, short))
-            }
-        }
-    }
-}
-
 /// Delay and rotors between the law and the body.
 #[derive(Debug, Clone)]
 pub struct Actuators {
-    pub(crate) rotors: Option<(Allocation, SpinningRotors)>,
+    pub(crate) rotors: Option<(Box<Mixer>, SpinningRotors)>,
     delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
@@ -91,7 +64,7 @@ impl Actuators {
     /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its tick.
     /// Without rotors wrenches act on the body directly.
     #[must_use]
-    pub fn new(rotors: Option<(Allocation, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
+    pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
         let acting = Wrench { thrust: hover, torque: Vector3::zeros() };
         Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting }
     }
@@ -122,12 +95,12 @@ impl Actuators {
             }
             match &mut self.rotors {
                 None => clipped |= plant.hold(&self.acting, 1)?,
-                Some((allocation, rotors)) => {
+                Some((mixer, rotors)) => {
                     if arrived {
-                        let short;
-                        (thrusts, short) = allocation.thrusts(&self.acting).map_err(ActuationError::Wrench)?;
+                        let allocation = mixer.allocate(&self.acting).map_err(ActuationError::Wrench)?;
+                        clipped |= !allocation.is_exact();
+                        thrusts = allocation.thrusts;
                         rotors.command(&thrusts);
-                        clipped |= short;
                     }
                     let (thrust, torque) = rotors.advance();
                     plant.act(thrust, &torque);

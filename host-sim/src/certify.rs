@@ -1,14 +1,18 @@
-//! The `certify` command: every inequality of the certificate, as printed in the paper and sharp, side by side.
+//! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp, side by
+//! side.
 //!
-//! The sharp form and the rotors decide about the commands, the sampled loops below them about small motions: a scenario is
+//! The sharp form and the rotors decide about the paper law's commands, all inequalities about the extended law's, the sampled loops below them about small motions: a scenario is
 //! certified if both hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
 
 mod blame;
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
+use controller_core::certificate::extended::ExtendedCertificate;
+use controller_core::certificate::extended::bounds::ExtendedBounds;
 use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
+use controller_core::certificate::paper::PaperCertificate;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 use scenario::stability::{LoopMargin, Shortfall};
@@ -26,7 +30,18 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     let certificate = verdict.certificate();
     let mut text = head(scenario, &verdict);
     text += "\n";
-    text += &inequalities(certificate);
+    match certificate {
+        Certificate::Paper(certificate) => text += &papers(scenario, certificate)?,
+        Certificate::Extended(certificate) => text += &extended(certificate),
+    }
+    text += "\n";
+    text += &loops(scenario, &verdict);
+    Ok((text, verdict.refusal().is_none()))
+}
+
+/// The paper's law: both forms side by side, then the rotors.
+fn papers(scenario: &Scenario, certificate: &PaperCertificate) -> Result<String, ParameterError> {
+    let mut text = inequalities(certificate);
     text += "\n";
     text += &bounds("as printed", &certificate.printed);
     text += &bounds("sharp", &certificate.sharp);
@@ -39,15 +54,37 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
         text += &rotors(certificate);
         text += &blame::sentence(&scenario.configuration, certificate)?;
     }
-    text += "\n";
-    text += &loops(scenario, &verdict);
-    Ok((text, verdict.refusal().is_none()))
+    Ok(text)
+}
+
+/// The extended law: its inequalities, rotors among them, and what it can command.
+fn extended(certificate: &ExtendedCertificate) -> String {
+    let head = ["inequality", "available", "", "required", "margin", ""];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for inequality in &certificate.inequalities {
+        let mut row = vec![inequality.name.to_owned(), short(inequality.available), inequality.unit.to_owned()];
+        row.extend(required(inequality));
+        rows.push(row);
+    }
+    let ExtendedBounds { rates: [rate, swing], thrust, torque, .. } = &certificate.bounds;
+    aligned(&rows)
+        + &format!(
+            "rotors: beyond hovering. Across the thrust axis |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in \
+             [{}, {}] N, torques {}, {}, {} N m\n",
+            short(*rate),
+            short(*swing),
+            short(thrust.least),
+            short(thrust.greatest),
+            short(torque.x),
+            short(torque.y),
+            short(torque.z)
+        )
 }
 
 /// The verdict, what it rests on, and what a reader looks for first.
 fn head(scenario: &Scenario, verdict: &Verdict) -> String {
-    let failing = |form: &Form| {
-        let names: Vec<&str> = form.inequalities.iter().filter(|i| !i.holds()).map(|i| i.name).collect();
+    let failing = |inequalities: &[Inequality]| {
+        let names: Vec<&str> = inequalities.iter().filter(|i| !i.holds()).map(|i| i.name).collect();
         if names.is_empty() { "every inequality holds".to_owned() } else { format!("fails in {}", names.join(", ")) }
     };
     let certificate = verdict.certificate();
@@ -69,16 +106,20 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         .configuration
         .thrust_floor()
         .map_or(String::new(), |floor| format!("thrust projection on, floor {} N\n", short(f64::from(floor))));
+    let forms = match certificate {
+        Certificate::Paper(PaperCertificate { printed, sharp, .. }) => {
+            format!("as printed: {}\nsharp: {}", failing(&printed.inequalities), failing(&sharp.inequalities))
+        }
+        Certificate::Extended(certificate) => format!("extended law: {}", failing(&certificate.inequalities)),
+    };
     format!(
-        "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n\
-         as printed: {}\nsharp: {}\n{tightest}{projection}",
+        "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{forms}\n\
+         {tightest}{projection}",
         scenario.name,
-        failing(&certificate.printed),
-        failing(&certificate.sharp)
     )
 }
 
-fn inequalities(certificate: &Certificate) -> String {
+fn inequalities(certificate: &PaperCertificate) -> String {
     let head = ["inequality", "available", "", "as printed", "margin", "", "sharp", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for (printed, sharp) in certificate.printed.inequalities.iter().zip(&certificate.sharp.inequalities) {
@@ -108,7 +149,7 @@ fn bounds(name: &str, form: &Form) -> String {
     )
 }
 
-fn rotors(certificate: &Certificate) -> String {
+fn rotors(certificate: &PaperCertificate) -> String {
     let head = ["rotor, excursion from hover", "available", "", "required", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for inequality in certificate.rotors.iter().flat_map(|report| [&report.least, &report.greatest]) {

@@ -14,7 +14,7 @@
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::form::Form;
+use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
@@ -70,9 +70,11 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
     let thrust_max = Some(f64::from(limits.thrust_max));
     claims.push(at_most("thrust, vehicle's limit".to_owned(), flown.thrust.1, thrust_max, " N"));
     claims.extend(torques("vehicle's limit", &flown.torque, limits.torque_max.map(f64::from).as_ref()));
-    let m_p = f64::from(scenario.configuration.gains().m_p);
+    if let Some(gains) = scenario.configuration.gains() {
+        let claim = "|u_f|, |u_s| per axis, M_p".to_owned();
+        claims.push(at_most(claim, flown.filter, Some(f64::from(gains.m_p)), " m/s^2"));
+    }
     claims.extend([
-        at_most("|u_f|, |u_s| per axis, M_p".to_owned(), flown.filter, Some(m_p), " m/s^2"),
         at_most("ticks with a clipped command".to_owned(), flown.clipped as f64, Some(0.0), ""),
         at_most("changes of m*".to_owned(), flown.lift_changes as f64, None, ""),
         at_most("height lost".to_owned(), flown.height_lost, None, " m"),
@@ -116,16 +118,16 @@ fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
 
 /// What the certificate bounds. Its bounds hold for every configuration, whether or not they fit the limits.
 fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
-    let interval = |form: &Form| (form.thrust.least, form.thrust.greatest);
-    let (printed, sharp) = (&certificate.printed, &certificate.sharp);
-    let mut claims = vec![
-        within("thrust, Theorem 1".to_owned(), flown.thrust, interval(printed)),
-        within("thrust, sharp bound".to_owned(), flown.thrust, interval(sharp)),
-    ];
-    claims.extend(torques("sharp bound", &flown.torque, sharp.torque.as_ref()));
-    for (number, (report, flown)) in (1..).zip(certificate.rotors.iter().zip(&flown.rotors)) {
-        let demand = &report.demand;
-        claims.push(within(format!("rotor {number}, sharp bound"), *flown, (demand.least, demand.greatest)));
+    let interval = |Interval { least, greatest }: Interval| (least, greatest);
+    let printed = certificate.paper().map(|paper| paper.printed.thrust);
+    let printed = printed.map(|thrust| within("thrust, Theorem 1".to_owned(), flown.thrust, interval(thrust)));
+    let mut claims: Vec<Claim> = printed.into_iter().collect();
+    claims.push(within("thrust, sharp bound".to_owned(), flown.thrust, interval(certificate.thrust())));
+    claims.extend(torques("sharp bound", &flown.torque, certificate.torque().as_ref()));
+    for (rotor, flown) in flown.rotors.iter().enumerate() {
+        let bound = certificate.rotor(rotor);
+        let claim = |bound| within(format!("rotor {}, sharp bound", rotor + 1), *flown, interval(bound));
+        claims.extend(bound.map(claim));
     }
     claims
 }

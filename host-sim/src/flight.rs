@@ -4,13 +4,15 @@
 //! held until the next tick. Time is integer microseconds.
 
 use crate::actuators::rotors::SpinningRotors;
-use crate::actuators::{ActuationError, Actuators, Allocation};
+use crate::actuators::{ActuationError, Actuators};
 use crate::plant::Plant;
-use controller_core::allocation::{MinimumNorm, Mixer, Thrusts};
+use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::controller::{Controller, Diagnostics};
+use controller_core::controller::Diagnostics;
 use controller_core::error::{InputError, ParameterError};
+use controller_core::extended::controller::Estimates;
+use controller_core::law::Law;
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::Wrench;
 use scenario::Scenario;
@@ -23,7 +25,7 @@ use std::sync::Arc;
 pub struct Flight {
     plant: Plant,
     actuators: Actuators,
-    controller: Controller,
+    law: Law,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
     steps_per_tick: u32,
@@ -39,10 +41,12 @@ pub struct Tick {
     pub state: BodyState,
     /// What was asked for.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it.
+    /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust scale.
     pub wrench: Wrench,
     /// What the law went through.
     pub diagnostics: Diagnostics,
+    /// What the law has estimated, if it estimates anything.
+    pub estimates: Option<Estimates>,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
     /// Each rotor's thrust at the tick, N, after lag; empty without rotors.
@@ -81,22 +85,18 @@ impl fmt::Display for FlightError {
 
 impl std::error::Error for FlightError {}
 
-/// The law for the scenario's vehicle and gains, reset: through the door that boards use where the scenario is certified.
-/// What no certificate covers may be simulated.
+/// The law of the scenario, reset: through the door that boards use where the scenario is certified. What no certificate
+/// covers may be simulated.
 ///
 /// # Errors
-/// If the controller refuses the scenario's period; a [`Scenario`] that was read from a file has a good one.
-pub fn controller(scenario: &Scenario) -> Result<Controller, ParameterError> {
+/// If the law refuses the scenario's period or delay.
+pub fn law(scenario: &Scenario) -> Result<Law, ParameterError> {
     let configuration = &scenario.configuration;
     let period = scenario.timing.period() as f32;
     match Certified::new(configuration.clone()) {
-        Ok(certified) => Controller::new(&certified, period),
-        Err(_) => uncertified(configuration, period),
+        Ok(certified) => Law::new(&certified, period),
+        Err(_) => Law::uncertified(configuration, period),
     }
-}
-
-fn uncertified(configuration: &Configuration, period: f32) -> Result<Controller, ParameterError> {
-    Controller::uncertified(*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor(), period)
 }
 
 impl Flight {
@@ -104,7 +104,7 @@ impl Flight {
     /// whoever flies one scenario many times clones the start.
     ///
     /// # Errors
-    /// As [`controller`]'s.
+    /// As [`law`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         match Certified::new(scenario.configuration.clone()) {
             Ok(certified) => Self::certified(scenario, &certified),
@@ -116,38 +116,33 @@ impl Flight {
     /// its timing, delay, lag, start and reference.
     ///
     /// # Errors
-    /// As [`controller`]'s.
+    /// As [`law`]'s.
     pub fn certified(scenario: &Scenario, certified: &Certified) -> Result<Self, ParameterError> {
-        let controller = Controller::new(certified, scenario.timing.period() as f32)?;
-        let minimum_norm = certified.configuration().rotors().map(|rotors| Box::new(MinimumNorm::new(rotors)));
-        Ok(Self::start(scenario, certified.configuration(), controller, minimum_norm.map(Allocation::Certified)))
+        let law = Law::new(certified, scenario.timing.period() as f32)?;
+        Ok(Self::start(scenario, certified.configuration(), law))
     }
 
     /// A flight that nothing certifies.
     ///
     /// # Errors
-    /// As [`controller`]'s.
+    /// As [`law`]'s.
     pub fn uncertified(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
-        let controller = uncertified(configuration, scenario.timing.period() as f32)?;
-        let mixer = configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors)));
-        Ok(Self::start(scenario, configuration, controller, mixer.map(Allocation::Prioritised)))
+        let law = Law::uncertified(configuration, scenario.timing.period() as f32)?;
+        Ok(Self::start(scenario, configuration, law))
     }
 
-    fn start(
-        scenario: &Scenario,
-        configuration: &Configuration,
-        controller: Controller,
-        allocation: Option<Allocation>,
-    ) -> Self {
+    fn start(scenario: &Scenario, configuration: &Configuration, law: Law) -> Self {
         let (timing, vehicle) = (&scenario.timing, configuration.vehicle());
         let hover = vehicle.mass * vehicle.gravity;
-        let hovering = |rotors| SpinningRotors::hovering(rotors, scenario.rotor_lag, hover, timing.step());
-        let rotors = allocation.zip(configuration.rotors().map(hovering));
+        let rotors = configuration.rotors().map(|rotors| {
+            let spinning = SpinningRotors::hovering(rotors, scenario.rotor_lag, hover, timing.step());
+            (Box::new(Mixer::new(rotors)), spinning)
+        });
         Self {
             actuators: Actuators::new(rotors, scenario.delay_steps, hover),
             plant: Plant::new(vehicle, configuration.limits(), timing.step(), scenario.initial),
-            controller,
+            law,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
             steps_per_tick: timing.steps_per_tick,
@@ -165,13 +160,18 @@ impl Flight {
         let (state, rotors) = (*self.plant.state(), self.actuators.thrusts());
         let reference = self.trajectory.at(time_us);
         let (wrench, diagnostics) =
-            self.controller.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
+            self.law.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
+        let asked = wrench.scaled(1.0 / self.law.thrust_scale());
         let (clipped, rotor_thrusts) = self
             .actuators
-            .hold(&mut self.plant, &wrench, self.steps_per_tick)
+            .hold(&mut self.plant, &asked, self.steps_per_tick)
             .map_err(|error| fail(Cause::Actuation(error)))?;
+        if clipped {
+            self.law.hold_estimates();
+        }
         self.tick += 1;
-        Ok(Tick { time_us, state, reference, wrench, diagnostics, clipped, rotors, rotor_thrusts })
+        let estimates = self.law.estimates();
+        Ok(Tick { time_us, state, reference, wrench, diagnostics, estimates, clipped, rotors, rotor_thrusts })
     }
 }
 

@@ -126,9 +126,10 @@ fn log_flight(
 ) -> Result<(Flown, Record), FlyError> {
     let ticks = scenario.timing.ticks;
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+    let estimates = scenario.configuration.paper().is_none();
     let (mut flown, mut record) = (Flown::new(scenario), Record::new(ticks));
     let mut progress = Progress::new("flying", ticks);
-    log.write(|file| writeln!(file, "{}", log::header(rotors)))?;
+    log.write(|file| writeln!(file, "{}", log::header(rotors, estimates)))?;
     for done in 0..ticks {
         interrupted(interrupt)?;
         let tick = flight.tick()?;

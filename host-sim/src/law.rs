@@ -5,16 +5,16 @@
 //! ```text
 //! in:  t dt | x(3) v(3) world, z up | q(4) as x y z w, body to world | omega(3) body |
 //!      reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
-//! out: thrust [N], torque x y z [N m], as commanded: not clipped to any limit
+//! out: thrust [N], torque x y z [N m], what the rotors are to be asked for: not clipped to any limit
 //! ```
 //!
 //! SI units and rad. The output uses the filters as they stand; they then advance by the line's dt. t serves messages
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
-use crate::flight::controller;
-use controller_core::controller::Controller;
+use crate::flight;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
+use controller_core::law::Law;
 use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
@@ -68,7 +68,7 @@ impl std::error::Error for ServeError {}
 
 /// The law behind a text interface.
 pub struct LawServer {
-    controller: Controller,
+    law: Law,
     /// The reference's a_z must stay above this, m/s^2.
     least_vertical_acceleration: f64,
 }
@@ -94,14 +94,14 @@ impl LawServer {
     /// The law for the scenario's vehicle and gains, reset. Its initial state, reference and plant are not used.
     ///
     /// # Errors
-    /// As [`Controller::new`]'s.
+    /// As [`Law::new`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
-        let (m_p, gravity) = (f64::from(configuration.gains().m_p), f64::from(configuration.vehicle().gravity));
+        let (fall, gravity) = (f64::from(configuration.greatest_fall()), f64::from(configuration.vehicle().gravity));
         Ok(Self {
-            controller: controller(scenario)?,
-            // A step of single precision above M_p - g, so that rounding never turns a refused number into a served one.
-            least_vertical_acceleration: m_p - gravity * (1.0 - f64::from(f32::EPSILON)),
+            law: flight::law(scenario)?,
+            // A step of single precision above the limit, so that rounding never turns a refused number into a served one.
+            least_vertical_acceleration: fall - gravity * (1.0 - f64::from(f32::EPSILON)),
         })
     }
 
@@ -165,9 +165,9 @@ impl LawServer {
             return Err(at_time(format!("reference a[2]: must stay above M_p - g = {limit:.6}, found {}", values[23])));
         }
 
-        self.controller.set_period(period as f32).map_err(|error| at_time(error.to_string()))?;
-        let (wrench, _) = self.controller.step(&state, &reference).map_err(|error| at_time(error.to_string()))?;
-        Ok(wrench)
+        self.law.set_period(period as f32).map_err(|error| at_time(error.to_string()))?;
+        let (wrench, _) = self.law.step(&state, &reference).map_err(|error| at_time(error.to_string()))?;
+        Ok(wrench.scaled(1.0 / self.law.thrust_scale()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! log.csv: one row per control tick.
 //!
-//! The first 40 columns are a contract with other tools; what stands to their right may grow, by the rotors' thrusts at the end
-//! (N, after lag, numbered from 1). Angles in rad, the rest in SI
+//! The first 40 columns are a contract with other tools; what stands to their right may grow, by what the law estimates and, at the end,
+//! the rotors' thrusts (N, after lag, numbered from 1). Angles in rad, the rest in SI
 //! units; each number has the digits that give its bits back.
 
 use crate::flight::Tick;
@@ -12,10 +12,14 @@ const HEADER: &str = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,y
 mrp_x,mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,s_omega,\
 qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 
-/// The header row for a vehicle with so many rotors.
+/// What a law that estimates adds: force, m/s^2; torque, N m; thrust scale.
+const ESTIMATES: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
+
+/// The header row for a vehicle with so many rotors, under a law that estimates or not.
 #[must_use]
-pub fn header(rotors: usize) -> String {
-    (1..=rotors).fold(HEADER.to_owned(), |header, rotor| header + &format!(",rotor_{rotor}"))
+pub fn header(rotors: usize, estimates: bool) -> String {
+    let law = HEADER.to_owned() + if estimates { ESTIMATES } else { "" };
+    (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
 /// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`.
@@ -47,6 +51,11 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     singles(out, d.desired_angular_velocity.as_slice())?;
     singles(out, d.desired_angular_acceleration.as_slice())?;
     write!(out, ",{}", u8::from(tick.clipped))?;
+    if let Some(estimates) = &tick.estimates {
+        singles(out, estimates.force.value.as_slice())?;
+        singles(out, estimates.torque.as_slice())?;
+        singles(out, &[estimates.scale])?;
+    }
     doubles(out, &tick.rotors)?;
     writeln!(out)
 }
@@ -68,7 +77,7 @@ mod tests {
         let contract = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,yaw_d,thrust,tau_x,tau_y,tau_z,mrp_x,\
             mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,\
             s_omega";
-        assert!(header(0).starts_with(contract));
-        assert!(header(4).ends_with(",clipped,rotor_1,rotor_2,rotor_3,rotor_4"));
+        assert!(header(0, false).starts_with(contract) && header(0, true).starts_with(contract));
+        assert!(header(4, false).ends_with(",clipped,rotor_1,rotor_2,rotor_3,rotor_4"));
     }
 }

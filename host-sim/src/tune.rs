@@ -19,6 +19,7 @@ pub mod evolution;
 pub mod frontier;
 pub mod output;
 pub mod requirements;
+pub mod space;
 
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -103,6 +104,7 @@ pub fn widest_bounds(configuration: &Configuration, margin: f64) -> Result<(f64,
     let scaled = |factor: f64| {
         let grow = |value: f32| (f64::from(value) * factor) as f32;
         ReferenceBounds {
+            horizontal_speed: grow(bounds.horizontal_speed),
             horizontal_acceleration: grow(bounds.horizontal_acceleration),
             vertical_acceleration: grow(bounds.vertical_acceleration),
             jerk: grow(bounds.jerk),

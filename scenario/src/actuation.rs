@@ -24,15 +24,22 @@ use toml::Value;
 /// Longest lag and delay, s: slower actuators fly no multirotor.
 const LONGEST: f64 = 1.0;
 
-/// Reads `[rotors]`: carries `configuration` to the rotors, and returns it with the first-order lag of their speeds, s.
-/// Without the section there is neither.
+/// Reads the first-order lag of the rotors' speeds, s; zero without `[rotors]`.
+///
+/// # Errors
+/// If it is negative or longer than any rotor's.
+pub fn read_lag(root: &Section) -> Result<f64, FieldError> {
+    root.optional_section("rotors")?.map_or(Ok(0.0), |section| read_time(&section, "lag"))
+}
+
+/// Reads `[rotors]`: carries `configuration` to the rotors. Without the section it stays as it is.
 ///
 /// # Errors
 /// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench, `rotors.speed` if
 /// the vehicle cannot hover between its ends.
-pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<(Configuration, f64), FieldError> {
+pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<Configuration, FieldError> {
     let Some(section) = root.optional_section("rotors")? else {
-        return Ok((configuration, 0.0));
+        return Ok(configuration);
     };
     section.allow(&["position", "spin", "thrust_coefficient", "drag_coefficient", "speed", "lag"])?;
     let positions = section.elements("position", "a list of positions [x, y, z]")?;
@@ -57,8 +64,7 @@ pub fn read_rotors(root: &Section, configuration: Configuration) -> Result<(Conf
         });
     }
     let rotors = Rotors::new(&list).map_err(|error| root.refused(&in_file(error)))?;
-    let lag = read_time(&section, "lag")?;
-    Ok((mounted(root, configuration, rotors)?, lag))
+    mounted(root, configuration, rotors)
 }
 
 /// The field of the file that a refused field of one rotor comes from: all have the same coefficients and speeds.

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! [reference_bounds]
+//! horizontal_speed = 5.0             # K_v12, m/s; left out: 5, or what the reference takes if that is more
 //! horizontal_acceleration = 2.5      # K_a12, m/s^2, Euclidean
 //! vertical_acceleration = 0.5        # K_a3, m/s^2
 //! jerk = 4.0                         # K_j, m/s^3, Euclidean
@@ -10,10 +11,13 @@
 //! heading_second_derivative = 2.0    # K_nu'', 1/s^2: sqrt(psi''^2 + psi'^4)
 //! ```
 //!
-//! All six are needed, and none may be less than the scenario's own reference takes.
+//! The other six are needed, and none may be less than the scenario's own reference takes.
 
 use crate::section::{FieldError, Section};
 use controller_core::reference::ReferenceBounds;
+
+/// The least K_v12 where the file leaves it out, m/s: what the governor allows.
+const DEFAULT_SPEED: f32 = 5.0;
 
 /// Reads `[reference_bounds]`; `own` are those of the scenario's reference.
 ///
@@ -21,9 +25,10 @@ use controller_core::reference::ReferenceBounds;
 /// Names the bound that is missing, negative, or below what the reference takes.
 pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBounds, FieldError> {
     let Some(section) = root.optional_section("reference_bounds")? else {
-        return Ok(*own);
+        return Ok(ReferenceBounds { horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED), ..*own });
     };
     let fields = [
+        ("horizontal_speed", own.horizontal_speed),
         ("horizontal_acceleration", own.horizontal_acceleration),
         ("vertical_acceleration", own.vertical_acceleration),
         ("jerk", own.jerk),
@@ -32,16 +37,22 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
         ("heading_second_derivative", own.heading_second_derivative),
     ];
     section.allow(&fields.map(|(key, _)| key))?;
-    let mut values = [0.0_f32; 6];
+    let mut values = [0.0_f32; 7];
     for (value, (key, taken)) in values.iter_mut().zip(fields) {
-        *value = section.number(key)? as f32;
+        *value = match key {
+            "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
+            _ => section.number(key)?,
+        } as f32;
         if *value < taken {
             let problem = format!("must be at least {taken}, which [reference] takes, found {value}");
             return Err(FieldError::new(section.path_of(key), problem));
         }
     }
-    let [horizontal_acceleration, vertical_acceleration, jerk, snap, heading_rate, heading_second_derivative] = values;
+    let [
+        horizontal_speed,
+        horizontal_acceleration, vertical_acceleration, jerk, snap, heading_rate, heading_second_derivative] = values;
     let bounds = ReferenceBounds {
+        horizontal_speed,
         horizontal_acceleration,
         vertical_acceleration,
         jerk,
@@ -56,8 +67,9 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
 #[must_use]
 pub fn written(bounds: &ReferenceBounds) -> String {
     format!(
-        "[reference_bounds]\nhorizontal_acceleration = {:?}\nvertical_acceleration = {:?}\njerk = {:?}\nsnap = {:?}\n\
+        "[reference_bounds]\nhorizontal_speed = {:?}\nhorizontal_acceleration = {:?}\nvertical_acceleration = {:?}\njerk = {:?}\nsnap = {:?}\n\
          heading_rate = {:?}\nheading_second_derivative = {:?}\n",
+        bounds.horizontal_speed,
         bounds.horizontal_acceleration,
         bounds.vertical_acceleration,
         bounds.jerk,

@@ -8,6 +8,7 @@ use crate::timing::Timing;
 use crate::{actuation, bounds, initial, vehicle};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
+use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::reference::Trajectory;
 use std::fmt;
 use std::path::Path;
@@ -18,12 +19,13 @@ use toml::Table;
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// What a scenario file may hold at its top level.
-const SECTIONS: [&str; 12] = [
+const SECTIONS: [&str; 13] = [
     "name",
     "duration",
     "vehicle",
     "limits",
     "gains",
+    "estimates",
     "control",
     "plant",
     "rotors",
@@ -94,8 +96,11 @@ impl Scenario {
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let bounds = bounds::read_bounds(root, &trajectory.bounds())?;
         let delay_steps = actuation::read_delay(root, &timing)?;
-        let configuration = vehicle::read_configuration(root, &bounds)?;
-        let (configuration, rotor_lag) = actuation::read_rotors(root, configuration)?;
+        let rotor_lag = actuation::read_lag(root)?;
+        let delay = delay_steps as f64 * timing.step();
+        let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: delay as f32 };
+        let configuration = vehicle::read_configuration(root, &bounds, actuators)?;
+        let configuration = actuation::read_rotors(root, configuration)?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         Ok(Self { name, timing, configuration, rotor_lag, delay_steps, initial, reference, trajectory })
@@ -114,7 +119,7 @@ impl Scenario {
     pub fn loops(&self) -> Result<LoopModel, ParameterError> {
         let period = self.timing.period();
         let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples: self.delay() / period };
-        LoopModel::new(self.configuration.vehicle(), self.configuration.gains(), timing)
+        LoopModel::new(self.configuration.vehicle(), self.configuration.law(), timing)
     }
 
     /// Whether `other` is the same flight, whatever its name.

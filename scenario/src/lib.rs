@@ -3,7 +3,8 @@
 //! | section | left out |
 //! |---|---|
 //! | `name`, `duration`, `[vehicle]`, `[limits]`, `[gains]`, `[reference]` | an error |
-//! | `[control]` | `rate` 100 Hz; no `thrust_floor`: the paper's thrust |
+//! | `[control]` | `rate` 100 Hz; `law` the paper's; no `thrust_floor`: the paper's thrust |
+//! | `[estimates]` | the extended law estimates nothing |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
@@ -19,6 +20,7 @@
 pub mod actuation;
 pub mod body;
 pub mod bounds;
+pub mod extended;
 pub mod file;
 pub mod initial;
 pub mod reference;

@@ -25,7 +25,9 @@ mod spectral_radius;
 
 use chain::SampledLoop;
 use controller_core::error::{ParameterError, Reason};
-use controller_core::gains::{GainParameters, Gains};
+use controller_core::certificate::configuration::LawParameters;
+use controller_core::extended::parameters::{AttitudeParameters, Extended};
+use controller_core::gains::Gains;
 use controller_core::vehicle::Vehicle;
 use law::{Law, PositionGains, TorqueGains};
 
@@ -105,20 +107,68 @@ pub struct LoopReport {
     pub margins: Option<Margins>,
 }
 
-/// A vehicle, its gains and its timing, as far as small motions are concerned.
+/// A law near hover, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Slopes {
+    /// Torque per angle about each body axis, N m/rad.
+    stiffness: [f64; 3],
+    /// Torque per body rate, N m s.
+    damping: [f64; 3],
+    /// Gains across.
+    across: PositionGains,
+    /// Gains along the vertical.
+    vertical: PositionGains,
+}
+
+impl Slopes {
+    /// Of the paper's law: the MRP of a small angle is angle / 4, and (1 + |theta|^2) / 4 is 1/4.
+    fn paper(gains: &Gains) -> Self {
+        let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
+        let position = PositionGains { k_p, k_v, k_f, k_s };
+        Self {
+            stiffness: [f64::from(gains.k_theta) / 16.0; 3],
+            damping: [f64::from(gains.k_omega); 3],
+            across: position,
+            vertical: position,
+        }
+    }
+
+    /// Of the extended law, nothing being estimated: section 4 of `docs/extended-law.md`.
+    fn extended(parameters: &Extended) -> Self {
+        let p = &parameters.position;
+        let AttitudeParameters { w, eta, k_t, eta_t, k_omega_t, k_omega_z, .. } = parameters.attitude;
+        let [w, eta, k_t, eta_t] = [w, eta, k_t, eta_t].map(f64::from);
+        let tilt = w / 4.0 + k_t / (2.0 * eta_t.hypot(1.0));
+        let yaw = w * eta / (4.0 * (1.0 + eta));
+        let gains = |[k_p, k_v, k_f, k_s]: [f32; 4]| PositionGains {
+            k_p: k_p.into(),
+            k_v: k_v.into(),
+            k_f: k_f.into(),
+            k_s: k_s.into(),
+        };
+        Self {
+            stiffness: [tilt, tilt, yaw],
+            damping: [k_omega_t, k_omega_t, k_omega_z].map(f64::from),
+            across: gains([p.k_p_across, p.k_v_across, p.k_f_across, p.k_s_across]),
+            vertical: gains([p.k_p_vertical, p.k_v_vertical, p.k_f_vertical, p.k_s_vertical]),
+        }
+    }
+}
+
+/// A vehicle, its law and its timing, as far as small motions are concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopModel {
     inertia: [f64; 3],
-    gains: GainParameters,
+    slopes: Slopes,
     timing: Timing,
 }
 
 impl LoopModel {
-    /// The loops of `vehicle` flown with `gains` at the given timing.
+    /// The loops of `vehicle` flown under `law` at the given timing.
     ///
     /// # Errors
     /// Names `control.period`, `rotors.lag` or `sampling.delay` if it is not finite or outside its range.
-    pub fn new(vehicle: &Vehicle, gains: &Gains, timing: Timing) -> Result<Self, ParameterError> {
+    pub fn new(vehicle: &Vehicle, law: &LawParameters, timing: Timing) -> Result<Self, ParameterError> {
         let Timing { period, rotor_lag, delay_samples } = timing;
         for (value, field) in [(period, "control.period"), (rotor_lag, "rotors.lag"), (delay_samples, "sampling.delay")]
         {
@@ -130,16 +180,21 @@ impl LoopModel {
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
         require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::NotBelow(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        Ok(Self { inertia, gains: **gains, timing })
+        let slopes = match law {
+            LawParameters::Paper(law) => Slopes::paper(&law.gains),
+            LawParameters::Extended(law) => Slopes::extended(&law.parameters),
+        };
+        Ok(Self { inertia, slopes, timing })
     }
 
     /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
     /// gain margin at the position feedback. The gains need not be ones that may fly.
     #[must_use]
     pub fn with_position_feedback(&self, factor: f64) -> Self {
-        let scaled = |gain: f32| (f64::from(gain) * factor) as f32;
-        let gains = GainParameters { k_p: scaled(self.gains.k_p), k_v: scaled(self.gains.k_v), ..self.gains };
-        Self { gains, ..*self }
+        let scaled = |gains: PositionGains| PositionGains { k_p: gains.k_p * factor, k_v: gains.k_v * factor, ..gains };
+        let Slopes { across, vertical, .. } = self.slopes;
+        let slopes = Slopes { across: scaled(across), vertical: scaled(vertical), ..self.slopes };
+        Self { slopes, ..*self }
     }
 
     /// Spectral radius and margins of one loop.
@@ -178,9 +233,9 @@ impl LoopModel {
             Axis::Roll => Law::attitude(self.torque_gains(0)),
             Axis::Pitch => Law::attitude(self.torque_gains(1)),
             Axis::Yaw => Law::attitude(self.torque_gains(2)),
-            Axis::LateralX => Law::lateral(self.position_gains(), self.torque_gains(1)),
-            Axis::LateralY => Law::lateral(self.position_gains(), self.torque_gains(0)),
-            Axis::Vertical => Law::vertical(self.position_gains()),
+            Axis::LateralX => Law::lateral(self.position_gains(&self.slopes.across), self.torque_gains(1)),
+            Axis::LateralY => Law::lateral(self.position_gains(&self.slopes.across), self.torque_gains(0)),
+            Axis::Vertical => Law::vertical(self.position_gains(&self.slopes.vertical)),
         };
         SampledLoop::new(law, rotor_lag / period, delay_samples)
     }
@@ -189,19 +244,16 @@ impl LoopModel {
         let h = self.timing.period;
         let inertia = self.inertia[axis];
         TorqueGains {
-            angle: f64::from(self.gains.k_theta) * h * h / (16.0 * inertia),
-            rate: f64::from(self.gains.k_omega) * h / inertia,
+            angle: self.slopes.stiffness[axis] * h * h / inertia,
+            rate: self.slopes.damping[axis] * h / inertia,
         }
     }
 
-    fn position_gains(&self) -> PositionGains {
+    /// The same gains with the period for the unit of time.
+    fn position_gains(&self, gains: &PositionGains) -> PositionGains {
         let h = self.timing.period;
-        PositionGains {
-            k_p: f64::from(self.gains.k_p) * h * h,
-            k_v: f64::from(self.gains.k_v) * h,
-            k_f: f64::from(self.gains.k_f) * h,
-            k_s: f64::from(self.gains.k_s) * h,
-        }
+        let PositionGains { k_p, k_v, k_f, k_s } = *gains;
+        PositionGains { k_p: k_p * h * h, k_v: k_v * h, k_f: k_f * h, k_s: k_s * h }
     }
 }
 

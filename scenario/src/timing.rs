@@ -73,7 +73,7 @@ fn read_period(root: &Section) -> Result<u64, FieldError> {
     let Some(control) = root.optional_section("control")? else {
         return Ok((1e6 / DEFAULT_RATE) as u64);
     };
-    control.allow(&["rate", "thrust_floor"])?;
+    control.allow(&["law", "rate", "thrust_floor"])?;
     let rate = control.number_or("rate", DEFAULT_RATE)?;
     if !(LEAST_RATE..=GREATEST_RATE).contains(&rate) {
         let allowed = format!("must be from {LEAST_RATE} to {GREATEST_RATE:e} Hz");

@@ -1,22 +1,38 @@
 //! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about. All their fields are required.
 //!
-//! `[control] thrust_floor` (N) is an option of the law: see [`controller_core::projection`].
+//! `[control] law` is `"paper"` (also where it is left out) or `"extended"` ([`crate::extended`]); `[control] thrust_floor` (N) is an
+//! option of the paper's law: see [`controller_core::projection`].
 
+use crate::extended::read_extended;
 use crate::section::{FieldError, Section};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
+use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 
-/// Reads the three sections and the thrust floor, for references within `bounds`.
+/// Reads the three sections, the law and its options, for references within `bounds`. The extended law's estimates count on
+/// rotors that respond as `actuators` says.
 ///
 /// # Errors
-/// Names the field that is missing, not physical, or leaves the law undefined: M_p >= g - K_a3.
-pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Configuration, FieldError> {
+/// Names the field that is missing, not physical, of another law, or leaves the law undefined: M_p >= g - K_a3.
+pub fn read_configuration(
+    root: &Section,
+    bounds: &ReferenceBounds,
+    actuators: ActuatorParameters,
+) -> Result<Configuration, FieldError> {
     let vehicle = read_vehicle(root)?;
     let limits = read_limits(root, &vehicle)?;
-    let gains = read_gains(root, &vehicle)?;
-    let configuration = Configuration::new(vehicle, limits, gains, *bounds).map_err(|error| {
+    let configuration = if is_extended(root)? {
+        let parameters = read_extended(root, &vehicle)?;
+        Configuration::extended(vehicle, limits, ExtendedLaw { parameters, actuators }, *bounds)
+    } else if root.has("estimates") {
+        let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
+        return Err(FieldError::new("estimates", problem));
+    } else {
+        Configuration::new(vehicle, limits, read_gains(root, &vehicle)?, *bounds)
+    };
+    let configuration = configuration.map_err(|error| {
         let refused = root.refused(&error);
         let problem = format!(
             "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
@@ -30,6 +46,19 @@ pub fn read_configuration(root: &Section, bounds: &ReferenceBounds) -> Result<Co
             configuration.with_thrust_floor(floor).map_err(|error| root.refused(&error))
         }
         _ => Ok(configuration),
+    }
+}
+
+/// `[control] law`: whether it is the extended one.
+fn is_extended(root: &Section) -> Result<bool, FieldError> {
+    let law = match root.optional_section("control")? {
+        Some(control) if control.has("law") => control.text("law")?,
+        _ => "paper",
+    };
+    match law {
+        "paper" => Ok(false),
+        "extended" => Ok(true),
+        other => Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}"))),
     }
 }
 

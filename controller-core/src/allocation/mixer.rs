@@ -20,8 +20,8 @@
 //! a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding, which
 //! [`Allocation::achieved`] shows: it is worked out from the thrusts.
 //!
-//! It does not know the rotors' lag, nor what they delivered last tick. It is for flights that nothing is proven about:
-//! certified ones never come to step 2 and are flown without it.
+//! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its scenario says
+//! never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
 
 use super::attainable::{Polygon, Slabs, generators};
 use super::collected;

@@ -2,18 +2,47 @@
 
 use crate::allocation::Rotors;
 use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::extended::actuators::ActuatorParameters;
+use crate::extended::parameters::Extended;
 use crate::gains::Gains;
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{Limits, Vehicle};
 
-/// Everything the certificate judges: vehicle, limits, gains, the references that will be flown, and the options.
+/// A law and its constants.
+#[allow(clippy::large_enum_variant)] // without an allocator there is nowhere else to put either
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LawParameters {
+    /// The paper's law.
+    Paper(PaperLaw),
+    /// The [extended](crate::extended) law.
+    Extended(ExtendedLaw),
+}
+
+/// The paper's law and its option.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PaperLaw {
+    /// The gains.
+    pub gains: Gains,
+    /// The floor of the thrust projection, N; none for the law as printed.
+    pub thrust_floor: Option<f32>,
+}
+
+/// The extended law and the rotors' response that its estimates count on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtendedLaw {
+    /// The constants.
+    pub parameters: Extended,
+    /// How the wrench follows its commands.
+    pub actuators: ActuatorParameters,
+}
+
+/// Everything the certificate judges: vehicle, limits, law, the references that will be flown, and the rotors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configuration {
     vehicle: Vehicle,
     limits: Limits,
-    gains: Gains,
+    law: LawParameters,
     bounds: ReferenceBounds,
-    thrust_floor: Option<f32>,
     rotors: Option<Rotors>,
 }
 
@@ -28,25 +57,53 @@ impl Configuration {
         gains: Gains,
         bounds: ReferenceBounds,
     ) -> Result<Self, ParameterError> {
-        let bounds = bounds.validated()?;
-        let room = vehicle.gravity - bounds.vertical_acceleration;
-        require(gains.m_p < room, "gains.m_p", Reason::NotBelow(room))?;
-        Ok(Self { vehicle, limits, gains, bounds, thrust_floor: None, rotors: None })
+        Self::of(vehicle, limits, LawParameters::Paper(PaperLaw { gains, thrust_floor: None }), bounds)
     }
 
-    /// Turns on the thrust projection T = max(m u.R e3, floor), `floor` in N; see [`crate::projection`].
+    /// The extended law for `vehicle`, to fly references within `bounds`.
     ///
     /// # Errors
-    /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends.
-    pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
-        let field = "control.thrust_floor";
-        require_positive(floor, field)?;
-        let least = self.greatest_thrust_floor();
-        require(floor <= least, field, Reason::NotBelow(least))?;
-        Ok(Self { thrust_floor: Some(floor), ..self })
+    /// If a bound is not finite or negative, or M_z- + D_z >= g - K_a3, where the law is undefined.
+    pub fn extended(
+        vehicle: Vehicle,
+        limits: Limits,
+        law: ExtendedLaw,
+        bounds: ReferenceBounds,
+    ) -> Result<Self, ParameterError> {
+        Self::of(vehicle, limits, LawParameters::Extended(law), bounds)
     }
 
-    /// The same vehicle, limits and rotors with other gains and without projection.
+    fn of(
+        vehicle: Vehicle,
+        limits: Limits,
+        law: LawParameters,
+        bounds: ReferenceBounds,
+    ) -> Result<Self, ParameterError> {
+        let bounds = bounds.validated()?;
+        let room = vehicle.gravity - bounds.vertical_acceleration;
+        let (least, field) = match &law {
+            LawParameters::Paper(PaperLaw { gains, .. }) => (gains.m_p, "gains.m_p"),
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.greatest_fall(), "gains.m_down"),
+        };
+        require(least < room, field, Reason::NotBelow(room))?;
+        Ok(Self { vehicle, limits, law, bounds, rotors: None })
+    }
+
+    /// Turns on the thrust projection T = max(m u.R e3, floor) of the paper's law, `floor` in N; see [`crate::projection`].
+    ///
+    /// # Errors
+    /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends, or the law is
+    /// another.
+    pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
+        let field = "control.thrust_floor";
+        let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
+        require_positive(floor, field)?;
+        let least = self.least_thrust();
+        require(floor <= least, field, Reason::NotBelow(least))?;
+        Ok(Self { law: LawParameters::Paper(PaperLaw { thrust_floor: Some(floor), ..law }), ..self })
+    }
+
+    /// The same vehicle, limits and rotors under the paper's law with other gains and without projection.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -60,15 +117,24 @@ impl Configuration {
     /// # Errors
     /// As [`Self::new`], and as [`Self::with_thrust_floor`] if there is a floor.
     pub fn with_bounds(&self, bounds: ReferenceBounds) -> Result<Self, ParameterError> {
-        let configuration = Self::new(self.vehicle, self.limits, self.gains, bounds)?;
+        let configuration = Self::of(self.vehicle, self.limits, self.law, bounds)?;
         let configuration = Self { rotors: self.rotors.clone(), ..configuration };
-        self.thrust_floor.map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
+        self.thrust_floor().map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
     }
 
-    /// m (g - M_p - K_a3), N: the greatest floor the thrust projection may have.
+    /// By how much the law itself may command to fall, m/s^2: the reference's vertical acceleration must stay above this less g.
     #[must_use]
-    pub fn greatest_thrust_floor(&self) -> f32 {
-        self.vehicle.mass * (self.vehicle.gravity - self.gains.m_p - self.bounds.vertical_acceleration)
+    pub fn greatest_fall(&self) -> f32 {
+        match &self.law {
+            LawParameters::Paper(PaperLaw { gains, .. }) => gains.m_p,
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.greatest_fall(),
+        }
+    }
+
+    /// m (g - K_a3) less m times what the law may command to fall, N: the greatest floor the thrust projection may have.
+    #[must_use]
+    pub fn least_thrust(&self) -> f32 {
+        self.vehicle.mass * (self.vehicle.gravity - self.greatest_fall() - self.bounds.vertical_acceleration)
     }
 
     /// Carries the certificate to the rotors.
@@ -81,6 +147,11 @@ impl Configuration {
         let least: f32 = rotors.iter().map(|rotor| rotor.thrust_min).sum();
         require(greatest > hover, "rotors.speed", Reason::NotAbove(hover))?;
         require(least < hover, "rotors.speed", Reason::NotBelow(hover))?;
+        if let LawParameters::Extended(_) = self.law {
+            // Its thrust floor lifts every rotor: a rotor that thrust does not reach cannot be lifted by it.
+            let lifted = rotors.pseudo_inverse().iter().all(|row| row.x > 0.0);
+            require(lifted, "rotors.position", Reason::DoesNotSpan)?;
+        }
         Ok(Self { rotors: Some(rotors), ..self })
     }
 
@@ -96,10 +167,25 @@ impl Configuration {
         &self.limits
     }
 
-    /// The gains.
+    /// The law and its constants.
     #[must_use]
-    pub fn gains(&self) -> &Gains {
-        &self.gains
+    pub fn law(&self) -> &LawParameters {
+        &self.law
+    }
+
+    /// The paper's law; none if it is another.
+    #[must_use]
+    pub fn paper(&self) -> Option<&PaperLaw> {
+        match &self.law {
+            LawParameters::Paper(law) => Some(law),
+            LawParameters::Extended(_) => None,
+        }
+    }
+
+    /// The gains of the paper's law; none for another.
+    #[must_use]
+    pub fn gains(&self) -> Option<&Gains> {
+        self.paper().map(|law| &law.gains)
     }
 
     /// Omega_r: the references this configuration is for.
@@ -108,10 +194,10 @@ impl Configuration {
         &self.bounds
     }
 
-    /// The floor of the thrust projection, N; none for the paper's law.
+    /// The floor of the thrust projection, N; none where it is off.
     #[must_use]
     pub fn thrust_floor(&self) -> Option<f32> {
-        self.thrust_floor
+        self.paper().and_then(|law| law.thrust_floor)
     }
 
     /// The rotors, if the certificate is to reach them.

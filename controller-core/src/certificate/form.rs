@@ -10,11 +10,12 @@
 //! The proofs are worked out in double precision, once, before flight. The law flies in single precision, so each
 //! bound is raised by [`ARITHMETIC_ALLOWANCE`] before it is compared.
 
-use super::configuration::Configuration;
+use super::configuration::{Configuration, PaperLaw};
 use super::inequality::{self, Inequality};
 use super::printed;
 use super::reachable::Reachable;
 use super::sharp::{self, DesiredRates};
+use crate::gains::Gains;
 use crate::math;
 use nalgebra::Vector3;
 
@@ -69,8 +70,8 @@ pub(super) enum Derivation {
 }
 
 /// Bounds on the desired rates with the position feedback at `m_p` (zero: the reference alone).
-fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation) -> DesiredRates {
-    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+fn desired_rates(configuration: &Configuration, gains: &Gains, m_p: f64, derivation: Derivation) -> DesiredRates {
+    let bounds = configuration.bounds();
     let gravity = f64::from(configuration.vehicle().gravity);
     let inertia = configuration.vehicle().inertia.map(f64::from);
     let (k_f, k_s) = (f64::from(gains.k_f), f64::from(gains.k_s));
@@ -84,9 +85,10 @@ fn desired_rates(configuration: &Configuration, m_p: f64, derivation: Derivation
     }
 }
 
-/// The inequalities of `configuration` after `derivation`.
-pub(super) fn form(configuration: &Configuration, derivation: Derivation) -> Form {
-    let (vehicle, limits, gains) = (configuration.vehicle(), configuration.limits(), configuration.gains());
+/// The inequalities of `law`, the one of `configuration`, after `derivation`.
+pub(super) fn form(configuration: &Configuration, law: &PaperLaw, derivation: Derivation) -> Form {
+    let PaperLaw { gains, thrust_floor } = law;
+    let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let bounds = configuration.bounds();
     let (mass, gravity, m_p) = (f64::from(vehicle.mass), f64::from(vehicle.gravity), f64::from(gains.m_p));
     let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
@@ -98,13 +100,13 @@ pub(super) fn form(configuration: &Configuration, derivation: Derivation) -> For
         Derivation::Sharp => reach.magnitude(),
     };
     let least_law = mass * reach.vertical_least;
-    let floor = configuration.thrust_floor().map_or(0.0, f64::from);
+    let floor = thrust_floor.map_or(0.0, f64::from);
     let least = if floor > 0.0 { floor } else { least_law };
     let thrust = Interval { least: least / raised, greatest: mass * magnitude * raised };
 
-    let alone = desired_rates(configuration, 0.0, derivation).feedforward_torque * raised;
-    let rates = desired_rates(configuration, m_p, derivation);
-    let feedback_torque = feedback_torque(configuration, derivation);
+    let alone = desired_rates(configuration, gains, 0.0, derivation).feedforward_torque * raised;
+    let rates = desired_rates(configuration, gains, m_p, derivation);
+    let feedback_torque = feedback_torque(gains, derivation);
     let torque = rates.feedforward_torque.add_scalar(feedback_torque) * raised;
     let available = limits.torque_max.map(f64::from);
     let thrust_max = f64::from(limits.thrust_max);
@@ -127,8 +129,7 @@ pub(super) fn form(configuration: &Configuration, derivation: Derivation) -> For
 }
 
 /// iota of Theorem 2. The sharp form uses what the saturation reaches at |theta| = 1 + delta instead of its limit.
-fn feedback_torque(configuration: &Configuration, derivation: Derivation) -> f64 {
-    let gains = configuration.gains();
+fn feedback_torque(gains: &Gains, derivation: Derivation) -> f64 {
     let (m_theta, m_omega) = (f64::from(gains.m_theta), f64::from(gains.m_omega));
     let radius = 1.0 + f64::from(gains.delta);
     let attitude = match derivation {

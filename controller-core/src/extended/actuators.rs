@@ -23,6 +23,15 @@ pub struct ActuatorParameters {
     pub delay: f32,
 }
 
+impl ActuatorParameters {
+    /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up, and one.
+    #[must_use]
+    pub fn settling(&self, period: f32) -> u32 {
+        // Converting to an integer rounds towards zero.
+        ((self.delay + 5.0 * self.lag) / period) as u32 + 2
+    }
+}
+
 /// Weights of x, the older and the newer command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Response {

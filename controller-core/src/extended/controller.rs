@@ -9,7 +9,7 @@
 //! with the feedback and the accelerations that will be held; then all of them advance by one period. So the wrench is the one
 //! for the instant the state was taken, as in the paper's [`controller`](crate::controller).
 
-use super::actuators::{ActuatorModel, ActuatorParameters, ActuatorState};
+use super::actuators::{ActuatorModel, ActuatorState};
 use super::attitude::{AttitudeLaw, AttitudeTorque};
 use super::force::{self, ForceEstimate, ForceGenerator};
 use super::heading::{self, HeadingLag};
@@ -20,6 +20,8 @@ use super::thrust_scale::ThrustScale;
 use super::torque_bias::{self, TorqueBias};
 use crate::allocation::Rotors;
 use crate::attitude_reference::DesiredAttitude;
+use crate::certificate::certified::Certified;
+use crate::certificate::configuration::{ExtendedLaw, LawParameters};
 use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::path_lifting::{self, Lift};
@@ -65,6 +67,8 @@ pub struct Memory {
     pub heading: Option<HeadingLag>,
     /// The estimates.
     pub estimates: Estimates,
+    /// Ticks for which the estimates are still held.
+    held: u32,
     last: Option<Last>,
     actuators: ActuatorState,
     /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
@@ -75,6 +79,8 @@ pub struct Memory {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
     vehicle: Vehicle,
+    law: ExtendedLaw,
+    rotors: Option<Rotors>,
     parameters: Extended,
     period: f32,
     per_mass: f32,
@@ -88,24 +94,41 @@ pub struct Controller {
     thrust_scale: ThrustScale,
     floor: ThrustFloor,
     actuators: ActuatorModel,
-    holds: bool,
+    /// Ticks for which the wrench that acts still depends on one that was not delivered.
+    settling: u32,
     memory: Memory,
 }
 
 impl Controller {
+    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
+    /// (0, 0.1].
+    ///
+    /// # Errors
+    /// Names `control.period` if it is outside, `estimates.force_bandwidth_…` or `sampling.delay` if it is beyond what they
+    /// allow, `control.law` if the configuration's is another.
+    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
+        let configuration = certified.configuration();
+        let LawParameters::Extended(law) = configuration.law() else {
+            return Err(ParameterError { field: "control.law", reason: Reason::OtherLaw });
+        };
+        Self::build(configuration.vehicle(), law, configuration.rotors(), period)
+    }
+
     pub(crate) fn build(
         vehicle: &Vehicle,
-        parameters: &Extended,
+        law: &ExtendedLaw,
         rotors: Option<&Rotors>,
-        actuators: &ActuatorParameters,
         period: f32,
     ) -> Result<Self, ParameterError> {
+        let ExtendedLaw { parameters, actuators } = law;
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
         let p = &parameters.position;
         Ok(Self {
             vehicle: *vehicle,
+            law: *law,
+            rotors: rotors.cloned(),
             parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
@@ -118,7 +141,7 @@ impl Controller {
             thrust_scale: ThrustScale::new(&parameters.estimates, period),
             floor: ThrustFloor::new(rotors, parameters.floor_margin),
             actuators: ActuatorModel::new(actuators, period)?,
-            holds: false,
+            settling: actuators.settling(period),
             memory: Self::fresh(vehicle, Estimates::NONE),
         })
     }
@@ -131,6 +154,7 @@ impl Controller {
             lift: None,
             heading: None,
             estimates,
+            held: 0,
             last: None,
             actuators: ActuatorState::steady(hover),
             acted: hover,
@@ -147,9 +171,26 @@ impl Controller {
         self.memory = Self::fresh(&self.vehicle, self.memory.estimates);
     }
 
-    /// Whether the estimates stay as they are: on the ground, while a rotor saturates, without a velocity.
-    pub fn hold_estimates(&mut self, hold: bool) {
-        self.holds = hold;
+    /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on
+    /// the ground, without a velocity, or of which the rotors could not deliver the wrench.
+    pub fn hold_estimates(&mut self) {
+        self.memory.held = self.settling;
+    }
+
+    /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided by it.
+    #[must_use]
+    pub fn thrust_scale(&self) -> f32 {
+        self.memory.estimates.scale
+    }
+
+    /// Changes the time between steps, s.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the period then stays what it was.
+    pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
+        let rebuilt = Self::build(&self.vehicle, &self.law, self.rotors.as_ref(), period)?;
+        *self = Self { memory: self.memory, ..rebuilt };
+        Ok(())
     }
 
     /// What the law remembers.
@@ -158,10 +199,11 @@ impl Controller {
         &self.memory
     }
 
-    /// The estimate of the torque bias, cut to its level, N m, body frame.
+    /// What has been estimated; the torque bias as far as it is believed.
     #[must_use]
-    pub fn torque_estimate(&self) -> Vector3<f32> {
-        self.torque_bias.estimate(&self.memory.estimates.torque)
+    pub fn estimates(&self) -> Estimates {
+        let estimates = self.memory.estimates;
+        Estimates { torque: self.torque_bias.estimate(&estimates.torque), ..estimates }
     }
 
     /// One tick of the law.
@@ -209,6 +251,7 @@ impl Controller {
             lift: Some(lifted.lift),
             heading: Some(heading::advanced(&heading, &turning, self.period)),
             estimates: Estimates { force: self.force.advanced(&estimates.force, &force_acceleration), ..estimates },
+            held: self.memory.held.saturating_sub(1),
             last: Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity }),
             actuators,
             acted,
@@ -238,8 +281,8 @@ impl Controller {
 
     /// The estimates with what happened since the last tick.
     fn estimate(&self, state: &State, axis: &Vector3<f32>) -> Estimates {
-        let Memory { estimates, last, acted, .. } = &self.memory;
-        let Some(last) = last.as_ref().filter(|_| !self.holds) else {
+        let Memory { estimates, last, acted, held, .. } = &self.memory;
+        let Some(last) = last.as_ref().filter(|_| *held == 0) else {
             return *estimates;
         };
         let mean_axis = (last.thrust_axis + axis) * 0.5;

@@ -244,9 +244,15 @@ impl Extended {
             "estimates.scale_greatest",
             Reason::NotBelow(10.0),
         )?;
-        let least = p.m_down + e.force_vertical;
-        require(least < vehicle.gravity, "gains.m_down", Reason::NotBelow(vehicle.gravity))?;
-        Ok(Self(parameters))
+        let extended = Self(parameters);
+        require(extended.greatest_fall() < vehicle.gravity, "gains.m_down", Reason::NotBelow(vehicle.gravity))?;
+        Ok(extended)
+    }
+
+    /// M_z- + D_z, m/s^2: how far below g + p_d'' the vertical command may be.
+    #[must_use]
+    pub fn greatest_fall(&self) -> f32 {
+        self.position.m_down + self.estimates.force_vertical
     }
 }
 

@@ -46,7 +46,7 @@ fn controller(parameters: &ExtendedParameters) -> Controller {
     let vehicle = example::vehicle();
     let parameters = Extended::new(*parameters, &vehicle).unwrap();
     let actuators = ActuatorParameters { lag: 0.0, delay: 0.0 };
-    Controller::build(&vehicle, &parameters, Some(&example::rotors()), &actuators, 0.01).unwrap()
+    Controller::build(&vehicle, &ExtendedLaw { parameters, actuators }, Some(&example::rotors()), 0.01).unwrap()
 }
 
 #[test]
@@ -313,7 +313,7 @@ fn held_estimates_stay_as_they_are() {
     };
     let learnt = fly(&mut controller, 50);
     assert!(learnt.force.average.x > 0.5);
-    controller.hold_estimates(true);
+    controller.hold_estimates();
     let held = fly(&mut controller, 50);
     assert_eq!((held.force.average, held.torque, held.scale), (learnt.force.average, learnt.torque, learnt.scale));
 }

@@ -5,7 +5,8 @@
 //! takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and the
 //! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
 //! that it is where it should be (position and velocity errors zero); then z_1 = z_2 = 0, the filters stay at zero, and
-//! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had.
+//! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had. The extended
+//! law keeps what it has estimated, held: against a wind it leans, u = g e3 - d.
 //!
 //! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
 //! to fade out, so no bridge is needed, and such a start fits in a tick.
@@ -13,15 +14,16 @@
 use super::measurement::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
-use crate::allocation::{MinimumNorm, Thrusts};
+use crate::allocation::{Mixer, Thrusts};
 use crate::certificate::certified::Certified;
-use crate::controller::{Command, Controller};
+use crate::controller::Command;
 use crate::error::InputError;
 use crate::governor::{Governor, GovernorLimits, Memory, Setpoint};
 use crate::heading::Heading;
+use crate::law::Law;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::{Quaternion, Vector2, Vector3};
 
 /// What the law was given in a tick and what it made of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,13 +42,15 @@ pub struct Flown {
     pub mrp: Vector3<f32>,
 }
 
-/// Governor, law and allocation, with what they hand from tick to tick.
+/// Governor, law and mixer, with what they hand from tick to tick.
 #[derive(Debug, PartialEq)]
 pub(super) struct Chain<'m> {
     governor: &'m mut Governor,
-    controller: Controller,
-    allocation: MinimumNorm,
+    law: Law,
+    mixer: Mixer,
     rotors: usize,
+    /// The greatest horizontal speed of a reference, m/s.
+    speed: f32,
     /// The last tick's.
     reference: Reference,
     thrusts: Option<Thrusts>,
@@ -67,6 +71,13 @@ fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
     Reference { position, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
 }
 
+/// `velocity` with its horizontal part at most `speed` long.
+fn slowed(velocity: &Vector3<f32>, speed: f32) -> Vector3<f32> {
+    let across: Vector2<f32> = velocity.xy();
+    let share = (speed / across.norm().max(speed)).min(1.0);
+    Vector3::new(across.x * share, across.y * share, velocity.z)
+}
+
 impl<'m> Chain<'m> {
     pub fn new(
         certified: &Certified,
@@ -78,9 +89,10 @@ impl<'m> Chain<'m> {
         let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
         Ok(Self {
             governor: Governor::new(configuration.bounds(), limits, period, memory)?,
-            controller: apart(|| Controller::new(certified, period))?,
-            allocation: MinimumNorm::new(rotors),
+            law: apart(|| Law::new(certified, period))?,
+            mixer: apart(|| Mixer::new(rotors)),
             rotors: rotors.len(),
+            speed: configuration.bounds().horizontal_speed,
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
             refusals: 0,
@@ -98,26 +110,27 @@ impl<'m> Chain<'m> {
     /// The governor's; it goes on as before then.
     pub fn start(&mut self, position: &Vector3<f32>, heading: &Heading) -> Result<(), InputError> {
         self.governor.start(position, &Vector3::zeros(), heading)?;
-        self.controller.reset();
+        self.law.reset();
         self.reference = resting(position, heading);
         self.thrusts = None;
         self.refusals = 0;
         Ok(())
     }
 
-    /// Turns to levelling: a hover at the last heading, the law reset.
+    /// Turns to levelling: a hover at the last heading, the law restarted.
     pub fn level(&mut self) {
         self.reference = resting(&self.reference.position, &self.reference.heading);
-        self.controller.reset();
+        self.law.restart();
     }
 
-    /// Takes a flight up again where the vehicle is, at its velocity, with the heading that was held; then brakes to a stop.
-    /// The law needs no reset: levelling has left its filters at zero.
+    /// Takes a flight up again where the vehicle is, at its velocity as far as references may be as fast, with the heading that was
+    /// held; then brakes to a stop. The law needs no restart: levelling has left its filters at zero.
     ///
     /// # Errors
     /// As [`Self::start`].
     pub fn regain(&mut self, pose: &Pose) -> Result<(), InputError> {
-        self.governor.start(&pose.position(), &pose.velocity(), &self.reference.heading)
+        let velocity = slowed(&pose.velocity(), self.speed);
+        self.governor.start(&pose.position(), &velocity, &self.reference.heading)
     }
 
     /// Brings the reference to rest.
@@ -157,21 +170,27 @@ impl<'m> Chain<'m> {
         angular_velocity: Vector3<f32>,
     ) -> Result<Flown, InputError> {
         let Reference { position, velocity, .. } = self.reference;
+        // Without a velocity there is nothing to learn from.
+        self.law.hold_estimates();
         self.step(&State { position, velocity, attitude, angular_velocity })
     }
 
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
-        let Command { wrench, mrp } = self.controller.command(state, &self.reference)?;
+        let Command { wrench, mrp } = self.law.command(state, &self.reference)?;
         let position_error = state.position - self.reference.position;
-        let allocation = self.allocation.allocate(&wrench)?;
+        let scale = self.law.thrust_scale();
+        let allocation = self.mixer.allocate(&wrench.scaled(1.0 / scale))?;
+        if !allocation.is_exact() {
+            self.law.hold_estimates();
+        }
         self.refusals = 0;
         self.thrusts = Some(allocation.thrusts);
         Ok(Flown {
             state: *state,
             reference: self.reference,
             wrench,
-            achieved: allocation.achieved,
+            achieved: allocation.achieved.scaled(scale),
             position_error,
             mrp,
         })

@@ -9,7 +9,7 @@ pub const SPEED_RANGE: f32 = 256.0;
 /// What the governor needs beyond the bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GovernorLimits {
-    /// Greatest horizontal speed asked for, m/s. (The bounds know none; a faster start is slowed down.)
+    /// Greatest horizontal speed asked for, m/s, where the bounds allow it. (A faster start is slowed down.)
     pub horizontal_speed: f32,
     /// Greatest vertical speed asked for, m/s.
     pub vertical_speed: f32,

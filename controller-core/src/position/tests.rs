@@ -22,7 +22,7 @@ fn no_bandwidth_and_no_period_leads_out_of_the_box() {
             for m_p in [2.0, 0.3, 7.77, 1e-3] {
                 let gains = GainParameters { k_f, k_s, m_p, ..GainParameters::TABLE_1 };
                 let gains = Gains::new(gains, &vehicle).unwrap();
-                let transition = FilterTransition::new(&gains, period).unwrap();
+                let transition = FilterTransition::new(gains.k_f, gains.k_s, period).unwrap();
                 for _ in 0..3000 {
                     let mut vector = || Vector3::new(within(m_p), within(m_p), within(m_p));
                     let state = FilterState { filtered: vector(), intermediate: vector() };

@@ -158,7 +158,7 @@ impl Flight {
             Output::Stop | Output::Test { .. } => Wrench { thrust: 0.0, torque: Vector3::zeros() },
         };
         if let Some(Ok(flown)) = &outcome.flown {
-            let proven = &self.certified.certificate().sharp;
+            let proven = self.certified.certificate().paper().unwrap().sharp;
             assert!(f64::from(flown.wrench.thrust) <= proven.thrust.greatest, "{flown:?}");
             assert!(f64::from(flown.wrench.thrust) >= proven.thrust.least, "{flown:?}");
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));

@@ -124,21 +124,6 @@ fn what_the_rotors_lack_is_flagged() {
 }
 
 #[test]
-fn a_certified_flight_takes_the_boards_allocation_and_flags_what_it_clips() {
-    let configuration = hummingbird().configuration;
-    let boards = MinimumNorm::new(configuration.rotors().unwrap());
-    let spinning = SpinningRotors::hovering(configuration.rotors().unwrap(), LAG, HOVER, STEP);
-    let certified = Actuators::new(Some((Allocation::Certified(Box::new(boards.clone())), spinning)), 0, HOVER);
-    let held = |wrench: &Wrench| certified.clone().hold(&mut plant(STEP), wrench, 10).unwrap();
-    // Beyond the rotors it gives up what is cheapest to work out, where the mixer gives up yaw first.
-    let too_much = wrench(HOVER, 0.0, 0.3, 0.2);
-    let (clipped, thrusts) = held(&too_much);
-    assert!(clipped && thrusts == boards.allocate(&too_much).unwrap().thrusts);
-    assert_ne!(thrusts, rotors(LAG, 0, STEP).hold(&mut plant(STEP), &too_much, 10).unwrap().1);
-    assert!(!held(&wrench(HOVER, 0.01, -0.01, 0.01)).0);
-}
-
-#[test]
 fn a_wrench_that_is_no_number_is_refused() {
     let mut actuators = rotors(LAG, 0, STEP);
     let refused = actuators.hold(&mut plant(STEP), &wrench(f32::NAN, 0.0, 0.0, 0.0), 10);

@@ -11,7 +11,8 @@ use controller_core::allocation::TorqueTerm;
 use controller_core::allocation::support::torque_part;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::form::Form;
-use controller_core::certificate::{Certificate, rotors};
+use controller_core::certificate::paper::PaperCertificate;
+use controller_core::certificate::rotors;
 use controller_core::error::ParameterError;
 use nalgebra::{Vector3, Vector4};
 
@@ -19,7 +20,7 @@ use nalgebra::{Vector3, Vector4};
 ///
 /// # Errors
 /// As [`rotors::torque_terms`].
-pub fn sentence(configuration: &Configuration, certificate: &Certificate) -> Result<String, ParameterError> {
+pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -> Result<String, ParameterError> {
     let Some(mounted) = configuration.rotors() else {
         return Ok(String::new());
     };

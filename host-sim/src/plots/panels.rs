@@ -5,7 +5,6 @@ use super::record::Sample;
 use crate::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
 use crate::table::short;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::form::Form;
 use plotters::style::RGBColor;
 use scenario::Scenario;
 
@@ -79,7 +78,7 @@ pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
     let (name, interval) = if scenario.is_papers() {
         ("published", Some(PUBLISHED_THRUST))
     } else {
-        ("proven", sharp(scenario).map(|form| (form.thrust.least, form.thrust.greatest)))
+        ("proven", proven(scenario).map(|proven| (proven.thrust().least, proven.thrust().greatest)))
     };
     let limit = f64::from(scenario.configuration.limits().thrust_max);
     let ends = interval.into_iter().flat_map(|(least, greatest)| [least, greatest]);
@@ -96,9 +95,9 @@ pub fn thrust(scenario: &Scenario, samples: &[Sample]) -> Panel {
     }
 }
 
-/// The certificate's sharp bounds, which hold for every flight from a reset.
-fn sharp(scenario: &Scenario) -> Option<Form> {
-    Certificate::new(&scenario.configuration).ok().map(|certificate| certificate.sharp)
+/// The certificate, whose bounds hold for every flight from a reset.
+fn proven(scenario: &Scenario) -> Option<Certificate> {
+    Certificate::new(&scenario.configuration).ok()
 }
 
 /// Torques with the published bound of each axis (the paper's scenario) or the certificate's sharp one (any other).
@@ -119,7 +118,7 @@ pub fn moments(scenario: &Scenario, samples: &[Sample]) -> Panel {
 
 /// Equal bounds are drawn once.
 fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
-    let proven = || sharp(scenario).map(|form| form.torque.into());
+    let proven = || proven(scenario).map(|certificate| certificate.torque().into());
     let Some(values): Option<[f64; 3]> = (if scenario.is_papers() { Some(PUBLISHED_TORQUE) } else { proven() }) else {
         return Vec::new();
     };
@@ -134,10 +133,10 @@ fn moment_bounds(scenario: &Scenario) -> Vec<Bound> {
     values.into_iter().zip(named).take(if equal { 1 } else { 3 }).flat_map(both).collect()
 }
 
-/// |ubar_p|, |u_f|, |u_s| below sqrt(3) M_p.
+/// |ubar_p|, |u_f|, |u_s| below sqrt(3) M_p under the paper's law.
 #[must_use]
 pub fn filters(scenario: &Scenario, samples: &[Sample]) -> Panel {
-    let level = 3f64.sqrt() * f64::from(scenario.configuration.gains().m_p);
+    let level = scenario.configuration.gains().map(|gains| 3f64.sqrt() * f64::from(gains.m_p));
     let feedback = curve(samples, "|ū_p|", BLUE, |s| s.filter_norms.x);
     Panel {
         title: "Saturated position feedback and its filters",
@@ -149,15 +148,19 @@ pub fn filters(scenario: &Scenario, samples: &[Sample]) -> Panel {
             curve(samples, "|u_f|", VERMILION, |s| s.filter_norms.y),
             curve(samples, "|u_s|", GREEN, |s| s.filter_norms.z),
         ],
-        bounds: vec![bound(level, format!("√3 M_p = {level:.3}"))],
+        bounds: level.map(|level| bound(level, format!("√3 M_p = {level:.3}"))).into_iter().collect(),
     }
 }
 
-/// |s_theta| below M_theta, |s_omega| below M_omega.
+/// |s_theta| below M_theta, |s_omega| below M_omega under the paper's law.
 #[must_use]
 pub fn feedbacks(scenario: &Scenario, samples: &[Sample]) -> Panel {
-    let gains = scenario.configuration.gains();
-    let (m_theta, m_omega) = (gains.m_theta, gains.m_omega);
+    let levels = scenario.configuration.gains().map(|gains| {
+        [("M_ϑ", gains.m_theta, BLUE), ("M_ω", gains.m_omega, VERMILION)].map(|(name, level, color)| {
+            let level = f64::from(level);
+            Bound { value: level, label: format!("{name} = {}", short(level)), color }
+        })
+    });
     Panel {
         title: "Saturated attitude and rate feedback",
         quantity: "norm [N m]",
@@ -166,10 +169,7 @@ pub fn feedbacks(scenario: &Scenario, samples: &[Sample]) -> Panel {
             curve(samples, "|s_ϑ|", BLUE, |s| s.feedback_norms.0),
             curve(samples, "|s_ω|", VERMILION, |s| s.feedback_norms.1),
         ],
-        bounds: vec![
-            Bound { value: f64::from(m_theta), label: format!("M_ϑ = {}", short(m_theta.into())), color: BLUE },
-            Bound { value: f64::from(m_omega), label: format!("M_ω = {}", short(m_omega.into())), color: VERMILION },
-        ],
+        bounds: levels.into_iter().flatten().collect(),
     }
 }
 

@@ -1,8 +1,5 @@
 //! One candidate: gains from a point of the search space, and a verdict on them.
 //!
-//! A point holds the natural logarithms of the nine gains that matter and of the thrust floor as a fraction of its greatest
-//! admissible value. delta and alpha stay as the file has them: they are about noise, not about performance.
-//!
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
 //! radii, margins, recovery from upside down, the file's own flight. A verdict that fails says how far it got and by how
 //! much it missed, so that the search has a slope to follow.
@@ -13,12 +10,12 @@
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
 use super::requirements::Requirements;
+use super::space::{Point, Space};
 use crate::claims::reached;
 use crate::flight::Flight;
 use crate::flown::Flown;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
-use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
 use controller_core::reference::hover::Hover;
 use nalgebra::Vector3;
@@ -28,12 +25,6 @@ use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 use scenario::timing::Timing;
 use std::sync::Arc;
-
-/// Coordinates of the search space.
-pub const DIMENSIONS: usize = 10;
-
-/// A point of it.
-pub type Point = [f64; DIMENSIONS];
 
 /// Greatest position error in the last quarter of a recovery, m.
 const STILL_POSITION: f64 = 0.01;
@@ -75,6 +66,7 @@ impl Verdict {
 pub struct Judge {
     scenario: Scenario,
     recovery: Scenario,
+    space: Space,
     requirements: Requirements,
 }
 
@@ -82,35 +74,21 @@ impl Judge {
     /// A judge for the vehicle, rotors, timing and reference of `scenario`.
     #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
-        Self { recovery: recovery(scenario, requirements.recovery), scenario: scenario.clone(), requirements }
+        let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
+        let space = Space::new(&scenario.configuration, floor);
+        Self { recovery: recovery(scenario, requirements.recovery), scenario: scenario.clone(), space, requirements }
     }
 
-    /// The file's own gains as a point: where the search starts.
+    /// The file's own constants as a point: where the search starts.
     #[must_use]
     pub fn start(&self) -> Point {
-        let configuration = &self.scenario.configuration;
-        let g = configuration.gains();
-        let floor = configuration.thrust_floor().map_or(0.5, |floor| floor / configuration.greatest_thrust_floor());
-        let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor];
-        values.map(|value| f64::from(value).ln())
+        self.space.start()
     }
 
     /// The scenario with the gains of `point`, if the law is defined for them.
     #[must_use]
     pub fn scenario(&self, point: &Point) -> Option<Scenario> {
-        let configuration = &self.scenario.configuration;
-        let [k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, floor] = point.map(|x| x.exp() as f32);
-        let GainParameters { delta, alpha, .. } = **configuration.gains();
-        let parameters = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
-        let gains = Gains::new(parameters, configuration.vehicle()).ok()?;
-        let configuration = configuration.with_gains(gains).ok()?;
-        let configuration = if self.requirements.projection {
-            let floor = floor.min(1.0 - self.requirements.margin as f32) * configuration.greatest_thrust_floor();
-            configuration.with_thrust_floor(floor).ok()?
-        } else {
-            configuration
-        };
-        Some(Scenario { configuration, ..self.scenario.clone() })
+        Some(Scenario { configuration: self.space.configuration(point)?, ..self.scenario.clone() })
     }
 
     /// Puts `point` through the tests.

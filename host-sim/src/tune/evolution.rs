@@ -5,8 +5,9 @@
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
 //! one nearer to acceptance wins, of two that are the one nearer to the goal.
 
-use super::candidate::{DIMENSIONS, Judge, Point, Verdict};
+use super::candidate::{Judge, Verdict};
 use super::frontier::Frontier;
+use super::space::Point;
 use crate::interrupt::Interrupt;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -62,8 +63,10 @@ impl Evolution {
     pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let start = judge.start();
-        let mut points = vec![start];
-        points.resize_with(POPULATION, || start.map(|x| x + SPREAD * (random.random::<f64>() - 0.5)));
+        let mut points = vec![start.clone()];
+        points.resize_with(POPULATION, || {
+            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
+        });
         let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);
@@ -116,8 +119,8 @@ impl Evolution {
         let [a, b, c] = [(); 3].map(|()| self.random.random_range(0..count));
         let base = if self.random.random::<bool>() { best } else { a };
         let scale = self.random.random_range(0.4..0.9);
-        let forced = self.random.random_range(0..DIMENSIONS);
-        let mut trial = self.members[parent].0;
+        let mut trial = self.members[parent].0.clone();
+        let forced = self.random.random_range(0..trial.len());
         for (index, coordinate) in trial.iter_mut().enumerate() {
             if index == forced || self.random.random::<f64>() < CROSSOVER {
                 let difference = self.members[b].0[index] - self.members[c].0[index];
@@ -130,8 +133,11 @@ impl Evolution {
 
 /// Judges all points, or as many as an interrupt leaves time for; and how many those were.
 fn judge_all(judge: &Judge, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(Point, Verdict)>, u64) {
-    let verdict = |point: &Point| interrupt.signal().is_none().then(|| judge.judge(point));
-    let verdicts: Vec<_> = points.into_par_iter().map(|point| (point, verdict(&point))).collect();
+    let judged = |point: Point| {
+        let verdict = interrupt.signal().is_none().then(|| judge.judge(&point));
+        (point, verdict)
+    };
+    let verdicts: Vec<_> = points.into_par_iter().map(judged).collect();
     let judged = verdicts.iter().filter(|(_, verdict)| verdict.is_some()).count() as u64;
     let complete = |(point, verdict): (Point, Option<Verdict>)| (point, verdict.unwrap_or_else(Verdict::missing));
     (verdicts.into_iter().map(complete).collect(), judged)

@@ -1,6 +1,7 @@
 //! The trade between height lost and position gain: every accepted candidate that no other beats in both.
 
-use super::candidate::{Point, Verdict};
+use super::candidate::Verdict;
+use super::space::Point;
 use crate::table::{aligned, percent, short};
 
 /// Rows a table of it shows at most.
@@ -21,7 +22,7 @@ impl Frontier {
         }
         self.members.retain(|(_, member)| !beats(verdict, member));
         let place = self.members.partition_point(|(_, member)| member.height_lost < verdict.height_lost);
-        self.members.insert(place, (*point, verdict.clone()));
+        self.members.insert(place, (point.clone(), verdict.clone()));
     }
 
     /// The least height lost, m.
@@ -67,7 +68,7 @@ mod tests {
     fn it_keeps_what_no_other_beats_in_both_respects() {
         let mut frontier = Frontier::default();
         for (height, gain) in [(5.0, 9.0), (4.0, 5.0), (6.0, 8.0), (4.0, 6.0), (3.0, 1.0)] {
-            frontier.offer(&[0.0; 10], &verdict(height, gain));
+            frontier.offer(&vec![0.0; 10], &verdict(height, gain));
         }
         let kept: Vec<_> = frontier.members.iter().map(|(_, v)| (v.height_lost, v.position_gain)).collect();
         assert_eq!(kept, [(3.0, 1.0), (4.0, 6.0), (5.0, 9.0)]);

@@ -1,6 +1,7 @@
 //! The tuned scenario as a file: the original text with its gains, thrust floor and name replaced, comments kept.
 
 use super::Tuned;
+use super::space::named;
 use crate::table::short;
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
@@ -14,21 +15,12 @@ const HEAD: &str = "# Tuned:";
 pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     let mut document: DocumentMut = original.parse()?;
     let configuration = &tuned.scenario.configuration;
-    let g = configuration.gains();
     document["name"] = value(tuned.scenario.name.as_str());
-    let gains = [
-        ("k_p", g.k_p),
-        ("k_v", g.k_v),
-        ("k_f", g.k_f),
-        ("k_s", g.k_s),
-        ("k_theta", g.k_theta),
-        ("k_omega", g.k_omega),
-        ("m_p", g.m_p),
-        ("m_theta", g.m_theta),
-        ("m_omega", g.m_omega),
-    ];
-    for (key, gain) in gains {
-        document["gains"][key] = value(shortest(gain));
+    for (section, key, constant) in named(configuration) {
+        if !document.contains_key(section) {
+            document[section] = Item::Table(Table::new());
+        }
+        document[section][key] = value(shortest(constant));
     }
     if let Some(table) = document["gains"].as_table_mut() {
         // Whatever stood here was said of other gains.

@@ -17,8 +17,8 @@
 use super::lag::INTEGRATORS;
 use nalgebra::{Matrix2, RowVector2, RowVector4, Vector2};
 
-/// Gains of the position law times the powers of the period that make them dimensionless.
-#[derive(Debug, Clone, Copy)]
+/// Gains of the position law; here times the powers of the period that make them dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PositionGains {
     /// k_p h^2.
     pub k_p: f64,
@@ -33,7 +33,7 @@ pub(super) struct PositionGains {
 /// Gains of the torque law over the axis' inertia, in samples.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueGains {
-    /// A = k_theta h^2 / (16 J).
+    /// A = k_theta h^2 / (16 J) under the paper's law.
     pub angle: f64,
     /// B = k_omega h / J.
     pub rate: f64,

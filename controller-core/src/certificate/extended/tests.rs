@@ -1,6 +1,9 @@
 use super::*;
 extern crate std;
+use crate::extended::actuators::ActuatorParameters;
 use crate::extended::example;
+use crate::vehicle::{LimitParameters, Limits};
+use nalgebra::Vector3;
 use std::println;
 
 #[test]
@@ -17,5 +20,10 @@ fn figures() {
         heading_second_derivative: 1.7318,
     };
     let rotors = example::rotors();
-    println!("{:#?}", bounds(&vehicle, &parameters, &references, Some(&rotors)).unwrap());
+    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
+    let limits = Limits::new(limits, &vehicle).unwrap();
+    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+    let configuration =
+        Configuration::extended(vehicle, limits, law, references).unwrap().with_rotors(rotors).unwrap();
+    println!("{:#?}", ExtendedCertificate::new(&configuration, &law).unwrap());
 }

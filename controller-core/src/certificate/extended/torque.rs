@@ -53,26 +53,26 @@ impl TiltCell {
     }
 }
 
+/// qbar, at whose negative the lift switches.
+#[must_use]
+pub fn switching_scalar(delta: f32) -> f64 {
+    let square = (1.0 + f64::from(delta)) * (1.0 + f64::from(delta));
+    (square - 1.0) / (square + 1.0)
+}
+
 impl Torques {
     /// For the constants `parameters` and the diagonal of J, kg m^2.
     #[must_use]
     pub fn new(parameters: &Extended, inertia: &Vector3<f64>) -> Self {
         let AttitudeParameters { w, eta, k_t, m_t, eta_t, m_omega_t, m_omega_z, delta, .. } = parameters.attitude;
-        let square = (1.0 + f64::from(delta)) * (1.0 + f64::from(delta));
         let e = &parameters.estimates;
         Self {
             attitude: [w, eta, k_t, m_t, eta_t, m_omega_t, m_omega_z, 0.0].map(f64::from),
             bias: [e.torque_tilt, e.torque_yaw].map(f64::from),
             inertia: *inertia,
             turn: [parameters.heading.acceleration, parameters.heading.rate].map(f64::from),
-            qbar: (square - 1.0) / (square + 1.0),
+            qbar: switching_scalar(delta),
         }
-    }
-
-    /// qbar, at whose negative the lift switches.
-    #[must_use]
-    pub fn switching_scalar(&self) -> f64 {
-        self.qbar
     }
 
     /// The cells of theta, from no error to a half turn.

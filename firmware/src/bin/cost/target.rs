@@ -3,14 +3,14 @@
 use crate::body;
 use crate::counter::Counter;
 use crate::stack;
-use controller_core::allocation::MinimumNorm;
-use controller_core::allocation::minimum_norm::Delivered;
+use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use controller_core::controller::{Command, Controller};
+use controller_core::controller::Command;
 use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
+use controller_core::law::Law;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
@@ -18,7 +18,7 @@ use controller_core::state::{State, Wrench};
 use core::hint::black_box;
 use cortex_m_semihosting::hprintln;
 use firmware::boards::mps2::exit;
-use firmware::configuration;
+use firmware::{configuration, replay};
 use nalgebra::{Quaternion, Vector3};
 use static_cell::ConstStaticCell;
 
@@ -52,9 +52,9 @@ impl Cost {
 }
 
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
-type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
+type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
 
-type Allocate = fn(&MinimumNorm, &Wrench) -> Result<Delivered, InputError>;
+type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -76,16 +76,16 @@ fn measure() -> bool {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return false;
     };
-    let Ok(controller) = Controller::new(&certified, PERIOD) else { return false };
+    let Ok(law) = Law::new(&certified, PERIOD) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
-    let plain = embedded.with_gains(*embedded.gains()).ok().and_then(|plain| Certified::new(plain).ok());
-    let Some(plain) = plain.and_then(|plain| Controller::new(&plain, PERIOD).ok()) else { return false };
-    let minimum_norm = MinimumNorm::new(rotors);
+    let Some(papers) = replay::configuration().ok().and_then(|papers| Certified::new(papers).ok()) else { return false };
+    let Ok(papers_law) = Law::new(&papers, PERIOD) else { return false };
+    let mixer = Mixer::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
     hprintln!("{:<42} {:>10} {:>10} {:>9} {:>9}", "instructions", "mean", "worst", "us@168MHz", "us@400MHz");
-    let mut flight = Flight { controller, minimum_norm: &minimum_norm, certified: &certified, counter: &counter };
+    let mut flight = Flight { law, mixer: Some(&mixer), certified: &certified, counter: &counter };
     let Some((settled, _)) = flight.fly(on(&circle), &circle, &mut Cost::default()) else { return false };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut allocation) else { return false };
     cost.print("step, circle");
@@ -94,9 +94,9 @@ fn measure() -> bool {
     let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
-    let mut flight = Flight { controller: plain, ..flight };
+    let mut flight = Flight { law: papers_law, mixer: None, certified: &papers, counter: &counter };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut Cost::default()) else { return false };
-    cost.print("step, circle, the paper's T = m |u|");
+    cost.print("step, circle, the paper's law");
     if !govern(&counter, &embedded, &mut governing) {
         return false;
     }
@@ -122,8 +122,9 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Result<Certifi
 
 /// A flight under the law, with what it needs.
 struct Flight<'a> {
-    controller: Controller,
-    minimum_norm: &'a MinimumNorm,
+    law: Law,
+    /// None where thrust and torque act directly.
+    mixer: Option<&'a Mixer>,
     certified: &'a Certified,
     counter: &'a Counter,
 }
@@ -131,18 +132,24 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the allocation refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
-        let step: Step = black_box(Controller::command);
-        let allocate: Allocate = black_box(MinimumNorm::allocate);
+        let step: Step = black_box(Law::command);
+        let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
-        self.controller.reset();
+        self.law.reset();
         for tick in 0..STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
-            let (instructions, command) = self.counter.short(|| step(&mut self.controller, &state, &reference));
+            let (instructions, command) = self.counter.short(|| step(&mut self.law, &state, &reference));
             cost.add(instructions);
             let wrench = command.ok()?.wrench;
-            let (instructions, allocated) = self.counter.short(|| allocate(self.minimum_norm, &wrench));
-            allocation.add(instructions);
-            let achieved = allocated.ok()?.achieved;
+            let achieved = match self.mixer {
+                None => wrench,
+                Some(mixer) => {
+                    let asked = wrench.scaled(1.0 / self.law.thrust_scale());
+                    let (instructions, allocated) = self.counter.short(|| allocate(mixer, &asked));
+                    allocation.add(instructions);
+                    allocated.ok()?.achieved
+                }
+            };
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
         }
 

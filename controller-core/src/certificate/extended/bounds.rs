@@ -1,0 +1,121 @@
+//! Every thrust and torque the extended law can command, down to each rotor. Sections 11 and 12 of `docs/extended-law.md`.
+
+use super::motion::cells;
+use super::reach::Reach;
+use super::torque::{TiltCell, Torques};
+use crate::allocation::Rotors;
+use crate::allocation::geometry::ROTORS_MAX;
+use crate::certificate::configuration::Configuration;
+use crate::certificate::form::{ARITHMETIC_ALLOWANCE, Interval};
+use crate::error::ParameterError;
+use crate::extended::parameters::Extended;
+use crate::math;
+use heapless::Vec;
+use nalgebra::Vector3;
+
+/// Everything the extended law can command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExtendedBounds {
+    /// Greatest |omega_d| and |omega_d'| across the thrust axis, rad/s and rad/s^2.
+    pub rates: [f64; 2],
+    /// Every thrust, N.
+    pub thrust: Interval,
+    /// Greatest |torque| about each body axis, N m.
+    pub torque: Vector3<f64>,
+    /// Every thrust of each rotor as commanded, divided by the thrust scale, N.
+    pub rotors: Vec<Interval, ROTORS_MAX>,
+    /// N and m n in N where they come nearest to each other without attitude error.
+    pub floor: [f64; 2],
+}
+
+/// One row of B+: b_T and b_tau.
+#[derive(Clone, Copy)]
+struct Row {
+    thrust: f64,
+    torque: Vector3<f64>,
+    /// s_hi f_min.
+    least: f64,
+}
+
+/// Works the bounds out.
+///
+/// # Errors
+/// If a number is not finite; the constructors before it leave no way to that.
+pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<ExtendedBounds, ParameterError> {
+    let (vehicle, references, rotors) = (configuration.vehicle(), configuration.bounds(), configuration.rotors());
+    let reach = Reach::new(parameters, references, f64::from(vehicle.gravity));
+    let inertia = vehicle.inertia.map(f64::from);
+    let torques = Torques::new(parameters, &inertia);
+    let turn = f64::from(parameters.heading.rate);
+    let (mass, margin) = (f64::from(vehicle.mass), f64::from(parameters.floor_margin));
+    let [least_scale, greatest_scale] =
+        [parameters.estimates.scale_least, parameters.estimates.scale_greatest].map(f64::from);
+    let rows = rows(rotors, greatest_scale);
+    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+
+    let (mut rate, mut swing) = (0.0_f64, 0.0_f64);
+    let mut floor = [margin, mass * reach.vertical_least];
+    for cell in cells(&reach) {
+        rate = rate.max(cell.rate());
+        swing = swing.max(cell.acceleration(turn));
+        let available = mass * cell.least;
+        for row in &rows {
+            let away = -row.torque;
+            let asked = (row.least + torques.feedforward(&away, &cell) + torques.bias(&away)) / row.thrust + margin;
+            if asked * floor[1] > floor[0] * available {
+                floor = [asked, available];
+            }
+        }
+    }
+
+    let support =
+        |b: &Vector3<f64>, tilt: &TiltCell, swing: f64| torques.feedback(b, tilt) + torques.swung(b, tilt, swing);
+    let worst = |b: &Vector3<f64>| -> Result<f64, ParameterError> {
+        let over_tilts = torques.tilt_cells().map(|tilt| support(b, &tilt, swing)).fold(0.0, f64::max);
+        Ok(over_tilts + torques.gyroscopic(b, rate)?)
+    };
+    let torque = Vector3::new(worst(&Vector3::x())?, worst(&Vector3::y())?, worst(&Vector3::z())?);
+
+    let mut greatest = mass * math::hypot(reach.across, reach.vertical_greatest);
+    for row in &rows {
+        greatest = greatest.max((row.least + worst(&-row.torque)?) / row.thrust + margin);
+    }
+    let mut commanded = Vec::new();
+    for row in &rows {
+        // With the floor for a thrust, the rotor k that sets it is at its least thrust.
+        let mut most = 0.0_f64;
+        for other in &rows {
+            let share = row.thrust / other.thrust;
+            let difference = row.torque - other.torque * share;
+            most = most.max(share * other.least + worst(&difference)? + row.thrust * margin);
+        }
+        let gyroscopic = torques.gyroscopic(&row.torque, rate)?;
+        for cell in cells(&reach) {
+            let lift = row.thrust * mass * cell.greatest;
+            let swing = cell.acceleration(turn);
+            for tilt in torques.tilt_cells() {
+                most = most.max(lift * tilt.cosine().max(0.0) + support(&row.torque, &tilt, swing) + gyroscopic);
+            }
+        }
+        // As many as there are rotors: it fits.
+        let greatest = most / least_scale * raised;
+        let _ = commanded.push(Interval { least: row.least / greatest_scale / raised, greatest });
+    }
+    Ok(ExtendedBounds {
+        rates: [rate, swing],
+        thrust: Interval { least: margin / raised, greatest: greatest * raised },
+        torque: torque * raised,
+        rotors: commanded,
+        floor: [floor[0] * raised, floor[1]],
+    })
+}
+
+fn rows(rotors: Option<&Rotors>, greatest_scale: f64) -> Vec<Row, ROTORS_MAX> {
+    let mut rows = Vec::new();
+    for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
+        let torque = Vector3::new(row.y, row.z, row.w);
+        // As many as there are rotors: it fits.
+        let _ = rows.push(Row { thrust: row.x, torque, least: greatest_scale * f64::from(rotor.thrust_min) });
+    }
+    rows
+}

@@ -1,0 +1,43 @@
+//! The certificate of the paper's law: the wrench in two forms, as printed and sharp, and the rotors under the sharp one.
+
+use super::configuration::{Configuration, PaperLaw};
+use super::form::{self, Derivation, Form};
+use super::inequality::Inequality;
+use super::rotors::{self, RotorReport};
+use crate::allocation::geometry::ROTORS_MAX;
+use crate::error::ParameterError;
+use heapless::Vec;
+
+/// Every inequality about one configuration of the paper's law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PaperCertificate {
+    /// The paper's own bounds, x_f(0) = 0.
+    pub printed: Form,
+    /// The bounds of `docs/sharp-bound.md`; they decide.
+    pub sharp: Form,
+    /// Every rotor under the sharp form's bounds; empty for a configuration without rotors.
+    pub rotors: Vec<RotorReport, ROTORS_MAX>,
+}
+
+impl PaperCertificate {
+    /// Works out every inequality for `law`, the one of `configuration`.
+    ///
+    /// # Errors
+    /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    pub fn new(configuration: &Configuration, law: &PaperLaw) -> Result<Self, ParameterError> {
+        let printed = form::form(configuration, law, Derivation::Printed);
+        let sharp = form::form(configuration, law, Derivation::Sharp);
+        let rotors = rotors::reports(configuration, &sharp)?;
+        Ok(Self { printed, sharp, rotors })
+    }
+
+    /// The inequality at `place`: the sharp form's, then two for each rotor.
+    pub(super) fn inequality(&self, place: usize) -> Option<&Inequality> {
+        let wrench = &self.sharp.inequalities;
+        wrench.get(place).or_else(|| {
+            let of_rotors = place.checked_sub(wrench.len())?;
+            let rotor = self.rotors.get(of_rotors / 2)?;
+            Some(if of_rotors.is_multiple_of(2) { &rotor.least } else { &rotor.greatest })
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! The law that flies: the paper's or the extended one, as the configuration says.
+
+use crate::certificate::certified::Certified;
+use crate::certificate::configuration::{Configuration, LawParameters};
+use crate::controller::{self, Command, Diagnostics};
+use crate::error::{InputError, ParameterError};
+use crate::extended;
+use crate::extended::controller::Estimates;
+use crate::reference::Reference;
+use crate::state::{State, Wrench};
+
+/// A law, as after a reset.
+#[allow(clippy::large_enum_variant)] // without an allocator there is nowhere else to put either
+#[derive(Debug, Clone, PartialEq)]
+pub enum Law {
+    /// The paper's.
+    Paper(controller::Controller),
+    /// The extended one.
+    Extended(extended::controller::Controller),
+}
+
+impl Law {
+    /// The law of a certified configuration; `period` is the time between steps, s, in (0, 0.1].
+    ///
+    /// # Errors
+    /// The law's own: [`controller::Controller::new`], [`extended::controller::Controller::new`].
+    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
+        Self::build(certified.configuration(), period)
+    }
+
+    /// The law of a configuration that nothing is proven about: for simulation, never for flight.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    #[cfg(any(test, feature = "uncertified"))]
+    pub fn uncertified(configuration: &Configuration, period: f32) -> Result<Self, ParameterError> {
+        Self::build(configuration, period)
+    }
+
+    fn build(configuration: &Configuration, period: f32) -> Result<Self, ParameterError> {
+        let vehicle = configuration.vehicle();
+        Ok(match configuration.law() {
+            LawParameters::Paper(law) => {
+                Self::Paper(controller::Controller::build(*vehicle, law.gains, law.thrust_floor, period)?)
+            }
+            LawParameters::Extended(law) => {
+                Self::Extended(extended::controller::Controller::build(vehicle, law, configuration.rotors(), period)?)
+            }
+        })
+    }
+
+    /// Everything forgotten: how a flight begins.
+    pub fn reset(&mut self) {
+        match self {
+            Self::Paper(law) => law.reset(),
+            Self::Extended(law) => law.reset(),
+        }
+    }
+
+    /// Filters and lift as after a reset, what has been estimated kept: how a flight goes on without a pose.
+    pub fn restart(&mut self) {
+        match self {
+            Self::Paper(law) => law.reset(),
+            Self::Extended(law) => law.restart(),
+        }
+    }
+
+    /// For every tick in which nothing can be learnt from the motion: see [`extended::controller::Controller::hold_estimates`].
+    pub fn hold_estimates(&mut self) {
+        match self {
+            Self::Paper(_) => {}
+            Self::Extended(law) => law.hold_estimates(),
+        }
+    }
+
+    /// What the rotors deliver of what is commanded, as far as the law knows: they are to be asked for a wrench divided by it.
+    #[must_use]
+    pub fn thrust_scale(&self) -> f32 {
+        match self {
+            Self::Paper(_) => 1.0,
+            Self::Extended(law) => law.thrust_scale(),
+        }
+    }
+
+    /// What has been estimated, if the law estimates anything.
+    #[must_use]
+    pub fn estimates(&self) -> Option<Estimates> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => Some(law.estimates()),
+        }
+    }
+
+    /// Changes the time between steps, s.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the period then stays what it was.
+    pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
+        match self {
+            Self::Paper(law) => law.set_period(period),
+            Self::Extended(law) => law.set_period(period),
+        }
+    }
+
+    /// [`Self::step`] as it is flown.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
+        match self {
+            Self::Paper(law) => law.command(state, reference),
+            Self::Extended(law) => {
+                let (wrench, Diagnostics { mrp, .. }) = law.step(state, reference)?;
+                Ok(Command { wrench, mrp })
+            }
+        }
+    }
+
+    /// One tick of the law, with what it went through.
+    ///
+    /// # Errors
+    /// Names the field of `state` or `reference` that cannot be used; the memory is then unchanged.
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        match self {
+            Self::Paper(law) => law.step(state, reference),
+            Self::Extended(law) => law.step(state, reference),
+        }
+    }
+}
