@@ -7,6 +7,7 @@ use crate::support::random;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::form::Form;
+use controller_core::certificate::paper::PaperCertificate;
 
 /// Everything the adversary attacks.
 const OBJECTIVES: [Objective; 8] = [
@@ -39,6 +40,7 @@ fn promised(form: &Form) -> Found {
 /// Attacks every objective; fails if one goes beyond the sharp bound, or the sharp bound beyond the printed one.
 fn attack(configuration: &Configuration, domain: Domain, restarts: usize, seed: u64) -> Found {
     let certificate = Certificate::new(configuration).unwrap();
+    let certificate = certificate.paper().unwrap();
     let (sharp, printed) = (promised(&certificate.sharp), promised(&certificate.printed));
     let mut rng = random::generator(seed);
     let found = OBJECTIVES.map(|objective| worst(configuration, domain, objective, restarts, &mut rng).value);
@@ -55,12 +57,13 @@ fn with_table_1_the_adversary_is_strong_and_the_bound_stands() {
     let configuration = paper();
     let reachable = attack(&configuration, Domain::Reachable, 24, 1);
     let decoupled = attack(&configuration, Domain::Decoupled, 24, 2);
-    let Certificate { sharp, printed, .. } = Certificate::new(&configuration).unwrap();
+    let certificate = Certificate::new(&configuration).unwrap();
+    let PaperCertificate { sharp, printed, .. } = certificate.paper().unwrap();
     println!("Table I: {OBJECTIVES:?}");
     println!("reachable {reachable:.4?}");
     println!("decoupled {decoupled:.4?}");
-    println!("sharp     {:.4?}", promised(&sharp));
-    println!("printed   {:.4?}", promised(&printed));
+    println!("sharp     {:.4?}", promised(sharp));
+    println!("printed   {:.4?}", promised(printed));
 
     // Known to be there: an adversary that finds less is too weak to be a test.
     let [velocity, acceleration, roll, pitch, yaw, ..] = decoupled;
@@ -80,7 +83,7 @@ fn the_bound_stands_with_300_random_configurations() {
         let configuration = around_table_1(&mut rng, if number % 4 < 2 { 2.0 } else { 8.0 });
         let domain = if number % 2 == 0 { Domain::Decoupled } else { Domain::Reachable };
         let found = attack(&configuration, domain, 3, 1000 + number);
-        let sharp = promised(&Certificate::new(&configuration).unwrap().sharp);
+        let sharp = promised(&Certificate::new(&configuration).unwrap().paper().unwrap().sharp);
         for ((closest, found), sharp) in closest.iter_mut().zip(found).zip(sharp) {
             *closest = closest.max(found / sharp);
         }

@@ -12,6 +12,7 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::form::Form;
+use controller_core::certificate::paper::PaperCertificate;
 use controller_core::controller::Controller;
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, ReferenceBounds};
@@ -93,11 +94,11 @@ fn certified(rng: &mut ChaCha8Rng, spread: f32) -> Certified {
 
 fn tightly_limited(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
     let loose = around_table_1(rng, spread);
-    let Form { torque, inequalities, .. } = Certificate::new(&loose).unwrap().sharp;
+    let Form { torque, inequalities, .. } = Certificate::new(&loose).unwrap().paper().unwrap().sharp;
     let thrust_max =
         inequalities.iter().filter(|i| i.name.contains("thrust for") || i.name.contains("greatest thrust"));
     let thrust_max = thrust_max.map(|inequality| inequality.required).fold(0.0, f64::max);
-    let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains(), *loose.bounds());
+    let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains().unwrap(), *loose.bounds());
     let tight = limited(vehicle, gains, bounds, thrust_max * (1.0 + MARGIN), &(torque * (1.0 + MARGIN)));
     if rng.random_bool(0.5) {
         let least = vehicle.mass * (vehicle.gravity - gains.m_p - bounds.vertical_acceleration);
@@ -121,7 +122,7 @@ fn fitting_rotors(configuration: &Configuration, rng: &mut ChaCha8Rng) -> Option
     };
     while arm < 10.0 {
         let unlimited = configuration.clone().with_rotors(quad(arm, drag, [0.0, 1e5])).unwrap();
-        let demands = Certificate::new(&unlimited).unwrap().rotors;
+        let demands = Certificate::new(&unlimited).unwrap().paper().unwrap().rotors.clone();
         let least = demands.iter().map(|report| report.demand.least).fold(f64::INFINITY, f64::min);
         let greatest = demands.iter().map(|report| report.demand.greatest).fold(0.0, f64::max);
         if least > 0.0 {
@@ -162,7 +163,8 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Body {
 /// The adversary's worst state for one torque axis, and a controller and a body in it.
 fn in_the_worst_state(configuration: &Configuration, found: &Worst, period: f64) -> (Controller, Body) {
     let (memory, state) = found.situation.start(configuration);
-    let (vehicle, gains, floor) = (*configuration.vehicle(), *configuration.gains(), configuration.thrust_floor());
+    let (vehicle, gains, floor) =
+        (*configuration.vehicle(), *configuration.gains().unwrap(), configuration.thrust_floor());
     let mut controller = Controller::uncertified(vehicle, gains, floor, period as f32).unwrap();
     controller.restore(memory);
     let body = Body {
@@ -183,7 +185,7 @@ struct Usage {
 
 impl Usage {
     fn watch(&mut self, wrench: &Wrench, certified: &Certified) {
-        let Certificate { sharp, rotors, .. } = certified.certificate();
+        let PaperCertificate { sharp, rotors, .. } = certified.certificate().paper().unwrap();
         let thrust = f64::from(wrench.thrust);
         self.thrust = self.thrust.max(thrust / sharp.thrust.greatest).max(sharp.thrust.least / thrust);
         self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
@@ -258,9 +260,9 @@ fn configurations_that_the_adversary_beats_do_leave_their_limits() {
         let axis = number % 3;
         let loose = around_table_1(&mut rng, 4.0);
         let found = worst(&loose, Domain::Reachable, Objective::Torque(axis), 3, &mut rng);
-        let mut torque_max = Certificate::new(&loose).unwrap().sharp.torque * (1.0 + MARGIN);
+        let mut torque_max = Certificate::new(&loose).unwrap().paper().unwrap().sharp.torque * (1.0 + MARGIN);
         torque_max[axis] = found.value * f64::from(rng.random_range(0.8..0.99_f32));
-        let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains(), *loose.bounds());
+        let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains().unwrap(), *loose.bounds());
         let configuration = limited(vehicle, gains, bounds, f64::from(loose.limits().thrust_max), &torque_max);
         assert!(Certified::new(configuration.clone()).is_err(), "certified, though the adversary has a counterexample");
 

@@ -277,7 +277,7 @@ fn the_derivation_states_the_codes_own_bounds_and_cells() {
     let certificate = Certificate::new(&adversary_search::configurations::paper()).unwrap();
     let rates = |form: &Form| [form.rates.angular_velocity, form.rates.angular_acceleration];
     let rows = ["$\\lvert\\omega_d", "$\\lvert\\dot\\omega_d", "roll torque", "pitch torque", "yaw torque"];
-    for (column, form) in [(1, &certificate.printed), (3, &certificate.sharp)] {
+    for (column, form) in [(1, &certificate.paper().unwrap().printed), (3, &certificate.paper().unwrap().sharp)] {
         let values = rates(form).into_iter().chain(form.torque.iter().copied());
         for (row, value) in rows.iter().zip(values) {
             let stated = cell(&document, row, column);
@@ -293,13 +293,13 @@ fn the_derivation_states_the_codes_own_bounds_and_cells() {
 fn every_step_of_the_derivation_gains() {
     const GRID: u32 = 24;
     let configuration = adversary_search::configurations::paper();
-    let (gains, bounds) = (configuration.gains(), configuration.bounds());
+    let (gains, bounds) = (configuration.gains().unwrap(), configuration.bounds());
     let gravity = f64::from(configuration.vehicle().gravity);
     let [k_f, k_s, m_p] = [gains.k_f, gains.k_s, gains.m_p].map(f64::from);
     let reach = Reachable::new(k_f, k_s, m_p, gravity, bounds);
     let certificate = Certificate::new(&configuration).unwrap();
-    let printed = certificate.printed.rates.angular_acceleration;
-    let sharp = certificate.sharp.rates.angular_acceleration;
+    let printed = certificate.paper().unwrap().printed.rates.angular_acceleration;
+    let sharp = certificate.paper().unwrap().sharp.rates.angular_acceleration;
 
     let document = document();
     let stated = |row: &str, value: f64| assert_eq!(cell(&document, row, 1), format!("{value:.2}"), "{row}");
@@ -345,7 +345,7 @@ fn rounding_takes_the_laws_own_filters_hardly_beyond_step_1() {
         let [k_f, k_s] = [(); 2].map(|()| random::log_uniform(&mut rng, 0.2, 40.0));
         let parameters = GainParameters { k_f, k_s, ..GainParameters::TABLE_1 };
         let gains = Gains::new(parameters, &random::paper_vehicle()).unwrap();
-        let transition = FilterTransition::new(&gains, period).unwrap();
+        let transition = FilterTransition::new(gains.k_f, gains.k_s, period).unwrap();
         let (k_f, k_s, level) = (f64::from(k_f), f64::from(k_s), f64::from(gains.m_p));
         let half_l1 = half_l1_norm(k_f, k_s);
         let bounds = (2.0 * half_l1 * level, 2.0 * k_f * level * (k_s + k_f * half_l1 * half_l1));

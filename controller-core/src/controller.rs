@@ -156,7 +156,12 @@ impl Controller {
         Self::build(vehicle, gains, thrust_floor, period)
     }
 
-    pub(crate) fn build(vehicle: Vehicle, gains: Gains, thrust_floor: Option<f32>, period: f32) -> Result<Self, ParameterError> {
+    pub(crate) fn build(
+        vehicle: Vehicle,
+        gains: Gains,
+        thrust_floor: Option<f32>,
+        period: f32,
+    ) -> Result<Self, ParameterError> {
         let transition = FilterTransition::new(gains.k_f, gains.k_s, period)?;
         let switching_scalar = path_lifting::switching_scalar(gains.delta);
         let position_law = PositionLaw::new(&gains, vehicle.gravity);

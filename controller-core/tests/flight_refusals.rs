@@ -145,7 +145,7 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let base = configuration();
     let torque_max = Vector3::new(1.0, 1.0, 0.05);
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
-    let weak = Configuration::new(*base.vehicle(), weak, *base.gains(), *base.bounds()).unwrap();
+    let weak = Configuration::new(*base.vehicle(), weak, *base.gains().unwrap(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
     let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), memory());
     let grounded = Grounded::Inequality("T2 yaw torque");

@@ -50,7 +50,13 @@ pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBou
     }
     let [
         horizontal_speed,
-        horizontal_acceleration, vertical_acceleration, jerk, snap, heading_rate, heading_second_derivative] = values;
+        horizontal_acceleration,
+        vertical_acceleration,
+        jerk,
+        snap,
+        heading_rate,
+        heading_second_derivative,
+    ] = values;
     let bounds = ReferenceBounds {
         horizontal_speed,
         horizontal_acceleration,

@@ -24,8 +24,8 @@ mod margins;
 mod spectral_radius;
 
 use chain::SampledLoop;
-use controller_core::error::{ParameterError, Reason};
 use controller_core::certificate::configuration::LawParameters;
+use controller_core::error::{ParameterError, Reason};
 use controller_core::extended::parameters::{AttitudeParameters, Extended};
 use controller_core::gains::Gains;
 use controller_core::vehicle::Vehicle;

@@ -1,5 +1,6 @@
 //! Table I, and how to put other numbers in its place.
 
+use controller_core::certificate::configuration::{LawParameters, PaperLaw};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::vehicle::Vehicle;
 use scenario::Scenario;
@@ -17,7 +18,9 @@ pub fn vehicle() -> Vehicle {
 
 pub fn model(gains: GainParameters, timing: Timing) -> LoopModel {
     let vehicle = vehicle();
-    LoopModel::new(&vehicle, &Gains::new(gains, &vehicle).unwrap(), timing).unwrap()
+    let gains = Gains::new(gains, &vehicle).unwrap();
+    let law = LawParameters::Paper(PaperLaw { gains, thrust_floor: None });
+    LoopModel::new(&vehicle, &law, timing).unwrap()
 }
 
 /// Where `stable` turns false between `low`, where it holds, and `high`, where it does not.

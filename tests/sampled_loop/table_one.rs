@@ -1,6 +1,7 @@
 //! What the analysis says about the paper's own gains at 100 Hz.
 
 use super::common::{IDEAL, boundary, model, vehicle};
+use controller_core::certificate::configuration::{LawParameters, PaperLaw};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::gains::{GainParameters, Gains};
 use scenario::sampled_loop::{Axis, LoopModel, Timing};
@@ -73,6 +74,7 @@ fn in_continuous_time_the_limit_on_the_lag_is_the_same_about_every_axis() {
 fn a_bad_timing_is_refused_by_name() {
     let vehicle = vehicle();
     let gains = Gains::new(GainParameters::TABLE_1, &vehicle).unwrap();
+    let law = LawParameters::Paper(PaperLaw { gains, thrust_floor: None });
     for (timing, field, reason) in [
         (Timing { period: 0.0, ..IDEAL }, "control.period", Reason::NotPositive),
         (Timing { period: 0.2, ..IDEAL }, "control.period", Reason::NotBelow(0.1)),
@@ -82,6 +84,6 @@ fn a_bad_timing_is_refused_by_name() {
         (Timing { delay_samples: -0.5, ..IDEAL }, "sampling.delay", Reason::Negative),
         (Timing { delay_samples: 65.0, ..IDEAL }, "sampling.delay", Reason::NotBelow(64.0)),
     ] {
-        assert_eq!(LoopModel::new(&vehicle, &gains, timing), Err(ParameterError { field, reason }));
+        assert_eq!(LoopModel::new(&vehicle, &law, timing), Err(ParameterError { field, reason }));
     }
 }

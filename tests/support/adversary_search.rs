@@ -86,7 +86,7 @@ fn in_ball<const N: usize>(x: [f64; N], radius: f64) -> [f64; N] {
 impl Situation {
     /// What `code` stands for under `configuration`.
     pub fn decode(configuration: &Configuration, domain: Domain, code: &Code) -> Self {
-        let (gains, bounds) = (configuration.gains(), configuration.bounds());
+        let (gains, bounds) = (configuration.gains().unwrap(), configuration.bounds());
         let (k_f, k_s, level) = (f64::from(gains.k_f), f64::from(gains.k_s), f64::from(gains.m_p));
         let triple = |from: usize| [code[from], code[from + 1], code[from + 2]];
 
@@ -152,7 +152,7 @@ impl Situation {
     pub fn torque(&self, configuration: &Configuration) -> Vector3<f32> {
         let desired = self.desired();
         let error = &self.attitude_error;
-        let law = AttitudeLaw::new(configuration.gains(), &configuration.vehicle().inertia);
+        let law = AttitudeLaw::new(configuration.gains().unwrap(), &configuration.vehicle().inertia);
         law.command(
             error,
             1.0,
@@ -165,7 +165,7 @@ impl Situation {
 
     /// The memory and the state with which a controller's next step is in this situation.
     pub fn start(&self, configuration: &Configuration) -> (Memory, State) {
-        let gains = configuration.gains();
+        let gains = configuration.gains().unwrap();
         let (k_f, k_s, level) = (gains.k_f, gains.k_s, gains.m_p);
         let FilterState { filtered, intermediate } = self.filter;
         // Beyond ten levels the saturation is flat: that is where a feedback of ±M_p comes from.

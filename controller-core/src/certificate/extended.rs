@@ -85,24 +85,13 @@ fn feasibility(configuration: &Configuration, parameters: &Extended) -> [Inequal
     let thrust = mass * (gravity + math::hypot(f64::from(with_drag.horizontal_acceleration), vertical)) * raised;
     // With M_p = 0 the filters stay at zero, whatever their bandwidths.
     let alone = Reachable::new(1.0, 1.0, 0.0, gravity, &with_drag);
-    let inertia = vehicle.inertia.map(f64::from);
-    let rates = sharp::desired_rates(&alone, &with_drag, &inertia);
+    let [rate, acceleration] = sharp::turning_rates(&alone, &with_drag).map(|rate| rate * raised);
     let (fall, heading) = (f64::from(parameters.greatest_fall()), &parameters.heading);
     [
         Inequality::new("A1 vertical acceleration K_a3 < g", "m/s^2", vertical, gravity),
         Inequality::new("A1 thrust for the reference", "N", thrust, f64::from(configuration.limits().thrust_max)),
-        Inequality::new(
-            "A1 heading rate for the reference",
-            "rad/s",
-            rates.angular_velocity * raised,
-            f64::from(heading.rate),
-        ),
-        Inequality::new(
-            "A1 heading acceleration for the reference",
-            "rad/s^2",
-            rates.angular_acceleration * raised,
-            f64::from(heading.acceleration),
-        ),
+        Inequality::new("A1 heading rate for the reference", "rad/s", rate, f64::from(heading.rate)),
+        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, f64::from(heading.acceleration)),
         Inequality::new("T1 fall M_z- + D_z < g - K_a3", "m/s^2", fall, gravity - vertical),
     ]
 }

@@ -306,6 +306,32 @@ impl HeadingCell {
     }
 }
 
+/// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for everything in
+/// `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
+#[must_use]
+pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
+    let steepest = reach.horizontal / reach.vertical_least;
+    let directions = Direction::quarter_turn();
+    let headings = HeadingCell::all(bounds);
+    let (mut rate, mut acceleration) = (0.0_f64, 0.0_f64);
+    for cell in 0..TILT_CELLS {
+        let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
+        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
+        let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
+        let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(0.0, f64::max).min(reach.jerk);
+        let linear = Parts::worst(&directions.map(|direction| tilt.linear_part(reach, &direction)));
+        for heading in &headings {
+            let velocities = tangential.iter().map(|tangential| tilt.velocity(tangential, heading.rate).yawing);
+            rate = velocities.fold(rate, f64::max);
+            for split in 0..SPLIT_CELLS {
+                let quadratic = tilt.quadratic_part(heading, &tilt.shares(reach, longest, split));
+                acceleration = acceleration.max(linear.yawing + quadratic.yawing);
+            }
+        }
+    }
+    [rate, acceleration]
+}
+
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
 pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {

@@ -14,6 +14,7 @@ use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
 use crate::attitude_reference::AngularMotion;
+use crate::certificate::configuration::ExtendedLaw;
 use crate::error::{InputError, ParameterError};
 use crate::heading::Heading;
 use crate::reference::Trajectory;

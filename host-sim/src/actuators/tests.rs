@@ -25,7 +25,7 @@ fn rotors(lag: f64, delay_steps: u64, step: f64) -> Actuators {
     let configuration = hummingbird().configuration;
     let rotors = configuration.rotors().unwrap();
     let spinning = SpinningRotors::hovering(rotors, lag, HOVER, step);
-    Actuators::new(Some((Allocation::Prioritised(Box::new(Mixer::new(rotors))), spinning)), delay_steps, HOVER)
+    Actuators::new(Some((Box::new(Mixer::new(rotors)), spinning)), delay_steps, HOVER)
 }
 
 fn wrench(thrust: f32, x: f32, y: f32, z: f32) -> Wrench {

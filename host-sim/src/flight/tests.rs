@@ -1,18 +1,18 @@
-//! Through which door a flight goes, and what its rotors show.
+//! Both doors into a flight, and what its rotors show.
 
 use super::*;
 
 const STUDY: &str = include_str!("../../../vehicles/study.toml");
 
-fn flies_as_boards_do(text: &str) -> bool {
-    let flight = Flight::new(&Scenario::parse(text, "f").unwrap()).unwrap();
-    matches!(flight.actuators.rotors, Some((Allocation::Certified(_), _)))
-}
-
 #[test]
-fn what_is_certified_flies_with_the_boards_allocation_and_nothing_else_does() {
-    assert!(flies_as_boards_do(STUDY));
-    assert!(!flies_as_boards_do(&STUDY.replace("thrust_max = 7.0", "thrust_max = 5.0")));
+fn both_doors_lead_to_the_same_flight() {
+    let study = Scenario::parse(STUDY, "f").unwrap();
+    let certified = Certified::new(study.configuration.clone()).unwrap();
+    let mut flights = [Flight::certified(&study, &certified).unwrap(), Flight::uncertified(&study).unwrap()];
+    for _ in 0..50 {
+        let [a, b] = flights.each_mut().map(|flight| flight.tick().unwrap());
+        assert!(a.wrench == b.wrench && a.rotor_thrusts == b.rotor_thrusts && a.state == b.state);
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn server() -> LawServer {
 #[test]
 fn the_order_of_the_numbers_is_the_contracts() {
     let scenario = Scenario::paper().unwrap();
-    let mut controller = controller(&scenario).unwrap();
+    let mut controller = flight::law(&scenario).unwrap();
     controller.set_period(0.02).unwrap();
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let state = State {

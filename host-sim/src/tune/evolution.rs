@@ -64,9 +64,7 @@ impl Evolution {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let start = judge.start();
         let mut points = vec![start.clone()];
-        points.resize_with(POPULATION, || {
-            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
-        });
+        points.resize_with(POPULATION, || start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
         let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);

@@ -41,7 +41,7 @@ fn a_search_starts_from_the_files_gains_and_thrust_floor() {
     let start = judge.scenario(&judge.start()).unwrap().configuration;
     let near = |a: f32, b: f32| (a / b - 1.0).abs() < 1e-5;
     assert!(near(start.thrust_floor().unwrap(), 1.0), "{start:?}");
-    assert!(near(start.gains().k_p, 9.0) && near(start.gains().m_omega, 0.045), "{start:?}");
+    assert!(near(start.gains().unwrap().k_p, 9.0) && near(start.gains().unwrap().m_omega, 0.045), "{start:?}");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
     let gains = |seed| {
         let effort = Effort { seed, generations: 1 };
         let tuned = tune(&paper(), EASY, effort, &Interrupt::default()).unwrap_or_else(|closest| panic!("{closest:?}"));
-        *tuned.scenario.configuration.gains()
+        *tuned.scenario.configuration.gains().unwrap()
     };
     assert_eq!(gains(3), gains(3));
     assert_ne!(gains(3), gains(4));
@@ -123,7 +123,7 @@ fn the_projection_lowers_the_floor_below_its_greatest_value_by_the_margin() {
     let mut point = judge.start();
     point[9] = 0.0;
     let configuration = judge.scenario(&point).unwrap().configuration;
-    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.greatest_thrust_floor());
+    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.least_thrust());
     assert!((floor / greatest - 0.95).abs() < 1e-6, "{floor} of {greatest}");
 }
 
@@ -131,7 +131,7 @@ fn the_projection_lowers_the_floor_below_its_greatest_value_by_the_margin() {
 fn a_rewritten_file_keeps_its_comments_and_flies_the_tuned_gains() {
     let tuned = |floor: Option<f32>| {
         let mut scenario = paper();
-        let own = **scenario.configuration.gains();
+        let own = **scenario.configuration.gains().unwrap();
         let parameters = controller_core::gains::GainParameters { k_p: 1.234_567_8, m_omega: 0.012_3, ..own };
         let gains = controller_core::gains::Gains::new(parameters, scenario.configuration.vehicle()).unwrap();
         scenario.configuration = scenario.configuration.with_gains(gains).unwrap();

@@ -3,6 +3,7 @@
 use super::*;
 
 const OWN: ReferenceBounds = ReferenceBounds {
+    horizontal_speed: 5.0,
     horizontal_acceleration: 2.0,
     vertical_acceleration: 0.25,
     jerk: 3.0,
@@ -32,6 +33,7 @@ fn left_out_they_are_the_references_own() {
 #[test]
 fn stated_they_replace_the_references_own() {
     let wider = ReferenceBounds {
+        horizontal_speed: 5.0,
         horizontal_acceleration: 2.5,
         vertical_acceleration: 0.5,
         jerk: 4.0,

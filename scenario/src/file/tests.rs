@@ -14,7 +14,7 @@ fn without(head: &str) -> String {
 #[test]
 fn the_built_in_file_is_the_papers_experiment() {
     let paper = Scenario::paper().unwrap();
-    let (vehicle, gains) = (paper.configuration.vehicle(), paper.configuration.gains());
+    let (vehicle, gains) = (paper.configuration.vehicle(), paper.configuration.gains().unwrap());
     assert_eq!((vehicle.mass, vehicle.gravity), (0.46, 9.81));
     assert_eq!((gains.k_p, gains.k_v, gains.k_f, gains.k_s), (9.0, 6.0, 2.0, 20.0));
     assert_eq!((gains.k_theta, gains.k_omega, gains.m_p), (100.0, 0.1, 2.0));
@@ -73,7 +73,7 @@ fn any_number_that_differs_makes_another_flight() {
 #[test]
 fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     let with = |floor: &str| Scenario::parse(&PAPER.replace("rate = 100.0", &format!("thrust_floor = {floor}")), "f");
-    let thrust = Certificate::new(&with("1.0").unwrap().configuration).unwrap().printed.thrust;
+    let thrust = Certificate::new(&with("1.0").unwrap().configuration).unwrap().paper().unwrap().printed.thrust;
     assert!(thrust.least < 1.0 && thrust.least > 0.999, "{thrust:?}");
     for bad in ["0.0", "-1", "4.0"] {
         assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");

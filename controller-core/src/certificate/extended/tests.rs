@@ -23,7 +23,6 @@ fn figures() {
     let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
     let limits = Limits::new(limits, &vehicle).unwrap();
     let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
-    let configuration =
-        Configuration::extended(vehicle, limits, law, references).unwrap().with_rotors(rotors).unwrap();
+    let configuration = Configuration::extended(vehicle, limits, law, references).unwrap().with_rotors(rotors).unwrap();
     println!("{:#?}", ExtendedCertificate::new(&configuration, &law).unwrap());
 }

@@ -79,7 +79,9 @@ fn measure() -> bool {
     let Ok(law) = Law::new(&certified, PERIOD) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
-    let Some(papers) = replay::configuration().ok().and_then(|papers| Certified::new(papers).ok()) else { return false };
+    let Some(papers) = replay::configuration().ok().and_then(|papers| Certified::new(papers).ok()) else {
+        return false;
+    };
     let Ok(papers_law) = Law::new(&papers, PERIOD) else { return false };
     let mixer = Mixer::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());

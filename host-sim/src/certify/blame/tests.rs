@@ -2,6 +2,7 @@
 
 use super::*;
 use controller_core::allocation::Shape;
+use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 
 fn terms(sets: &[(&'static str, Shape)]) -> Vec<TorqueTerm> {
@@ -13,7 +14,7 @@ const ROW: Vector4<f64> = Vector4::new(0.25, -2.08, 2.08, 10.24);
 
 fn form(least: f64, greatest: f64) -> Form {
     let paper = scenario::Scenario::paper().unwrap();
-    let certificate = Certificate::new(&paper.configuration).unwrap();
+    let certificate = Certificate::new(&paper.configuration).unwrap().paper().unwrap().clone();
     Form { thrust: Interval { least, greatest }, ..certificate.sharp }
 }
 
