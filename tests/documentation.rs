@@ -91,7 +91,8 @@ fn the_diagram_of_the_flight_modes_has_the_arrows_of_the_rules() {
     let page = read("docs/firmware.md");
     let (_, diagram) = page.split_once("```mermaid\n").unwrap();
     let (diagram, _) = diagram.split_once("```").unwrap();
-    let arrows = diagram.lines().filter_map(|line| line.split_once(':')).filter_map(|(arrow, _)| arrow.split_once("-->"));
+    let arrows =
+        diagram.lines().filter_map(|line| line.split_once(':')).filter_map(|(arrow, _)| arrow.split_once("-->"));
     let drawn: BTreeSet<(String, String)> =
         arrows.map(|(from, to)| (from.trim().to_owned(), to.trim().to_owned())).collect();
     let rules = TABLE.iter().filter(|row| row.from != row.to);
