@@ -59,7 +59,7 @@ pub enum Allocation {
 
 impl Allocation {
     /// The thrusts for a wrench, N, and whether they fall short of it.
-    fn thrusts(&self, wrench: &Wrench) -> Result<(Thrusts, bool), InputError> {
+    pub(crate) fn thrusts(&self, wrench: &Wrench) -> Result<(Thrusts, bool), InputError> {
         match self {
             Self::Certified(minimum_norm) => {
                 let delivered = minimum_norm.allocate(wrench)?;

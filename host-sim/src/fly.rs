@@ -128,7 +128,7 @@ fn log_flight(
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let (mut flown, mut record) = (Flown::new(scenario), Record::new(ticks));
     let mut progress = Progress::new("flying", ticks);
-    log.write(|file| writeln!(file, "{}", log::header(rotors)))?;
+    log.write(|file| writeln!(file, "{}{}", log::header(rotors), log::reality_header(&scenario.reality)))?;
     for done in 0..ticks {
         interrupted(interrupt)?;
         let tick = flight.tick()?;
