@@ -1,12 +1,13 @@
 //! A closed-loop flight: plant, reference and controller, one control tick at a time.
 //!
-//! At each tick the law sees the plant's state rounded to single precision and the reference of that instant; its wrench is
-//! held until the next tick. Time is integer microseconds.
+//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors make of it, and the
+//! reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
 
-use crate::actuators::rotors::SpinningRotors;
-use crate::actuators::{ActuationError, Actuators};
-use crate::plant::Plant;
-use controller_core::allocation::{Mixer, Thrusts};
+use crate::actuators::ActuationError;
+use crate::reality::Surroundings;
+use crate::sensors::Sensors;
+use crate::vehicle::SimulatedVehicle;
+use controller_core::allocation::Thrusts;
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Diagnostics;
@@ -14,7 +15,7 @@ use controller_core::error::{InputError, ParameterError};
 use controller_core::extended::controller::Estimates;
 use controller_core::law::Law;
 use controller_core::reference::{Reference, Trajectory};
-use controller_core::state::Wrench;
+use controller_core::state::{State, Wrench};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use std::fmt;
@@ -23,8 +24,8 @@ use std::sync::Arc;
 /// A flight under way.
 #[derive(Clone)]
 pub struct Flight {
-    plant: Plant,
-    actuators: Actuators,
+    vehicle: SimulatedVehicle,
+    sensors: Option<Sensors>,
     law: Law,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
@@ -37,8 +38,12 @@ pub struct Flight {
 pub struct Tick {
     /// Time since the start, us.
     pub time_us: u64,
-    /// The plant's state before the tick's steps.
+    /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
+    /// What the law was told of it, where there are sensors.
+    pub measured: Option<Box<State>>,
+    /// What surrounded the vehicle at that moment.
+    pub surroundings: Surroundings,
     /// What was asked for.
     pub reference: Reference,
     /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust scale.
@@ -133,15 +138,10 @@ impl Flight {
     }
 
     fn start(scenario: &Scenario, configuration: &Configuration, law: Law) -> Self {
-        let (timing, vehicle) = (&scenario.timing, configuration.vehicle());
-        let hover = vehicle.mass * vehicle.gravity;
-        let rotors = configuration.rotors().map(|rotors| {
-            let spinning = SpinningRotors::hovering(rotors, scenario.rotor_lag, hover, timing.step());
-            (Box::new(Mixer::new(rotors)), spinning)
-        });
+        let timing = &scenario.timing;
         Self {
-            actuators: Actuators::new(rotors, scenario.delay_steps, hover),
-            plant: Plant::new(vehicle, configuration.limits(), timing.step(), scenario.initial),
+            vehicle: SimulatedVehicle::new(scenario, configuration),
+            sensors: Sensors::new(scenario),
             law,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
@@ -157,21 +157,33 @@ impl Flight {
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let time_us = self.tick * self.period_us;
         let fail = |cause| FlightError { time_us, cause };
-        let (state, rotors) = (*self.plant.state(), self.actuators.thrusts());
+        let (state, rotors) = (*self.vehicle.state(), self.vehicle.thrusts());
+        let surroundings = self.vehicle.surroundings();
+        let measured = self.sensors.as_mut().map(|sensors| Box::new(sensors.measure(&state)));
+        let told = measured.as_deref().copied().unwrap_or_else(|| state.measured());
         let reference = self.trajectory.at(time_us);
-        let (wrench, diagnostics) =
-            self.law.step(&state.measured(), &reference).map_err(|error| fail(Cause::Law(error)))?;
+        let (wrench, diagnostics) = self.law.step(&told, &reference).map_err(|error| fail(Cause::Law(error)))?;
         let asked = wrench.scaled(1.0 / self.law.thrust_scale());
-        let (clipped, rotor_thrusts) = self
-            .actuators
-            .hold(&mut self.plant, &asked, self.steps_per_tick)
-            .map_err(|error| fail(Cause::Actuation(error)))?;
+        let (clipped, rotor_thrusts) =
+            self.vehicle.hold(&asked, self.steps_per_tick).map_err(|error| fail(Cause::Actuation(error)))?;
         if clipped {
             self.law.hold_estimates();
         }
         self.tick += 1;
         let estimates = self.law.estimates();
-        Ok(Tick { time_us, state, reference, wrench, diagnostics, estimates, clipped, rotors, rotor_thrusts })
+        Ok(Tick {
+            time_us,
+            state,
+            measured,
+            surroundings,
+            reference,
+            wrench,
+            diagnostics,
+            estimates,
+            clipped,
+            rotors,
+            rotor_thrusts,
+        })
     }
 }
 

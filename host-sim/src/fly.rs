@@ -129,7 +129,8 @@ fn log_flight(
     let estimates = scenario.configuration.paper().is_none();
     let (mut flown, mut record) = (Flown::new(scenario), Record::new(ticks));
     let mut progress = Progress::new("flying", ticks);
-    log.write(|file| writeln!(file, "{}", log::header(rotors, estimates)))?;
+    let reality = log::reality_header(&scenario.reality);
+    log.write(|file| writeln!(file, "{}{reality}", log::header(rotors, estimates)))?;
     for done in 0..ticks {
         interrupted(interrupt)?;
         let tick = flight.tick()?;

@@ -51,22 +51,40 @@ impl Ground {
         (ground, standing(position, upright(start)))
     }
 
-    /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.
-    pub fn act(&mut self, plant: &mut Plant, thrust: f64, torque: &Vector3<f64>) -> Option<Touchdown> {
-        if self.standing && thrust * up(plant.state()).z <= self.weight {
-            return None;
-        }
-        self.standing = false;
-        plant.act(thrust, torque);
-        let state = plant.state();
-        if state.position.z > self.height || state.velocity.z > 0.0 {
+    /// Ground on which a vehicle of `mass`, kg, stands with its origin at `height`, m; and where it is, if it was at `start`: on
+    /// its legs if that is down there.
+    #[must_use]
+    pub fn at(height: f64, mass: f64, gravity: f64, start: &BodyState) -> (Self, BodyState) {
+        let mut ground = Self { height, weight: mass * gravity, gravity, standing: false };
+        let state = ground.touch(start).map_or(*start, |(state, _)| state);
+        (ground, state)
+    }
+
+    /// Whether a vehicle on which an upward force of `lift`, N, acts besides its weight stands still.
+    #[must_use]
+    pub fn carries(&self, lift: f64) -> bool {
+        self.standing && lift <= self.weight
+    }
+
+    /// Where a vehicle that moved to `state` ends if it touches the ground there.
+    pub fn touch(&mut self, state: &BodyState) -> Option<(BodyState, Touchdown)> {
+        self.standing = state.position.z <= self.height && state.velocity.z <= 0.0;
+        if !self.standing {
             return None;
         }
         let touchdown = Touchdown { speed: -state.velocity.z, tilt: up(state).z.clamp(-1.0, 1.0).acos() };
         let attitude = if touchdown.tilt <= LEGS_TILT_MAX { upright(state) } else { state.attitude };
-        let state = standing(state.position, attitude);
+        Some((standing(state.position, attitude), touchdown))
+    }
+
+    /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.
+    pub fn act(&mut self, plant: &mut Plant, thrust: f64, torque: &Vector3<f64>) -> Option<Touchdown> {
+        if self.carries(thrust * up(plant.state()).z) {
+            return None;
+        }
+        plant.act(thrust, torque);
+        let (state, touchdown) = self.touch(plant.state())?;
         plant.place(state);
-        self.standing = true;
         Some(touchdown)
     }
 

@@ -5,6 +5,9 @@
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
+//! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
+//! | [`vehicle`] | the one or the other, as the scenario says |
+//! | [`sensors`] | what the controller is told of the state |
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
@@ -25,6 +28,9 @@ pub mod log;
 pub mod plant;
 pub mod plots;
 pub mod progress;
+pub mod reality;
+pub mod sensors;
 pub mod table;
 pub mod tune;
+pub mod vehicle;
 pub mod whole_file;

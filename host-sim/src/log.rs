@@ -1,10 +1,14 @@
 //! log.csv: one row per control tick.
 //!
-//! The first 40 columns are a contract with other tools; what stands to their right may grow, by what the law estimates and, at the end,
-//! the rotors' thrusts (N, after lag, numbered from 1). Angles in rad, the rest in SI
-//! units; each number has the digits that give its bits back.
+//! The first 40 columns are a contract with other tools; what stands to their right may grow: by what the law
+//! estimates (m/s^2, N m), by the rotors' thrusts (N, after lag, in still air, numbered from 1), by the wind (m/s, world), by the battery's voltage (V) and current (A), by what
+//! the law was told of the state. Angles in rad, the rest in SI units; each number has the digits that give its bits back.
+//!
+//! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of the
+//! state that it was told, `measured_…`, where there are sensors.
 
 use crate::flight::Tick;
+use scenario::reality::Reality;
 use std::io::{self, Write};
 
 /// The header row of a vehicle without rotors.
@@ -22,8 +26,26 @@ pub fn header(rotors: usize, estimates: bool) -> String {
     (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
-/// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`.
-pub const BYTES_PER_ROW: u64 = 740;
+/// What the header row gains by what the scenario says of reality.
+#[must_use]
+pub fn reality_header(reality: &Reality) -> String {
+    [(reality.wind.is_some(), WIND), (reality.battery.is_some(), BATTERY), (reality.sensors.is_some(), MEASURED)]
+        .into_iter()
+        .fold(String::new(), |header, (there, columns)| if there { header + columns } else { header })
+}
+
+const WIND: &str = ",wind_x,wind_y,wind_z";
+const BATTERY: &str = ",voltage,current";
+const MEASURED: &str = ",measured_px,measured_py,measured_pz,measured_vx,measured_vy,measured_vz,\
+measured_qw,measured_qx,measured_qy,measured_qz,measured_wx,measured_wy,measured_wz";
+
+/// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further column.
+#[must_use]
+pub fn bytes_per_row(reality: &Reality) -> u64 {
+    const MODEL: u64 = 740;
+    const NUMBER: u64 = 14;
+    MODEL + NUMBER * reality_header(reality).matches(',').count() as u64
+}
 
 /// Writes one row.
 ///
@@ -57,6 +79,19 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
         singles(out, &[estimates.scale])?;
     }
     doubles(out, &tick.rotors)?;
+    if let Some(wind) = &tick.surroundings.wind {
+        doubles(out, wind.as_slice())?;
+    }
+    if let Some((voltage, current)) = tick.surroundings.battery {
+        doubles(out, &[voltage, current])?;
+    }
+    if let Some(told) = &tick.measured {
+        let q = &told.attitude;
+        singles(out, told.position.as_slice())?;
+        singles(out, told.velocity.as_slice())?;
+        singles(out, &[q.w, q.i, q.j, q.k])?;
+        singles(out, told.angular_velocity.as_slice())?;
+    }
     writeln!(out)
 }
 
@@ -71,6 +106,8 @@ fn singles(out: &mut impl Write, values: &[f32]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::Flight;
+    use scenario::Scenario;
 
     #[test]
     fn the_contracts_columns_come_first() {
@@ -79,5 +116,30 @@ mod tests {
             s_omega";
         assert!(header(0, false).starts_with(contract) && header(0, true).starts_with(contract));
         assert!(header(4, false).ends_with(",clipped,rotor_1,rotor_2,rotor_3,rotor_4"));
+    }
+
+    #[test]
+    fn a_row_has_a_number_for_each_column_whatever_is_there() {
+        let hummingbird = include_str!("../../vehicles/hummingbird.toml");
+        let battery = "[battery]\nfull_voltage = 12\nempty_voltage = 11\nresistance = 0.01\ncapacity = 1\n";
+        let wind = "[drag]\n[wind]\nsteady = [1.5, 0, 0]\n";
+        for (sections, further) in [
+            (String::new(), ""),
+            ("[truth]\n".into(), ""),
+            (wind.into(), WIND),
+            (battery.into(), BATTERY),
+            (format!("{wind}{battery}[sensors]\n"), ",wind_x,wind_y,wind_z,voltage,current,measured_px"),
+        ] {
+            let scenario = Scenario::parse(&format!("{hummingbird}\n{sections}"), "f").unwrap();
+            let header = header(4) + &reality_header(&scenario.reality);
+            let (_, after) = header.split_once(",rotor_4").unwrap();
+            assert!(after.starts_with(further) && after.is_empty() == further.is_empty(), "{header}");
+            let mut row = Vec::new();
+            write_row(&mut row, &Flight::new(&scenario).unwrap().tick().unwrap()).unwrap();
+            let row = String::from_utf8(row).unwrap();
+            assert_eq!(row.matches(',').count(), header.matches(',').count());
+            let wind_x = header.split(',').position(|column| column == "wind_x");
+            assert!(wind_x.is_none_or(|column| row.split(',').nth(column) == Some("1.5")), "{row}");
+        }
     }
 }

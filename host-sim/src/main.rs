@@ -11,7 +11,7 @@ use host_sim::hil::port::Port;
 use host_sim::hil::{self, End, HilError};
 use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
-use host_sim::log::BYTES_PER_ROW;
+use host_sim::log::bytes_per_row;
 use host_sim::table::{percent, short};
 use host_sim::tune::{Effort, Tuned, output, tune, widest_bounds};
 use host_sim::whole_file::WholeFile;
@@ -126,7 +126,7 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, large_log: bool) -> Result
 /// What the log of a flight will take, if that is a lot.
 fn large(scenario: &Scenario) -> Option<String> {
     let rows = scenario.timing.ticks;
-    let bytes = rows.saturating_mul(BYTES_PER_ROW);
+    let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));
     (bytes > LARGE_LOG).then(|| format!("log.csv will take about {} GB, {rows} rows", short(bytes as f64 / 1e9)))
 }
 

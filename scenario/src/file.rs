@@ -1,6 +1,7 @@
 //! A whole scenario file: its sections, read into one flight that can be flown.
 
 use crate::body::BodyState;
+use crate::reality::{self, Reality, sensors};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
@@ -18,8 +19,8 @@ use toml::Table;
 /// The paper's Section VI, built in.
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
-/// What a scenario file may hold at its top level.
-const SECTIONS: [&str; 13] = [
+/// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
+const MODEL_SECTIONS: [&str; 13] = [
     "name",
     "duration",
     "vehicle",
@@ -49,6 +50,8 @@ pub struct Scenario {
     pub rotor_lag: f64,
     /// From a tick to the moment its wrench acts, plant steps.
     pub delay_steps: u64,
+    /// What vehicle, air and sensors really are, where the model leaves it out.
+    pub reality: Reality,
     /// Where it starts.
     pub initial: BodyState,
     /// What it is asked to do, as the file says it.
@@ -89,7 +92,7 @@ impl Scenario {
     }
 
     fn read(root: &Section) -> Result<Self, FieldError> {
-        root.allow(&SECTIONS)?;
+        root.allow(&[MODEL_SECTIONS.as_slice(), reality::SECTIONS.as_slice()].concat())?;
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
         let reference = ReferenceKind::read(root)?;
@@ -98,12 +101,16 @@ impl Scenario {
         let delay_steps = actuation::read_delay(root, &timing)?;
         let rotor_lag = actuation::read_lag(root)?;
         let delay = delay_steps as f64 * timing.step();
-        let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: delay as f32 };
+        let sensors = sensors::read(root, &timing, delay / timing.period())?;
+        // What is measured shows a command's effect later by what the sensors are late.
+        let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
+        let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
         let configuration = vehicle::read_configuration(root, &bounds, actuators)?;
         let configuration = actuation::read_rotors(root, configuration)?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
-        Ok(Self { name, timing, configuration, rotor_lag, delay_steps, initial, reference, trajectory })
+        let reality = Reality::read(root, &configuration, sensors, &initial)?;
+        Ok(Self { name, timing, configuration, rotor_lag, delay_steps, reality, initial, reference, trajectory })
     }
 
     /// From a tick to the moment its wrench acts, s.
@@ -112,13 +119,20 @@ impl Scenario {
         self.delay_steps as f64 * self.timing.step()
     }
 
-    /// The sampled loops of its vehicle, gains, rotors and timing.
+    /// By how much what is measured is late, s.
+    #[must_use]
+    pub fn input_delay(&self) -> f64 {
+        self.reality.sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * self.timing.period())
+    }
+
+    /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together.
     ///
     /// # Errors
     /// If the timing is outside the model's range; no file that was read leads there.
     pub fn loops(&self) -> Result<LoopModel, ParameterError> {
         let period = self.timing.period();
-        let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples: self.delay() / period };
+        let delay_samples = (self.delay() + self.input_delay()) / period;
+        let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples };
         LoopModel::new(self.configuration.vehicle(), self.configuration.law(), timing)
     }
 
@@ -129,6 +143,7 @@ impl Scenario {
             && self.configuration == other.configuration
             && self.rotor_lag == other.rotor_lag
             && self.delay_steps == other.delay_steps
+            && self.reality == other.reality
             && self.initial == other.initial
             && self.reference == other.reference
     }

@@ -9,10 +9,11 @@
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
+//! | `[truth]`, `[drag]`, `[wind]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to `SECTIONS` and a
-//! field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's types take them.
+//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the list of sections
+//! and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`], which
 //! is about the small motions of the [`sampled_loop`].
@@ -23,6 +24,7 @@ pub mod bounds;
 pub mod extended;
 pub mod file;
 pub mod initial;
+pub mod reality;
 pub mod reference;
 pub mod sampled_loop;
 pub mod section;

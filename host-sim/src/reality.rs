@@ -1,0 +1,191 @@
+//! A vehicle as it really is, in air that moves: what flies in place of [`crate::plant`] and [`crate::actuators`] where the
+//! scenario says more than its model ([`scenario::reality`]).
+//!
+//! ```text
+//! wrench -> (delay) -> allocation -> motors (battery, failure) -> rotor speeds -> thrusts, drag -> body -> ground
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`body`] | the rigid body, by the classical Runge-Kutta method of fourth order |
+//! | [`propulsion`] | from the thrusts asked of the rotors to the speeds they turn with |
+//! | [`battery`] | the voltage the motors have |
+//! | [`air`] | forces and moments of rotors and frame in moving air |
+//! | [`wind`], [`dryden`] | how the air moves |
+//!
+//! Forces are evaluated at every stage of the method: the rotors' speeds and gusts at the stage's time, drag at its velocity
+//! and attitude. So where these are smooth, the whole has the method's order. The exceptions: a command that arrives, a
+//! step gust, a rotor that fails and the ground act from the beginning of a plant step on; voltage and turbulence are held
+//! over it. Each costs an error of the order of the step at that instant and leaves the order of the rest alone.
+//!
+//! A vehicle on the ground stands while the forces on it do not lift it; the ground is [`crate::ground`]'s.
+
+pub mod air;
+pub mod battery;
+pub mod body;
+pub mod dryden;
+pub mod propulsion;
+pub mod wind;
+
+use crate::actuators::ActuationError;
+use crate::ground::Ground;
+use crate::plant::Diverged;
+use air::{Air, Flow};
+use body::{RigidBody, STAGE_TIMES};
+use controller_core::allocation::{Mixer, Thrusts};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::state::Wrench;
+use nalgebra::{UnitQuaternion, Vector3};
+use propulsion::Propulsion;
+use scenario::Scenario;
+use scenario::body::BodyState;
+use scenario::reality::truth::Truth;
+use std::collections::VecDeque;
+use wind::MovingAir;
+
+/// What surrounds a vehicle at an instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Surroundings {
+    /// Velocity of the air, m/s, world; none where the scenario has no wind.
+    pub wind: Option<Vector3<f64>>,
+    /// Voltage, V, and current, A, of the battery; none without one.
+    pub battery: Option<(f64, f64)>,
+}
+
+/// A vehicle as it really is.
+#[derive(Debug, Clone)]
+pub struct RealVehicle {
+    body: RigidBody,
+    air: Air,
+    wind: Option<MovingAir>,
+    mixer: Option<Box<Mixer>>,
+    propulsion: Propulsion,
+    ground: Option<Ground>,
+    /// Plant step, s.
+    step: f64,
+    delay_steps: u64,
+    /// Plant steps since the start.
+    now: u64,
+    /// Wrenches on their way, with the step at which they act.
+    waiting: VecDeque<(u64, Wrench)>,
+    /// Wrench that acts now.
+    acting: Wrench,
+    /// Its origin, where the controller takes the centre of mass to be.
+    state: BodyState,
+}
+
+impl RealVehicle {
+    /// The scenario's vehicle at its start. The model is the `configuration`'s. Its rotors turn as the model hovers.
+    #[must_use]
+    pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
+        let (reality, step) = (&scenario.reality, scenario.timing.step());
+        let model = configuration.vehicle();
+        let truth = reality.truth.clone().unwrap_or_else(|| Truth::of_model(model));
+        let propulsion = Propulsion::new(configuration, scenario.rotor_lag, reality, step);
+        let gravity = f64::from(model.gravity);
+        let (ground, start) = match reality.ground {
+            Some(ground) => {
+                let (ground, start) = Ground::at(ground.height, truth.mass, gravity, &scenario.initial);
+                (Some(ground), start)
+            }
+            None => (None, scenario.initial),
+        };
+        Self {
+            air: Air::new(configuration.rotors(), &truth, &reality.drag.unwrap_or_default()),
+            wind: reality.wind.map(|wind| MovingAir::new(&wind, step)),
+            mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
+            propulsion,
+            ground,
+            step,
+            delay_steps: scenario.delay_steps,
+            now: 0,
+            waiting: VecDeque::new(),
+            acting: Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() },
+            body: RigidBody::new(&truth, gravity, &start),
+            state: start,
+        }
+    }
+
+    /// The present state of its origin.
+    #[must_use]
+    pub fn state(&self) -> &BodyState {
+        &self.state
+    }
+
+    /// The rotors' thrusts at this moment in still air, N; none without rotors.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        self.air.thrusts(&self.propulsion.speeds())
+    }
+
+    /// What surrounds it at this moment.
+    #[must_use]
+    pub fn surroundings(&self) -> Surroundings {
+        Surroundings {
+            wind: self.wind.as_ref().map(|wind| wind.velocity(self.now, 0.0)),
+            battery: self.propulsion.battery(),
+        }
+    }
+
+    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
+    /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
+    ///
+    /// # Errors
+    /// [`ActuationError`].
+    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+        self.waiting.push_back((self.now + self.delay_steps, *wrench));
+        let mut clipped = false;
+        let mut thrusts = Thrusts::new();
+        for _ in 0..steps {
+            let mut arrived = false;
+            while let Some((_, due)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+                self.acting = due;
+                arrived = true;
+            }
+            match &self.mixer {
+                Some(mixer) if arrived => {
+                    let allocation = mixer.allocate(&self.acting).map_err(ActuationError::Wrench)?;
+                    clipped |= !allocation.is_exact();
+                    thrusts = allocation.thrusts;
+                    self.propulsion.command(&thrusts);
+                }
+                Some(_) => {}
+                None => clipped |= self.propulsion.command_directly(&self.acting),
+            }
+            self.advance();
+        }
+        if self.state.is_finite() { Ok((clipped, thrusts)) } else { Err(Diverged.into()) }
+    }
+
+    /// One plant step.
+    fn advance(&mut self) {
+        let stages = self.propulsion.advance(self.now);
+        let (air, wind, now) = (&self.air, &self.wind, self.now);
+        let forces = |stage: usize, state: &BodyState| {
+            let moving = wind.as_ref().map_or_else(Vector3::zeros, |wind| wind.velocity(now, STAGE_TIMES[stage]));
+            let attitude = UnitQuaternion::new_unchecked(state.attitude);
+            let airspeed = attitude.inverse_transform_vector(&(state.velocity - moving));
+            air.act(&Flow { airspeed, angular_velocity: state.angular_velocity }, &stages[stage])
+        };
+        let carried = self.ground.as_ref().is_some_and(|ground| {
+            let state = self.body.state();
+            let (force, _) = forces(0, state);
+            ground.carries((UnitQuaternion::new_unchecked(state.attitude) * force).z)
+        });
+        if !carried {
+            self.body.advance(self.step, forces);
+            self.state = self.body.origin();
+            if let Some((landed, _)) = self.ground.as_mut().and_then(|ground| ground.touch(&self.state)) {
+                self.body.place(&landed);
+                self.state = landed;
+            }
+        }
+        if let Some(wind) = &mut self.wind {
+            wind.advance();
+        }
+        self.now += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests;

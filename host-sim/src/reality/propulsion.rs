@@ -1,0 +1,199 @@
+//! From the thrusts asked of the rotors to the speeds they turn with.
+//!
+//! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u = w_c / w_max.
+//! What a real one settles at, and how it gets there:
+//!
+//! ```text
+//! u' = u V / V_0                                            a motor sees the command times the voltage
+//! w_s = w_max sqrt(a u' + (1 - a) u'^2)                     thrust curve; a = 0: w_s = w_c V / V_0
+//! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails
+//! w' = (w_s - w) / lag                                      first order; no lag: at once
+//! ```
+//!
+//! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's equation
+//! is linear with w_s held over a plant step, so the speeds are exact at the beginning, the middle and the end of the step:
+//! what the body's method asks for. It is today's lag of `[rotors]`, which the body otherwise feels at the middle of each
+//! step only.
+//!
+//! Sources: the first-order lag, R. Mahony, V. Kumar, P. Corke, *Multirotor Aerial Vehicles*, IEEE RAM 19(3), 2012; the curve and
+//! the voltage, [`controller_core::allocation::curve`] and PX4's THR_MDL_FAC.
+//!
+//! Without rotors, thrust and torque are the wrench, clipped to the limits.
+
+use super::battery::BatteryState;
+use super::body::STAGE_TIMES;
+use super::wind::first_step;
+use controller_core::allocation::geometry::ROTORS_MAX;
+use controller_core::allocation::{Rotor, Rotors};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::state::Wrench;
+use nalgebra::{Vector3, Vector4};
+use scenario::reality::Reality;
+use scenario::reality::failure::Failure;
+
+/// What drives the body at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Delivered {
+    /// Thrust, N, and torque, N m, as commanded.
+    Wrench {
+        /// N.
+        thrust: f64,
+        /// N m, body.
+        torque: Vector3<f64>,
+    },
+    /// The rotors' speeds, rad/s.
+    Speeds([f64; ROTORS_MAX]),
+}
+
+/// A vehicle's rotors and their motors.
+#[derive(Debug, Clone)]
+struct Motors {
+    rotors: Rotors,
+    /// What is left of a speed error at each stage of a plant step.
+    decay: [f64; 3],
+    /// a.
+    curve: f64,
+    /// w_c, rad/s.
+    commands: [f64; ROTORS_MAX],
+    /// w, rad/s.
+    speeds: [f64; ROTORS_MAX],
+    /// With the plant step at which it happens.
+    failure: Option<(Failure, u64)>,
+    battery: Option<BatteryState>,
+}
+
+/// What moves a vehicle.
+#[derive(Debug, Clone)]
+pub struct Propulsion {
+    motors: Option<Motors>,
+    /// Wrench that acts without rotors, and the limits it is clipped to.
+    direct: (f64, Vector3<f64>),
+    limits: (f64, Vector3<f64>),
+    /// Plant step, s.
+    step: f64,
+}
+
+impl Propulsion {
+    /// The vehicle's at rest in its command to hover. `lag` and `step` in s.
+    #[must_use]
+    pub fn new(configuration: &Configuration, lag: f64, reality: &Reality, step: f64) -> Self {
+        let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
+        let hover = vehicle.mass * vehicle.gravity;
+        Self {
+            motors: configuration.rotors().map(|rotors| Motors::hovering(rotors, hover, lag, reality, step)),
+            direct: (f64::from(hover), Vector3::zeros()),
+            limits: (f64::from(limits.thrust_max), limits.torque_max.map(f64::from)),
+            step,
+        }
+    }
+
+    /// Asks each rotor for a thrust, N.
+    pub fn command(&mut self, thrusts: &[f32]) {
+        if let Some(motors) = &mut self.motors {
+            for ((command, rotor), thrust) in motors.commands.iter_mut().zip(motors.rotors.iter()).zip(thrusts) {
+                *command = f64::from(rotor.speed_at(*thrust));
+            }
+        }
+    }
+
+    /// Asks a vehicle without rotors for a wrench. Returns whether the limits cut it.
+    pub fn command_directly(&mut self, wrench: &Wrench) -> bool {
+        let asked = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
+        let torque = asked.1.zip_map(&self.limits.1, |value, limit| value.clamp(-limit, limit));
+        self.direct = (asked.0.clamp(0.0, self.limits.0), torque);
+        self.direct != asked
+    }
+
+    /// The speeds of this moment, rad/s; zero where there is no rotor.
+    #[must_use]
+    pub fn speeds(&self) -> [f64; ROTORS_MAX] {
+        self.motors.as_ref().map_or([0.0; ROTORS_MAX], |motors| motors.speeds)
+    }
+
+    /// Voltage, V, and current, A, of the battery, if there is one.
+    #[must_use]
+    pub fn battery(&self) -> Option<(f64, f64)> {
+        let battery = self.motors.as_ref()?.battery.as_ref()?;
+        Some((battery.voltage(), battery.current()))
+    }
+
+    /// Advances by the plant step `now`; returns what drives the body at its beginning, middle and end.
+    pub fn advance(&mut self, now: u64) -> [Delivered; 3] {
+        let (thrust, torque) = self.direct;
+        match &mut self.motors {
+            None => [Delivered::Wrench { thrust, torque }; 3],
+            Some(motors) => motors.advance(now, self.step),
+        }
+    }
+}
+
+impl Motors {
+    fn hovering(rotors: &Rotors, hover: f32, lag: f64, reality: &Reality, step: f64) -> Self {
+        let mut commands = [0.0; ROTORS_MAX];
+        let rows = rotors.pseudo_inverse();
+        for ((command, rotor), row) in commands.iter_mut().zip(rotors.iter()).zip(rows) {
+            *command = hovering_speed(rotor, row, hover);
+        }
+        let left = |time: f64| if lag > 0.0 { (-time * step / lag).exp() } else { f64::from(time == 0.0) };
+        let mut motors = Self {
+            rotors: rotors.clone(),
+            decay: STAGE_TIMES.map(left),
+            curve: reality.truth.as_ref().map_or(0.0, |truth| truth.thrust_curve),
+            commands,
+            speeds: commands,
+            failure: reality.failure.map(|failure| (failure, first_step(failure.time, step))),
+            battery: reality.battery.map(|battery| BatteryState::new(&battery)),
+        };
+        motors.speeds = motors.settled(0);
+        motors
+    }
+
+    /// The speeds that the commands lead to, rad/s, in the plant step `now`.
+    fn settled(&self, now: u64) -> [f64; ROTORS_MAX] {
+        let voltage = self.battery.as_ref().map_or(1.0, BatteryState::ratio);
+        let mut settled = self.commands;
+        for (speed, rotor) in settled.iter_mut().zip(self.rotors.iter()) {
+            *speed *= voltage;
+            if self.curve > 0.0 {
+                let greatest = f64::from(rotor.speed_at(rotor.thrust_max));
+                let command = *speed / greatest;
+                *speed = greatest * (self.curve * command + (1.0 - self.curve) * command * command).sqrt();
+            }
+        }
+        if let Some((failed, _)) = self.failure.filter(|(_, first)| now >= *first)
+            && let Some(speed) = settled.get_mut(failed.rotor)
+        {
+            *speed *= failed.thrust_left.sqrt();
+        }
+        settled
+    }
+
+    fn advance(&mut self, now: u64, step: f64) -> [Delivered; 3] {
+        let settled = self.settled(now);
+        let start = self.speeds;
+        let at = |left: f64| {
+            let mut speeds = settled;
+            for (speed, from) in speeds.iter_mut().zip(start) {
+                *speed += (from - *speed) * left;
+            }
+            speeds
+        };
+        // A rotor without lag is at its new speed from the beginning of the step on.
+        let stages = if self.decay[1] == 0.0 { [settled; 3] } else { self.decay.map(at) };
+        self.speeds = stages[2];
+        let power = self.rotors.iter().zip(stages[1]).map(|(rotor, w)| f64::from(rotor.drag_coefficient) * w * w * w);
+        if let Some(battery) = &mut self.battery {
+            battery.draw(power.sum(), step);
+        }
+        stages.map(Delivered::Speeds)
+    }
+}
+
+/// The model's speed of a rotor at hover, rad/s; `row` is its share of a wrench, `hover` N.
+fn hovering_speed(rotor: &Rotor, row: &Vector4<f64>, hover: f32) -> f64 {
+    let thrust = (row.x as f32 * hover).clamp(rotor.thrust_min, rotor.thrust_max);
+    f64::from(rotor.speed_at(thrust))
+}
+
+#[cfg(test)]
+mod tests;

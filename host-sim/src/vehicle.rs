@@ -1,0 +1,79 @@
+//! The vehicle that a flight simulates: the scenario's model, or what it says the vehicle really is.
+//!
+//! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
+
+use crate::actuators::rotors::SpinningRotors;
+use crate::actuators::{ActuationError, Actuators};
+use crate::plant::Plant;
+use crate::reality::{RealVehicle, Surroundings};
+use controller_core::allocation::{Mixer, Thrusts};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::state::Wrench;
+use scenario::Scenario;
+use scenario::body::BodyState;
+
+/// A vehicle in flight.
+#[derive(Debug, Clone)]
+pub enum SimulatedVehicle {
+    /// As the model has it.
+    Model(Box<Plant>, Box<Actuators>),
+    /// As the scenario says that it is.
+    Real(Box<RealVehicle>),
+}
+
+impl SimulatedVehicle {
+    /// The scenario's vehicle at its start. The model is the `configuration`'s.
+    #[must_use]
+    pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
+        if !scenario.reality.is_model() {
+            return Self::Real(Box::new(RealVehicle::new(scenario, configuration)));
+        }
+        let (vehicle, step) = (configuration.vehicle(), scenario.timing.step());
+        let hover = vehicle.mass * vehicle.gravity;
+        let rotors = configuration.rotors().map(|rotors| {
+            let spinning = SpinningRotors::hovering(rotors, scenario.rotor_lag, hover, step);
+            (Box::new(Mixer::new(rotors)), spinning)
+        });
+        let plant = Plant::new(vehicle, configuration.limits(), step, scenario.initial);
+        Self::Model(Box::new(plant), Box::new(Actuators::new(rotors, scenario.delay_steps, hover)))
+    }
+
+    /// The present state of its origin.
+    #[must_use]
+    pub fn state(&self) -> &BodyState {
+        match self {
+            Self::Model(plant, _) => plant.state(),
+            Self::Real(vehicle) => vehicle.state(),
+        }
+    }
+
+    /// The rotors' thrusts at this moment, N, after lag; none without rotors.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        match self {
+            Self::Model(_, actuators) => actuators.thrusts(),
+            Self::Real(vehicle) => vehicle.thrusts(),
+        }
+    }
+
+    /// What surrounds it at this moment.
+    #[must_use]
+    pub fn surroundings(&self) -> Surroundings {
+        match self {
+            Self::Model(..) => Surroundings::default(),
+            Self::Real(vehicle) => vehicle.surroundings(),
+        }
+    }
+
+    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
+    /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
+    ///
+    /// # Errors
+    /// [`ActuationError`].
+    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+        match self {
+            Self::Model(plant, actuators) => actuators.hold(plant, wrench, steps),
+            Self::Real(vehicle) => vehicle.hold(wrench, steps),
+        }
+    }
+}

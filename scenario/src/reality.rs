@@ -1,0 +1,96 @@
+//! What a vehicle and the air around it really are, where the model that the controller was given leaves it out.
+//!
+//! | section | what it holds | needs |
+//! |---|---|---|
+//! | [`[truth]`](truth) | mass, inertia, centre of mass, what the rotors deliver | |
+//! | [`[drag]`](drag) | what the air does to frame and rotors | |
+//! | [`[wind]`](wind) | how the air moves | `[drag]` |
+//! | [`[battery]`](battery) | a voltage that sags and runs down | `[rotors]` |
+//! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
+//! | [`[ground]`](ground) | something to stand on | |
+//! | [`[sensors]`](sensors) | what the controller is told of the state | |
+//!
+//! All may be left out. The certificate, the controller and the boards know nothing of them: they are what a flight is
+//! flown *in*. `[sensors] delay` alone is part of the sampled loops.
+
+pub mod battery;
+pub mod drag;
+pub mod failure;
+pub mod ground;
+pub mod numbers;
+pub mod sensors;
+pub mod truth;
+pub mod wind;
+
+use crate::body::BodyState;
+use crate::section::{FieldError, Section};
+use battery::Battery;
+use controller_core::certificate::configuration::Configuration;
+use drag::Drag;
+use failure::Failure;
+use ground::Ground;
+use sensors::Sensors;
+use truth::Truth;
+use wind::Wind;
+
+/// The names of the sections.
+pub const SECTIONS: [&str; 7] = ["truth", "drag", "wind", "battery", "failure", "ground", "sensors"];
+
+/// What the file says beyond the model. By default nothing: the vehicle is the model, in still vacuum, its state known.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Reality {
+    /// `[truth]`.
+    pub truth: Option<Truth>,
+    /// `[drag]`.
+    pub drag: Option<Drag>,
+    /// `[wind]`.
+    pub wind: Option<Wind>,
+    /// `[battery]`.
+    pub battery: Option<Battery>,
+    /// `[failure]`.
+    pub failure: Option<Failure>,
+    /// `[ground]`.
+    pub ground: Option<Ground>,
+    /// `[sensors]`.
+    pub sensors: Option<Sensors>,
+}
+
+impl Reality {
+    /// Reads all sections but `[sensors]`, which are given, for a flight of `configuration` from `initial`.
+    ///
+    /// # Errors
+    /// Names the field that is refused, or the section that lacks another.
+    pub fn read(
+        root: &Section,
+        configuration: &Configuration,
+        sensors: Option<Sensors>,
+        initial: &BodyState,
+    ) -> Result<Self, FieldError> {
+        let rotors = configuration.rotors().map(|rotors| rotors.len());
+        let needs = |section: &str, other: &str, why: &str| {
+            let problem = format!("needs [{other}]: {why}; add that section or leave this one out");
+            if root.has(section) && !root.has(other) { Err(FieldError::new(section, problem)) } else { Ok(()) }
+        };
+        needs("wind", "drag", "without it air that moves does nothing to the vehicle")?;
+        needs("battery", "rotors", "nothing else draws a current")?;
+        needs("failure", "rotors", "there is no rotor that could fail")?;
+        Ok(Self {
+            truth: truth::read(root, configuration.vehicle(), rotors)?,
+            drag: drag::read(root, rotors.is_some())?,
+            wind: wind::read(root)?,
+            battery: battery::read(root)?,
+            failure: failure::read(root, rotors.unwrap_or(0))?,
+            ground: ground::read(root, initial)?,
+            sensors,
+        })
+    }
+
+    /// Whether the vehicle and the air are the model's, whatever the sensors say of them.
+    #[must_use]
+    pub fn is_model(&self) -> bool {
+        Self { sensors: None, ..self.clone() } == Self::default()
+    }
+}
+
+#[cfg(test)]
+mod tests;

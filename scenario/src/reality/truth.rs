@@ -1,0 +1,121 @@
+//! `[truth]`: what the vehicle really is, where it differs from the model its controller was given.
+//!
+//! ```toml
+//! [truth]
+//! mass = 0.55                          # kg;            left out: vehicle.mass
+//! inertia = [3.9e-3, 3.9e-3, 7.5e-3]   # kg m^2, about the true centre of mass; left out: vehicle.inertia
+//! centre_of_mass = [0.005, 0.0, 0.0]   # m, body, from the model's; left out: zero
+//! thrust_scale = 0.8                   # what every rotor delivers of its thrust and drag torque; left out: 1
+//! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
+//! thrust_curve = 0.3                   # share of the motor command that acts on thrust, not on speed; left out: 0
+//! ```
+//!
+//! The state that a flight reports and its controller is told is that of the body's origin, the *model's* centre of mass,
+//! from which the rotors' positions are measured: it is where the markers and the flight controller are.
+
+use super::numbers::Allowed;
+use crate::section::{FieldError, Section};
+use controller_core::error::ParameterError;
+use controller_core::vehicle::{Vehicle, VehicleParameters};
+use nalgebra::Vector3;
+
+/// What the vehicle really is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    /// kg.
+    pub mass: f64,
+    /// Diagonal, about the true centre of mass, kg m^2.
+    pub inertia: Vector3<f64>,
+    /// The true centre of mass, m, body, from the model's.
+    pub centre_of_mass: Vector3<f64>,
+    /// What every rotor delivers of its thrust and drag torque at the speed it turns with.
+    pub thrust_scale: f64,
+    /// The same for each rotor, besides; empty for 1.
+    pub rotor_scales: Vec<f64>,
+    /// a of the thrust a u + (1 - a) u^2 that a motor command u gives; the controller's model has a = 0.
+    pub thrust_curve: f64,
+}
+
+impl Truth {
+    /// What the model says.
+    #[must_use]
+    pub fn of_model(vehicle: &Vehicle) -> Self {
+        Self {
+            mass: f64::from(vehicle.mass),
+            inertia: vehicle.inertia.map(f64::from),
+            centre_of_mass: Vector3::zeros(),
+            thrust_scale: 1.0,
+            rotor_scales: Vec::new(),
+            thrust_curve: 0.0,
+        }
+    }
+}
+
+/// Reads `[truth]` of a vehicle with so many rotors, if it has any.
+///
+/// # Errors
+/// Names the field that is refused.
+pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Option<Truth>, FieldError> {
+    let Some(section) = root.optional_section("truth")? else {
+        return Ok(None);
+    };
+    let keys = ["mass", "inertia", "centre_of_mass", "thrust_scale", "rotor_scales", "thrust_curve"];
+    section.allow(&keys)?;
+    let modelled = Truth::of_model(model);
+    let mass = section.number_or("mass", modelled.mass)?;
+    let inertia = section.vector_or("inertia", modelled.inertia)?;
+    let parameters =
+        VehicleParameters { mass: mass as f32, inertia: inertia.map(|moment| moment as f32), gravity: model.gravity };
+    Vehicle::new(parameters).map_err(|error| root.refused(&in_truth(error)))?;
+    let scale = Allowed::new(0.0..=10.0, "");
+    let rotor_scales = read_rotor_scales(&section, rotors, &scale)?;
+    if section.has("thrust_curve") && rotors.is_none() {
+        return Err(without_rotors(&section, "thrust_curve"));
+    }
+    Ok(Some(Truth {
+        mass,
+        inertia,
+        centre_of_mass: Allowed::new(-100.0..=100.0, "m").vector_or_zero(&section, "centre_of_mass")?,
+        thrust_scale: scale.number_or(&section, "thrust_scale", 1.0)?,
+        rotor_scales,
+        thrust_curve: Allowed::new(0.0..=1.0, "").number_or(&section, "thrust_curve", 0.0)?,
+    }))
+}
+
+/// The model's checks speak of `[vehicle]`; here they are about this section.
+fn in_truth(error: ParameterError) -> ParameterError {
+    let field = match error.field {
+        "vehicle.mass" => "truth.mass",
+        "vehicle.inertia[0]" => "truth.inertia[0]",
+        "vehicle.inertia[1]" => "truth.inertia[1]",
+        "vehicle.inertia[2]" => "truth.inertia[2]",
+        "vehicle.inertia" => "truth.inertia",
+        other => other,
+    };
+    ParameterError { field, ..error }
+}
+
+fn read_rotor_scales(section: &Section, rotors: Option<usize>, scale: &Allowed) -> Result<Vec<f64>, FieldError> {
+    const KEY: &str = "rotor_scales";
+    if !section.has(KEY) {
+        return Ok(Vec::new());
+    }
+    let Some(rotors) = rotors else {
+        return Err(without_rotors(section, KEY));
+    };
+    let elements = section.elements(KEY, "a list of numbers, one for each rotor")?;
+    if elements.len() != rotors {
+        let problem = format!("must have one element for each of {rotors} rotors, found {}", elements.len());
+        return Err(FieldError::new(section.path_of(KEY), problem));
+    }
+    let number = |(path, value): (String, &toml::Value)| {
+        let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        let found = number.ok_or_else(|| FieldError::new(&path, format!("must be a number, found {value}")))?;
+        scale.check(path, found)
+    };
+    elements.into_iter().map(number).collect()
+}
+
+fn without_rotors(section: &Section, key: &str) -> FieldError {
+    FieldError::new(section.path_of(key), "needs [rotors]: add that section or leave this key out")
+}
