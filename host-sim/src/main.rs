@@ -176,7 +176,7 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         Ok(tuned) => tuned,
         Err(closest) => {
             let what = closest.failed.clone().unwrap_or_default();
-            let lost = short(closest.height_lost);
+            let lost = short(closest.shown.height_lost);
             let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
             eprintln!(
                 "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
@@ -224,11 +224,18 @@ fn found(tuned: &Tuned, path: &Path, interrupted: bool) -> Result<String, String
     let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
         format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
+    let shown = &tuned.verdict.shown;
     Ok(format!(
-        "{certificate}\n{}\nheight lost {} m with k_p = {} 1/s^2\n{active}{}{} candidates judged; written to {}\n",
+        "{certificate}\n{}\nheight lost {} m, back after {} s; gust {} m; step {} s; under noise {} m and {} N a tick; cost {}\n\
+         {active}{}{} candidates judged; written to {}\n",
         tuned.frontier.table(),
-        short(tuned.verdict.height_lost),
-        short(tuned.verdict.position_gain),
+        short(shown.height_lost),
+        short(shown.recovered),
+        short(shown.gust),
+        short(shown.step),
+        short(shown.noise),
+        short(shown.activity),
+        short(tuned.verdict.cost),
         if interrupted { "interrupted: the best so far; " } else { "" },
         tuned.judged,
         path.display()
