@@ -138,6 +138,23 @@ fn an_offset_centre_of_mass_turns_the_vehicle_by_r_cross_f() {
 }
 
 #[test]
+fn a_disturbance_pushes_in_the_world_and_turns_in_the_body_from_its_time_on() {
+    let mut pushed = direct(
+        "[disturbance]\nacceleration = [1.0, -2.0, 0.5]\nstart = 0.1\n[truth]\nmass = 0.92\n[initial]\neuler_deg = [0, 0, 90]",
+    );
+    pushed.hold(&wrench(0.0, [0.0; 3]), 100).unwrap();
+    let fallen = Vector3::z() * (-0.1 * f64::from(9.81_f32));
+    assert!((pushed.state().velocity - fallen).norm() < 1e-12);
+    pushed.hold(&wrench(0.0, [0.0; 3]), 100).unwrap();
+    // The force is the model's mass times the acceleration, and the vehicle is twice as heavy.
+    let gained = Vector3::new(0.5, -1.0, 0.25) * 0.1 + fallen * 2.0;
+    assert!((pushed.state().velocity - gained).norm() < 1e-7, "{}", pushed.state().velocity);
+    let mut turned = direct("[disturbance]\ntorque = [0.0, 0.0, 0.0053]");
+    turned.hold(&wrench(0.0, [0.0; 3]), 1000).unwrap();
+    assert!((turned.state().angular_velocity - Vector3::z()).norm() < 1e-6);
+}
+
+#[test]
 fn true_mass_inertia_and_thrust_scale_act() {
     let mut heavy = direct("[truth]\nmass = 0.92\ninertia = [2e-3, 4e-3, 5e-3]\nthrust_scale = 0.5");
     heavy.hold(&wrench(6.0, [0.01, 0.02, -0.03]), 1).unwrap();

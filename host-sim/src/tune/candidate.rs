@@ -205,6 +205,8 @@ pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
     let initial = BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest };
     let timing = Timing { ticks: (duration / scenario.timing.period()) as u64, ..scenario.timing };
     let mut recovery = Scenario { name: "recovery".to_owned(), initial, timing, ..scenario.clone() };
+    // Height can only be lost where there is no ground.
+    recovery.reality.ground = None;
     if let Ok(hover) = Hover::new(Vector3::zeros(), Heading::FORWARD) {
         recovery.trajectory = Arc::new(hover);
     }

@@ -30,6 +30,11 @@ steady = [3.0, 0.0, 4.0]
 gust = { kind = \"one-cosine\", start = 5.0, velocity = [5.0, 0.0, 0.0], duration = 2.0 }
 turbulence = { wind_at_20_feet = 6.0, altitude = 10.0, seed = 7 }
 
+[disturbance]
+acceleration = [1.0, 0.0, -0.5]
+torque = [0.0, 0.0, 0.002]
+start = 2.5
+
 [battery]
 full_voltage = 12.6
 empty_voltage = 10.5
@@ -77,7 +82,7 @@ fn with(line: &str, nth: usize, replacement: &str) -> String {
 
 #[test]
 fn every_key_becomes_what_the_file_says() {
-    let Reality { truth, drag, wind, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
+    let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
     let truth = truth.unwrap();
     assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve), (0.55, 0.8, 0.3));
     assert_eq!(truth.inertia, Vector3::new(3.9e-3, 3.9e-3, 7.5e-3));
@@ -96,6 +101,9 @@ fn every_key_becomes_what_the_file_says() {
     // The steady wind's speed where the file names none.
     assert_eq!((turbulence.wind_at_20_feet, turbulence.altitude, turbulence.airspeed), (6.0, 10.0, 5.0));
     assert_eq!(turbulence.seed, 7);
+    let disturbance = disturbance.unwrap();
+    assert_eq!((disturbance.acceleration, disturbance.start), (Vector3::new(1.0, 0.0, -0.5), 2.5));
+    assert_eq!(disturbance.torque, Vector3::new(0.0, 0.0, 0.002));
     let battery = battery.unwrap();
     assert_eq!((battery.full_voltage, battery.empty_voltage, battery.nominal_voltage), (12.6, 10.5, 12.0));
     assert_eq!((battery.resistance, battery.capacity, battery.charge, battery.efficiency), (0.03, 7200.0, 0.9, 0.6));
@@ -179,6 +187,8 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("turbulence", 0, turbulence("wind_at_20_feet = 5, altitude = 2"), "wind.turbulence.altitude", "from 3.048 to"),
         ("steady", 0, "steady = [0.0, 0.0, 0.0]".into(), "wind.turbulence.airspeed", "where wind.steady does not say"),
         ("seed", 0, "seed = 1.5".into(), "sensors.seed", "whole number"),
+        ("torque", 0, "torque = [0, 101, 0]".into(), "disturbance.torque[1]", "from -100 to 100 N m"),
+        ("acceleration", 0, "accelerations = 1".into(), "disturbance.accelerations", "did you mean \"acceleration\"?"),
         ("full_voltage", 0, String::new(), "battery.full_voltage", "missing"),
         ("empty_voltage", 0, "empty_voltage = 13".into(), "battery.empty_voltage", "at most battery.full_voltage"),
         ("resistance", 0, "resistance = -1".into(), "battery.resistance", "from 0 to 10 ohm"),
