@@ -166,6 +166,20 @@ fn true_mass_inertia_and_thrust_scale_act() {
 }
 
 #[test]
+fn the_true_lag_is_the_rotors() {
+    let thrust_after_its_lag = |sections: &str| {
+        let mut lagging = vehicle(&scenario(sections));
+        lagging.hold(&wrench(9.0, [0.0; 3]), 20).unwrap();
+        lagging.thrusts().iter().sum::<f64>()
+    };
+    let speed = |thrust: f64| (thrust / 4.0 / 5.57e-6).sqrt();
+    let expected = speed(9.0) + (speed(0.5 * 9.81) - speed(9.0)) * (-1.0_f64).exp();
+    let found = thrust_after_its_lag("[truth]\nlag = 0.02");
+    assert!((found - 4.0 * 5.57e-6 * expected * expected).abs() < 1e-5, "{found}");
+    assert_ne!(thrust_after_its_lag("[truth]"), found);
+}
+
+#[test]
 fn where_reality_is_the_model_the_vehicle_is_the_models() {
     let real = scenario("[truth]");
     let mut flying = vehicle(&real);

@@ -16,6 +16,7 @@ centre_of_mass = [0.005, 0.0, -0.002]
 thrust_scale = 0.8
 rotor_scales = [1, 0.95, 1.0, 1.0]
 thrust_curve = 0.3
+lag = 0.015
 
 [drag]
 linear = [0.3, 0.3, 0.1]
@@ -84,7 +85,7 @@ fn with(line: &str, nth: usize, replacement: &str) -> String {
 fn every_key_becomes_what_the_file_says() {
     let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
     let truth = truth.unwrap();
-    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve), (0.55, 0.8, 0.3));
+    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve, truth.lag), (0.55, 0.8, 0.3, Some(0.015)));
     assert_eq!(truth.inertia, Vector3::new(3.9e-3, 3.9e-3, 7.5e-3));
     assert_eq!(
         (truth.centre_of_mass, truth.rotor_scales),
@@ -167,6 +168,7 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("rotor_scales", 0, "rotor_scales = [1, 1, 1, \"a\"]".into(), "truth.rotor_scales[3]", "must be a number"),
         ("thrust_curve", 0, "thrust_curve = 1.5".into(), "truth.thrust_curve", "from 0 to 1, found 1.5"),
         ("thrust_curve", 0, "thrust_curv = 1.0".into(), "truth.thrust_curv", "did you mean \"thrust_curve\"?"),
+        ("lag", 0, "lag = 1.5".into(), "truth.lag", "from 0 to 1 s, found 1.5"),
         ("linear", 0, "linear = [0.1, -0.1, 0]".into(), "drag.linear[1]", "from 0 to 1000, found -0.1"),
         ("frame", 0, "frame = 0.1".into(), "drag.frame", "a list of three numbers"),
         ("flapping", 0, "flapping = inf".into(), "drag.flapping", "finite"),
@@ -240,6 +242,7 @@ fn a_section_that_needs_another_says_which() {
         ("[drag]\nrotor_across = 1e-4", "drag.rotor_across: needs [rotors]"),
         ("[truth]\nrotor_scales = [1]", "truth.rotor_scales: needs [rotors]"),
         ("[truth]\nthrust_curve = 0.1", "truth.thrust_curve: needs [rotors]"),
+        ("[truth]\nlag = 0.1", "truth.lag: needs [rotors]"),
         ("[sampling]\ndelay = 0.6\n[sensors]\ndelay = 0.05", "sensors.delay: must be from 0 to 0.04"),
     ] {
         let what = paper(sections).expect_err(sections);
