@@ -5,7 +5,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
@@ -29,6 +29,7 @@ mod kinematics;
 mod lockstep;
 mod lyapunov;
 mod paper;
+mod reality;
 mod recovery;
 mod rotor_lag;
 mod sampled_loop;

@@ -16,7 +16,8 @@ pub struct Frontier {
 impl Frontier {
     /// Takes a candidate in, unless another one is at least as good in both respects.
     pub fn offer(&mut self, point: &Point, verdict: &Verdict) {
-        let beats = |a: &Verdict, b: &Verdict| a.shown.height_lost <= b.shown.height_lost && a.shown.gust <= b.shown.gust;
+        let beats =
+            |a: &Verdict, b: &Verdict| a.shown.height_lost <= b.shown.height_lost && a.shown.gust <= b.shown.gust;
         if self.members.iter().any(|(_, member)| beats(member, verdict)) {
             return;
         }

@@ -10,7 +10,8 @@
 //! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`MODELS`]: the vehicle as the file says, and as
 //! it may really be.
 
-use crate::flight::{Flight, Tick};
+use crate::course::Course;
+use crate::flight::Flight;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -96,71 +97,9 @@ impl Shown {
     }
 }
 
-/// A flight watched for as long as its trial lasts.
-struct Watch {
-    duration: f64,
-    period: f64,
-    lowest: f64,
-    away_until: f64,
-    farthest: f64,
-    last_error: f64,
-    change_squares: f64,
-    error_squares: f64,
-    counted: f64,
-    clipped: u64,
-    before: Option<Vec<f32>>,
-}
-
-impl Watch {
-    fn over(scenario: &Scenario, certified: &Certified) -> Option<Self> {
-        let (duration, period) = (scenario.timing.duration(), scenario.timing.period());
-        let mut watch = Self {
-            duration,
-            period,
-            lowest: 0.0,
-            away_until: 0.0,
-            farthest: 0.0,
-            last_error: 0.0,
-            change_squares: 0.0,
-            error_squares: 0.0,
-            counted: 0.0,
-            clipped: 0,
-            before: None,
-        };
-        let mut flight = Flight::certified(scenario, certified).ok()?;
-        for _ in 0..scenario.timing.ticks {
-            watch.observe(&flight.tick().ok()?);
-        }
-        Some(watch)
-    }
-
-    fn observe(&mut self, tick: &Tick) {
-        let time = tick.time_us as f64 * 1e-6;
-        let error = (tick.state.position - tick.reference.position.cast::<f64>()).norm();
-        self.lowest = self.lowest.min(tick.state.position.z);
-        self.farthest = self.farthest.max(error);
-        self.last_error = error;
-        if error > NEAR {
-            self.away_until = time + self.period;
-        }
-        // Without rotors thrust stands for four of them.
-        let commands =
-            if tick.rotor_thrusts.is_empty() { vec![0.25 * tick.wrench.thrust] } else { tick.rotor_thrusts.to_vec() };
-        if let Some(before) = &self.before
-            && time > 0.5 * self.duration
-        {
-            let change = |(now, before): (&f32, &f32)| f64::from(now - before).powi(2);
-            self.change_squares += commands.iter().zip(before).map(change).sum::<f64>() / commands.len() as f64;
-            self.error_squares += error * error;
-            self.counted += 1.0;
-        }
-        self.before = Some(commands);
-        self.clipped += u64::from(tick.clipped);
-    }
-
-    fn rms(&self, squares: f64) -> f64 {
-        (squares / self.counted.max(1.0)).sqrt()
-    }
+/// The course of a flight of what is certified in the circumstances of `scenario`.
+fn course(scenario: &Scenario, certified: &Certified) -> Option<Course> {
+    Course::over(scenario, Flight::certified(scenario, certified).ok()?, NEAR).ok()
 }
 
 /// All trials of what is certified, in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; none if one
@@ -170,26 +109,27 @@ pub fn show(scenario: &Scenario, certified: &Certified, model: &Model, recovery:
     let real = really(scenario, model);
     let hovering = |position, duration| hover(&real, position, duration).ok();
 
-    let recovered = Watch::over(&turned_over(&hovering(Vector3::zeros(), recovery)?), certified)?;
+    let recovered = course(&turned_over(&hovering(Vector3::zeros(), recovery)?), certified)?;
     let mut gusty = hovering(Vector3::zeros(), GUST_TIME)?;
     let mass = f64::from(scenario.configuration.vehicle().mass);
-    gusty.reality.drag = scenario.reality.drag.or(Some(Drag { linear: Vector3::repeat(GUST_DRAG * mass), ..Drag::default() }));
+    gusty.reality.drag =
+        scenario.reality.drag.or(Some(Drag { linear: Vector3::repeat(GUST_DRAG * mass), ..Drag::default() }));
     let gust = Gust { shape: Shape::Step, start: GUST_AT, velocity: Vector3::new(GUST, 0.0, 0.0) };
     gusty.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-    let gusty = Watch::over(&gusty, certified)?;
-    let step = Watch::over(&hovering(Vector3::new(-1.0, 0.0, 0.0), STEP_TIME)?, certified)?;
+    let gusty = course(&gusty, certified)?;
+    let step = course(&hovering(Vector3::new(-1.0, 0.0, 0.0), STEP_TIME)?, certified)?;
     let mut noisy = hovering(Vector3::zeros(), NOISE_TIME)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
-    let noisy = Watch::over(&noisy, certified)?;
+    let noisy = course(&noisy, certified)?;
 
     Some(Shown {
-        height_lost: -recovered.lowest,
-        recovered: recovered.away_until,
-        gust: gusty.farthest,
-        offset: gusty.last_error,
-        step: step.away_until,
-        activity: noisy.rms(noisy.change_squares),
-        noise: noisy.rms(noisy.error_squares),
+        height_lost: recovered.height_lost,
+        recovered: recovered.settled.unwrap_or(recovery),
+        gust: gusty.excursion,
+        offset: gusty.end_error,
+        step: step.settled.unwrap_or(STEP_TIME),
+        activity: noisy.activity,
+        noise: noisy.rms,
         clipped: recovered.clipped + gusty.clipped + step.clipped + noisy.clipped,
     })
 }
@@ -206,7 +146,10 @@ pub fn recovery(scenario: &Scenario, duration: f64) -> Result<Scenario, Paramete
 fn turned_over(scenario: &Scenario) -> Scenario {
     let attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, 100.0_f64.to_radians());
     let initial = BodyState { attitude, ..scenario.initial };
-    Scenario { name: "recovery".to_owned(), initial, ..scenario.clone() }
+    let mut recovery = Scenario { name: "recovery".to_owned(), initial, ..scenario.clone() };
+    // Height can only be lost where there is no ground.
+    recovery.reality.ground = None;
+    recovery
 }
 
 /// Level and at rest at `position`, to hover at the origin.
