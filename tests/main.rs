@@ -29,6 +29,7 @@ mod kinematics;
 mod lockstep;
 mod lyapunov;
 mod paper;
+mod pilots_table;
 mod reality;
 mod recovery;
 mod rotor_lag;
