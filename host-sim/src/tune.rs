@@ -36,6 +36,8 @@ use scenario::Scenario;
 pub struct Effort {
     /// Generations.
     pub generations: u32,
+    /// Members of the population, at least 4.
+    pub population: usize,
     /// Seed of the search.
     pub seed: u64,
 }
@@ -66,7 +68,7 @@ pub fn tune(
     let judge = Judge::new(scenario, requirements);
     let mut frontier = Frontier::default();
     let mut progress = Progress::new("tuning", u64::from(effort.generations));
-    let mut evolution = Evolution::new(&judge, effort.seed, &mut frontier, interrupt);
+    let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
     let wanted = |generation: &u32| *generation < effort.generations && interrupt.signal().is_none();
     for generation in (0..).take_while(wanted) {
         evolution.generation(&judge, &mut frontier, interrupt);

@@ -5,6 +5,7 @@
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
 //! one nearer to acceptance wins, of two that are the one of less cost.
 
+use super::Effort;
 use super::candidate::{Judge, Verdict};
 use super::frontier::Frontier;
 use super::space::Point;
@@ -13,8 +14,6 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-/// Members of the population.
-const POPULATION: usize = 48;
 /// Probability with which a coordinate comes from the mutant.
 const CROSSOVER: f64 = 0.8;
 /// Spread of the first population around the file's gains, in natural logarithms.
@@ -35,11 +34,11 @@ pub struct Evolution {
 impl Evolution {
     /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
     #[must_use]
-    pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+    pub fn new(judge: &Judge, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
         let mut points = vec![start.clone()];
-        points.resize_with(POPULATION, || start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+        points.resize_with(effort.population.max(4), || start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
         let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);
