@@ -1,10 +1,11 @@
-//! The documentation speaks of what exists: the tests that the map of the paper names, the files that the
-//! Markdown pages link to, and the scenario examples.
+//! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
+//! Markdown pages link to, the diagram of the flight modes, and the scenario examples. The front page stays short.
 
+use controller_core::flight::rules::TABLE;
 use scenario::Scenario;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
@@ -12,54 +13,53 @@ fn read(path: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(path)).unwrap()
 }
 
-/// Every Rust file below `directory`.
-fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
-/// The names of all tests in the repository.
-fn tests() -> BTreeSet<String> {
-    let mut files = Vec::new();
-    for folder in
-        ["controller-core/src", "controller-core/tests", "host-sim/src", "scenario/src", "firmware/src", "tests"]
-    {
-        sources(&Path::new(ROOT).join(folder), &mut files);
-    }
+/// The names of the tests in a file.
+fn tests_of(path: &str) -> BTreeSet<String> {
+    let text = fs::read_to_string(Path::new(ROOT).join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
     let name =
         |text: &str| text.split_once("fn ").and_then(|(_, rest)| rest.split_once('(')).map(|(n, _)| n.to_owned());
-    let marked = |file: &PathBuf| {
-        let text = fs::read_to_string(file).unwrap();
-        text.split("#[test]\n").skip(1).filter_map(name).collect::<Vec<_>>()
-    };
-    files.iter().flat_map(marked).collect()
+    text.split("#[test]\n").skip(1).filter_map(name).collect()
+}
+
+/// The path, from the top of the repository, of a file as the map names it.
+fn path_of(file: &str) -> String {
+    match file.split('/').next() {
+        Some("core") => format!("controller-{file}"),
+        Some("tests" | "host-sim" | "scenario" | "firmware") => file.to_owned(),
+        _ => format!("controller-core/src/{file}"),
+    }
 }
 
 #[test]
-fn every_test_the_map_names_exists() {
+fn every_test_the_map_names_is_where_it_says() {
     let map = read("docs/map.md");
-    let known = tests();
     let mut named = 0;
-    // What stands in backquotes, plain and with the length of a sentence, is a test.
-    for word in map.lines().flat_map(|line| line.split('`').skip(1).step_by(2)) {
-        let plain = word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-        if plain && word.matches('_').count() >= 3 {
-            assert!(known.contains(word), "{word}: no such test");
-            named += 1;
+    let rows = map.lines().filter(|line| line.starts_with('|'));
+    for checked in rows.filter_map(|row| row.trim_end_matches([' ', '|']).rsplit('|').next()) {
+        for (files, tests) in checked.split("; ").filter_map(|part| part.rsplit_once(": ")) {
+            let files: Vec<&str> = files.split([' ', ',']).filter(|word| word.ends_with(".rs")).collect();
+            for test in tests.split('`').skip(1).step_by(2) {
+                assert!(!files.is_empty(), "{test}: no file is named");
+                for file in &files {
+                    assert!(tests_of(&path_of(file)).contains(test), "{file} has no test {test}");
+                }
+                named += 1;
+            }
         }
     }
     assert!(named > 60, "{named}: the map has lost its tests");
 }
 
+/// What a heading is called in a link.
+fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase();
+    let kept = kept.chars().filter(|&c| c.is_alphanumeric() || c == ' ' || c == '-' || c == '_');
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
 #[test]
 fn every_link_between_pages_leads_to_a_file() {
-    let mut pages = vec!["README.md".to_owned(), "CHANGELOG.md".to_owned()];
+    let mut pages = ["README.md", "CHANGELOG.md", "vehicles/README.md"].map(str::to_owned).to_vec();
     for entry in fs::read_dir(Path::new(ROOT).join("docs")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         pages.extend(name.ends_with(".md").then(|| format!("docs/{name}")));
@@ -69,15 +69,41 @@ fn every_link_between_pages_leads_to_a_file() {
         let text = read(&page);
         let folder = Path::new(ROOT).join(&page).parent().unwrap().to_owned();
         for target in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target) {
-            let file = target.split('#').next().unwrap();
-            if file.is_empty() || file.contains("://") {
+            if target.contains("://") {
                 continue;
             }
-            assert!(folder.join(file).exists(), "{page}: no such file: {target}");
+            let (file, place) = target.split_once('#').unwrap_or((target, ""));
+            let file = if file.is_empty() { Path::new(ROOT).join(&page) } else { folder.join(file) };
+            assert!(file.exists(), "{page}: no such file: {target}");
+            if !place.is_empty() {
+                let there = fs::read_to_string(file).unwrap();
+                let headings = there.lines().filter_map(|line| line.trim_start_matches('#').strip_prefix(' '));
+                assert!(headings.map(anchor).any(|heading| heading == place), "{page}: no such heading: {target}");
+            }
             followed += 1;
         }
     }
     assert!(followed > 20, "{followed}: the pages have lost their links");
+}
+
+#[test]
+fn the_diagram_of_the_flight_modes_has_the_arrows_of_the_rules() {
+    let page = read("docs/firmware.md");
+    let (_, diagram) = page.split_once("```mermaid\n").unwrap();
+    let (diagram, _) = diagram.split_once("```").unwrap();
+    let arrows =
+        diagram.lines().filter_map(|line| line.split_once(':')).filter_map(|(arrow, _)| arrow.split_once("-->"));
+    let drawn: BTreeSet<(String, String)> =
+        arrows.map(|(from, to)| (from.trim().to_owned(), to.trim().to_owned())).collect();
+    let rules = TABLE.iter().filter(|row| row.from != row.to);
+    let ruled = rules.map(|row| (format!("{:?}", row.from), format!("{:?}", row.to))).collect();
+    assert_eq!(drawn, ruled);
+}
+
+#[test]
+fn the_front_page_stays_below_1400_words() {
+    let words = read("README.md").split_whitespace().count();
+    assert!(words < 1400, "{words}");
 }
 
 #[test]
