@@ -1,6 +1,7 @@
 //! Flights in what the model leaves out: the paper's law beside what is known of it there.
 //! `cargo test -p host-sim reality -- --nocapture` prints what each flight showed, and how long a campaign takes.
 
+use crate::support::binary::{directory, host_sim, status};
 use controller_core::certificate::certified::Certified;
 use host_sim::campaign::fly_all;
 use host_sim::course::Course;
@@ -129,6 +130,34 @@ delay = 0.01
     let mut clone = flight.clone();
     for _ in 0..100 {
         assert_eq!(flight.tick().unwrap().state, clone.tick().unwrap().state);
+    }
+}
+
+#[test]
+fn a_logged_flight_says_what_it_was_flown_in() {
+    let folder = directory("reality", "logged");
+    let short = HUMMINGBIRD.replace("duration = 40.0", "duration = 2.0");
+    let sections = "[wind]\nsteady = [1.5, 0.0, -0.5]\n[sensors]\ngyro_bias = [0.25, 0.0, 0.0]\n";
+    std::fs::write(folder.join("windy.toml"), format!("{short}{DRAG}{sections}")).unwrap();
+    std::fs::write(folder.join("still.toml"), short).unwrap();
+    for (file, beyond) in [("windy", true), ("still", false)] {
+        // It starts at rest on a moving reference: it does not arrive within these two seconds, and says so.
+        assert_eq!(status(&host_sim(&folder, &["fly", &format!("{file}.toml"), "--out", file])), 1);
+        let log = std::fs::read_to_string(folder.join(file).join("log.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = log.lines().map(|row| row.split(',').collect()).collect();
+        assert!(rows.len() == 201 && rows.iter().all(|row| row.len() == rows[0].len()));
+        let value = |row: &[&str], name: &str| {
+            let column = rows[0].iter().position(|column| *column == name)?;
+            row[column].parse::<f64>().ok()
+        };
+        for row in &rows[1..] {
+            assert_eq!((value(row, "wind_x"), value(row, "wind_z")), (beyond.then_some(1.5), beyond.then_some(-0.5)));
+            let bias = value(row, "measured_wx").zip(value(row, "wx")).map(|(told, truly)| told - truly);
+            assert!(bias.map_or(!beyond, |bias| (bias - 0.25).abs() < 1e-6), "{bias:?}");
+        }
+        let report = std::fs::read_to_string(folder.join(file).join("report.md")).unwrap();
+        assert_eq!(report.contains("beyond the model, with [drag], [wind], [sensors]"), beyond);
+        assert_eq!(report.contains("beyond"), beyond);
     }
 }
 

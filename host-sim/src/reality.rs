@@ -53,6 +53,8 @@ pub struct Surroundings {
     pub wind: Option<Vector3<f64>>,
     /// Voltage, V, and current, A, of the battery; none without one.
     pub battery: Option<(f64, f64)>,
+    /// Whether it stands on the ground.
+    pub standing: bool,
 }
 
 /// A vehicle as it really is.
@@ -133,6 +135,7 @@ impl RealVehicle {
         Surroundings {
             wind: self.wind.as_ref().map(|wind| wind.velocity(self.now, 0.0)),
             battery: self.propulsion.battery(),
+            standing: self.ground.as_ref().is_some_and(Ground::stands),
         }
     }
 

@@ -91,6 +91,22 @@ impl Reality {
         })
     }
 
+    /// The sections that the file has.
+    #[must_use]
+    pub fn sections(&self) -> Vec<&'static str> {
+        let there = [
+            self.truth.is_some(),
+            self.drag.is_some(),
+            self.wind.is_some(),
+            self.disturbance.is_some(),
+            self.battery.is_some(),
+            self.failure.is_some(),
+            self.ground.is_some(),
+            self.sensors.is_some(),
+        ];
+        SECTIONS.into_iter().zip(there).filter_map(|(section, there)| there.then_some(section)).collect()
+    }
+
     /// Whether the vehicle and the air are the model's, whatever the sensors say of them.
     #[must_use]
     pub fn is_model(&self) -> bool {

@@ -4,11 +4,15 @@ use super::*;
 
 const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
-fn course(seconds: f64, initial: &str, sections: &str, near: f64) -> Course {
+fn scenario(seconds: f64, initial: &str, sections: &str) -> Scenario {
     let (head, _) = HUMMINGBIRD.split_once("[initial]").unwrap();
     let head = head.replace("duration = 40.0", &format!("duration = {seconds:?}"));
     let reference = "[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 0.0]\n";
-    let scenario = Scenario::parse(&format!("{head}{reference}[initial]\n{initial}\n{sections}"), "f").unwrap();
+    Scenario::parse(&format!("{head}{reference}[initial]\n{initial}\n{sections}"), "f").unwrap()
+}
+
+fn course(seconds: f64, initial: &str, sections: &str, near: f64) -> Course {
+    let scenario = scenario(seconds, initial, sections);
     Course::over(&scenario, Flight::new(&scenario).unwrap(), near).unwrap()
 }
 
@@ -40,4 +44,25 @@ fn it_settles_when_it_comes_near_for_good() {
     // Noise keeps the rotors busy.
     let noisy = course(40.0, "velocity = [0.0, 0.0, 0.3]", "[sensors]\ngyro_noise = 0.01", 0.02);
     assert!(noisy.activity > 10.0 * arrives.activity, "{} {}", noisy.activity, arrives.activity);
+}
+
+#[test]
+fn rise_is_above_start_and_reference() {
+    let from_below = course(40.0, "position = [0.0, 0.0, -1.0]\nvelocity = [0.0, 0.0, 0.5]", "", 0.1);
+    assert!(from_below.rise.abs() < 0.1 && from_below.height_lost == 0.0, "{from_below:?}");
+}
+
+#[test]
+fn the_last_half_is_judged_by_its_root_mean_squares() {
+    let scenario = scenario(1.0, "velocity = [0.3, 0.0, 0.0]", "[sensors]\ngyro_noise = 0.01");
+    let course = Course::over(&scenario, Flight::new(&scenario).unwrap(), 0.1).unwrap();
+    let mut flight = Flight::new(&scenario).unwrap();
+    let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
+    let half = &ticks[50..];
+    let squares: f64 = half.iter().map(|tick| tick.state.position.norm_squared()).sum();
+    assert!((course.rms - (squares / 50.0).sqrt()).abs() < 1e-12);
+    let change = |pair: &[Tick], rotor: usize| f64::from(pair[1].rotor_thrusts[rotor] - pair[0].rotor_thrusts[rotor]);
+    let changes: Vec<f64> = half.windows(2).flat_map(|pair| (0..4).map(|rotor| change(pair, rotor))).collect();
+    let activity = (changes.iter().map(|change| change * change).sum::<f64>() / changes.len() as f64).sqrt();
+    assert!((course.activity - activity).abs() < 1e-12 && changes.len() == 196);
 }

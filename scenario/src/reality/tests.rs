@@ -122,12 +122,14 @@ fn every_key_becomes_what_the_file_says() {
 fn a_file_without_them_is_the_model_and_a_section_without_keys_changes_little() {
     let model = read("").unwrap();
     assert_eq!(model.reality, Reality::default());
+    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTIONS);
     assert!(model.reality.is_model());
     let empty = read("[truth]\n[drag]\n[wind]\n[sensors]\n").unwrap().reality;
     assert_eq!(empty.truth.as_ref().unwrap().mass, f64::from(0.5_f32));
     assert_eq!((empty.drag, empty.wind), (Some(Drag::default()), Some(Wind::default())));
     assert_eq!(empty.sensors.unwrap().velocity, VelocitySource::Exact { noise: 0.0 });
     assert!(!empty.is_model());
+    assert_eq!(empty.sections(), ["truth", "drag", "wind", "sensors"]);
     assert!(read("[sensors]").unwrap().reality.is_model());
 }
 
