@@ -8,6 +8,7 @@
 //! | rise | greatest height above the start and above the reference |
 //! | excursion | greatest \|x - x_d\| |
 //! | settled | since when \|x - x_d\| has been within a distance, for good |
+//! | turned | since when the yaw has been within 0.1 rad of the reference's, for good |
 //! | end error | \|x - x_d\| at the last tick |
 //! | RMS | of \|x - x_d\| over the last half of the flight |
 //! | activity | RMS of the change of a rotor's commanded thrust from one tick to the next, over the last half |
@@ -15,6 +16,9 @@
 use crate::flight::{Flight, FlightError, Tick};
 use controller_core::allocation::Thrusts;
 use scenario::Scenario;
+
+/// How near the yaw is to be, rad.
+const NEAR_YAW: f64 = 0.1;
 
 /// A flight's course.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +31,8 @@ pub struct Course {
     pub excursion: f64,
     /// s; none if it was further away at the last tick.
     pub settled: Option<f64>,
+    /// s; none if it was further off at the last tick.
+    pub turned: Option<f64>,
     /// m.
     pub end_error: f64,
     /// m.
@@ -35,6 +41,8 @@ pub struct Course {
     pub activity: f64,
     /// Ticks at which something of a command was cut.
     pub clipped: u64,
+    /// |yaw error| at the last tick, rad.
+    pub yaw_error: f64,
 }
 
 /// Of the last half: sums of squares of distances and of changes, and how many.
@@ -60,10 +68,12 @@ impl Course {
             rise: f64::NEG_INFINITY,
             excursion: 0.0,
             settled: Some(0.0),
+            turned: Some(0.0),
             end_error: 0.0,
             rms: 0.0,
             activity: 0.0,
             clipped: 0,
+            yaw_error: 0.0,
         };
         let mut last_half = LastHalf::default();
         for number in 0..ticks {
@@ -74,6 +84,7 @@ impl Course {
             }
         }
         course.settled = course.settled.filter(|_| course.end_error <= near);
+        course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
         course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
         course.activity = (last_half.changes / last_half.changed.max(1) as f64).sqrt();
         Ok(course)
@@ -87,8 +98,15 @@ impl Course {
         self.excursion = self.excursion.max(error);
         self.end_error = error;
         self.clipped += u64::from(tick.clipped);
+        let next = (tick.time_us + period_us) as f64 / 1e6;
         if error > near {
-            self.settled = Some((tick.time_us + period_us) as f64 / 1e6);
+            self.settled = Some(next);
+        }
+        let heading = tick.reference.heading.direction();
+        let yaw = tick.state.yaw() - f64::from(heading.y).atan2(f64::from(heading.x));
+        self.yaw_error = yaw.sin().atan2(yaw.cos()).abs();
+        if self.yaw_error > NEAR_YAW {
+            self.turned = Some(next);
         }
     }
 }

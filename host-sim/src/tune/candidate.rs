@@ -61,6 +61,7 @@ impl Verdict {
 const NOTHING: Shown = Shown {
     height_lost: f64::INFINITY,
     recovered: f64::INFINITY,
+    turned: f64::INFINITY,
     gust: f64::INFINITY,
     offset: f64::INFINITY,
     step: f64::INFINITY,

@@ -2,7 +2,7 @@
 //!
 //! | trial | what is asked | what counts |
 //! |---|---|---|
-//! | recovery | from roll -179 degrees, yaw 100 degrees off, at rest: hover there | height lost, m; time until within 0.1 m for good, s |
+//! | recovery | from roll -179 degrees, yaw 100 degrees off, at rest: hover there | height lost, m; time until within 0.1 m for good, and until within 0.1 rad of yaw, s |
 //! | gust | hover; 5 m/s of wind begin, 2.5 m/s^2 unless the file's `[drag]` says otherwise | deepest excursion, m; offset left at the end, m |
 //! | step | hover 1 m from where it is | time until within 0.1 m for good, s |
 //! | noise | hover with gyro 0.01 rad/s, pose 2 mm and 0.2 degrees, all 20 ms late | change of a rotor's command per tick, N, rms; position, m, rms |
@@ -69,6 +69,8 @@ pub struct Shown {
     pub height_lost: f64,
     /// Until the recovery is within 0.1 m for good, s.
     pub recovered: f64,
+    /// Until the recovery's yaw is within 0.1 rad for good, s.
+    pub turned: f64,
     /// Deepest excursion in the gust, m.
     pub gust: f64,
     /// What is left of it at the end, m.
@@ -85,11 +87,12 @@ pub struct Shown {
 
 impl Shown {
     /// The weighted sum that a search makes small. Each term is one where a pilot would begin to be content: 3 m of height, 5 s until
-    /// recovered, 0.6 m of excursion, 2 s for a step, 2 mm under noise, 0.02 N of activity. The last counts half.
+    /// recovered, 8 s until turned, 0.6 m of excursion, 2 s for a step, 2 mm under noise, 0.02 N of activity. The last counts half.
     #[must_use]
     pub fn cost(&self) -> f64 {
         self.height_lost / 3.0
             + self.recovered / 5.0
+            + self.turned / 8.0
             + self.gust / 0.6
             + self.step / 2.0
             + 0.5 * (self.activity / 0.02)
@@ -125,6 +128,7 @@ pub fn show(scenario: &Scenario, certified: &Certified, model: &Model, recovery:
     Some(Shown {
         height_lost: recovered.height_lost,
         recovered: recovered.settled.unwrap_or(recovery),
+        turned: recovered.turned.unwrap_or(recovery),
         gust: gusty.excursion,
         offset: gusty.end_error,
         step: step.settled.unwrap_or(STEP_TIME),
@@ -190,7 +194,7 @@ pub fn noise(period: f64) -> Sensors {
         gyro_bias: Vector3::zeros(),
         position_noise: 2e-3,
         attitude_noise: 0.2_f64.to_radians(),
-        velocity: VelocitySource::Observer { bandwidth: 5.0, noise: 0.05, bias: Vector3::zeros() },
+        velocity: VelocitySource::Observer { bandwidth: 8.0, noise: 0.05, bias: Vector3::zeros() },
         pose_every: 1,
         dropout: 0.0,
         delay_ticks: (0.02 / period).round() as u64,
