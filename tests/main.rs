@@ -4,7 +4,7 @@
 //! | what is tested | suites |
 //! |---|---|
 //! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
-//! | its proof | [`adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
+//! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
@@ -22,6 +22,7 @@ mod cli_output;
 mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
+mod extended_adversary;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;
