@@ -4,7 +4,7 @@
 //! adversary no test of it. `cargo test -p host-sim extended_adversary -- --nocapture` prints found / bound of every row.
 
 use crate::support::extended::situation::{ATTITUDE, COORDINATES, Code, World};
-use crate::support::extended::{bounds, paper_vehicle, vehicle};
+use crate::support::extended::{around_the_example, bounds, paper_vehicle, vehicle};
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::certificate::configuration::Configuration;
 use rand::RngExt;
@@ -82,8 +82,15 @@ fn climb(value: impl Fn(&Code) -> f64, used: usize, start: Code, rng: &mut ChaCh
     best.0
 }
 
-/// Attacks every bound; prints found / bound; fails where one is exceeded or too little of it found.
-fn attack(name: &str, configuration: &Configuration, seed: u64) {
+/// What was found of one bound.
+struct Found {
+    objective: Objective,
+    found: f64,
+    bound: f64,
+}
+
+/// Attacks every bound with `restarts` climbs each; fails where one is exceeded.
+fn attack(configuration: &Configuration, restarts: usize, rng: &mut ChaCha8Rng) -> Vec<Found> {
     let (world, promised) = (World::new(configuration), bounds(configuration));
     let [rate, acceleration] = promised.rates;
     let mut rows = vec![(Objective::Rate, rate), (Objective::Acceleration, acceleration)];
@@ -91,18 +98,26 @@ fn attack(name: &str, configuration: &Configuration, seed: u64) {
     rows.push((Objective::Thrust, promised.thrust.greatest));
     rows.extend(promised.rotors.iter().enumerate().map(|(rotor, range)| (Objective::Rotor(rotor), range.greatest)));
     rows.push((Objective::Floor, promised.floor[0] / promised.floor[1]));
-    let mut rng = random::generator(seed);
-    let mut weak = Vec::new();
-    for (objective, bound) in rows {
+    let attacked = rows.into_iter().map(|(objective, bound)| {
         let value = |code: &Code| objective.value(&world, code);
         let mut found = 0.0_f64;
-        for _ in 0..RESTARTS {
+        for _ in 0..restarts {
             let start = [(); COORDINATES].map(|()| (1.6 * rng.random_range(-1.0..1.0_f64)).clamp(-1.0, 1.0));
-            found = found.max(climb(value, objective.coordinates(), start, &mut rng));
+            found = found.max(climb(value, objective.coordinates(), start, rng));
         }
+        let most = bound * (1.0 + EVALUATION_ERROR);
+        assert!(found <= most, "{objective:?}: found {found} beyond {bound} with {configuration:?}");
+        Found { objective, found, bound }
+    });
+    attacked.collect()
+}
+
+/// Attacks, prints found / bound, and fails where too little is found.
+fn nearly_reach(name: &str, configuration: &Configuration, seed: u64) {
+    let mut weak = Vec::new();
+    for Found { objective, found, bound } in attack(configuration, RESTARTS, &mut random::generator(seed)) {
         let share = found / bound;
         println!("{name:12} {objective:12?} found {found:9.4} of {bound:9.4}: {share:.3}");
-        assert!(share <= 1.0 + EVALUATION_ERROR, "{name}: {objective:?} found {found} beyond {bound}");
         if share < SHARE {
             weak.push((objective, share));
         }
@@ -112,15 +127,31 @@ fn attack(name: &str, configuration: &Configuration, seed: u64) {
 
 #[test]
 fn on_the_hummingbird_every_bound_stands_and_is_nearly_reached() {
-    attack("hummingbird", &vehicle("hummingbird").configuration, 201);
+    nearly_reach("hummingbird", &vehicle("hummingbird").configuration, 201);
 }
 
 #[test]
 fn on_the_study_every_bound_stands_and_is_nearly_reached() {
-    attack("study", &vehicle("study").configuration, 202);
+    nearly_reach("study", &vehicle("study").configuration, 202);
 }
 
 #[test]
 fn on_the_papers_vehicle_every_bound_stands_and_is_nearly_reached() {
-    attack("paper", &paper_vehicle(), 203);
+    nearly_reach("paper", &paper_vehicle(), 203);
+}
+
+#[test]
+fn the_bounds_stand_with_random_configurations() {
+    let mut rng = random::generator(204);
+    let mut closest = Vec::<(Objective, f64)>::new();
+    for _ in 0..100 {
+        for (place, row) in attack(&around_the_example(&mut rng), 2, &mut rng).iter().enumerate() {
+            let share = row.found / row.bound;
+            match closest.get_mut(place) {
+                Some((_, most)) => *most = most.max(share),
+                None => closest.push((row.objective, share)),
+            }
+        }
+    }
+    println!("closest to the bounds: {closest:.3?}");
 }
