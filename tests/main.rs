@@ -3,7 +3,7 @@
 //!
 //! | what is tested | suites |
 //! |---|---|
-//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
@@ -23,6 +23,7 @@ mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
 mod extended_adversary;
+mod extended_flows;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;
