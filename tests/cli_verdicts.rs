@@ -43,7 +43,8 @@ fn certify_refuses_a_loop_without_margin_and_says_which_margin() {
     let output = host_sim(&directory, &["certify", "weak.toml"]);
     let text = stdout(&output);
     assert_eq!(status(&output), 1, "{text}");
-    let refusal = "hummingbird-paper-law: NOT certified: sampled loop roll: unstable with 1.3 ms more delay, must bear 2.0 ms\n";
+    let refusal =
+        "hummingbird-paper-law: NOT certified: sampled loop roll: unstable with 1.3 ms more delay, must bear 2.0 ms\n";
     assert!(text.starts_with(refusal) && !text.contains("UNSTABLE"), "{text}");
 }
 

@@ -6,6 +6,9 @@
 //! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`] |
+//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
@@ -22,6 +25,8 @@ mod cli_output;
 mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
+mod extended_adversary;
+mod extended_flows;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;

@@ -38,7 +38,9 @@ impl Evolution {
         let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
         let mut points = vec![start.clone()];
-        points.resize_with(effort.population.max(4), || start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+        points.resize_with(effort.population.max(4), || {
+            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
+        });
         let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);

@@ -20,8 +20,8 @@ use crate::math;
 
 /// Cells of |u_x, u_y|.
 pub const ACROSS_CELLS: usize = 24;
-/// Cells of u_z.
-pub const VERTICAL_CELLS: usize = 24;
+/// Cells of u_z: narrow near its least value, where the desired frame moves fastest.
+pub const VERTICAL_CELLS: usize = 32;
 
 /// One cell of u, with what the desired frame does there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,11 +91,14 @@ fn orthogonal(across: f64, vertical: f64, sin: f64, cos: f64) -> f64 {
 
 /// All cells of what is reachable, `reach.vertical_least` being positive.
 pub fn cells(reach: &Reach) -> impl Iterator<Item = Cell> + '_ {
-    let ends = |cell: usize, count: usize, from: f64, to: f64| {
-        [cell, cell + 1].map(|end| from + (to - from) * end as f64 / count as f64)
-    };
+    let ends = |cell: usize, count: usize| [cell, cell + 1].map(|end| end as f64 / count as f64);
     (0..VERTICAL_CELLS).flat_map(move |vertical| {
-        let vertical = ends(vertical, VERTICAL_CELLS, reach.vertical_least, reach.vertical_greatest);
-        (0..ACROSS_CELLS).map(move |across| Cell::new(reach, ends(across, ACROSS_CELLS, 0.0, reach.across), vertical))
+        let span = reach.vertical_greatest - reach.vertical_least;
+        let vertical =
+            ends(vertical, VERTICAL_CELLS).map(|end| reach.vertical_least + span * end * math::sqrt_f64(end));
+        (0..ACROSS_CELLS).map(move |across| {
+            let across = ends(across, ACROSS_CELLS).map(|end| reach.across * end);
+            Cell::new(reach, across, vertical)
+        })
     })
 }

@@ -8,9 +8,10 @@
 //! | potential | \|b_12\| (w r / 2 + G r sqrt(1 - r^2)) + \|b_3\| (w eta / 2) sqrt((1 - r^2 - qbar^2) / (1 - r^2 + eta^2 - 2 eta qbar)) |
 //! | damping | \|b_12\| M_omega_t + \|b_3\| M_omega_z |
 //! | bias estimate | (\|b_1\| + \|b_2\|) D_t + \|b_3\| D_y |
-//! | J R~^T omega_d' | \|omega'_12\| \|(R~ J b)_12\| + A \|(R~ J b)_3\|, and R~ turns J b's angle to z by theta at most |
+//! | J R~^T omega_d' | \|J b\| times the greatest \|omega'_12\| sin alpha + A \|cos alpha\|, alpha from \|theta - beta\| to theta + beta |
 //! | gyroscopic | \|omega_d\|^2 times the largest eigenvalue of the form b . (omega x J omega) |
 //!
+//! beta is the angle between J b and the z axis. Where 1 - r^2 <= eta qbar, the last root is sqrt(1 - r^2) / eta instead.
 //! At R~ = 1 the last two are one, with the terms that W makes put together: [`Torques::feedforward`].
 
 use super::motion::Cell;
@@ -94,11 +95,15 @@ impl Torques {
         0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
     }
 
-    /// Greatest w eta q_3 / 2h for r of at least `near`: at q_0 = -qbar.
+    /// Greatest w eta q_3 / 2h for r of at least `near`: at q_0 = -qbar, or at q_0 = -(1 - r^2) / eta where that is nearer.
     fn yawing(&self, near: f64) -> f64 {
         let [w, eta, ..] = self.attitude;
-        let rest = 1.0 - near * near;
-        let square = (rest - self.qbar * self.qbar).max(0.0) / (rest + eta * eta - 2.0 * eta * self.qbar);
+        let (rest, qbar) = (1.0 - near * near, self.qbar);
+        let square = if rest > eta * qbar {
+            (rest - qbar * qbar) / (rest + eta * eta - 2.0 * eta * qbar)
+        } else {
+            rest / (eta * eta)
+        };
         0.5 * w * eta * math::sqrt_f64(square)
     }
 
@@ -123,14 +128,27 @@ impl Torques {
         let [turn, _] = self.turn;
         let weighted = self.inertia.component_mul(b);
         let (across, about) = (math::hypot(weighted.x, weighted.y), weighted.z.abs());
-        // The angle to the z axis, either way, moved by at most theta: sines and cosines of sums.
-        let [_, (sin, cos)] = tilt.ends;
-        // Once theta makes up for the angle's complement, the vector can lie across; once for the angle, along.
-        let lies_across = about * cos <= across * sin;
-        let most_across = if lies_across { math::hypot(across, about) } else { across * cos + about * sin };
-        let lies_along = across * cos <= about * sin;
-        let most_about = if lies_along { math::hypot(across, about) } else { about * cos + across * sin };
-        swing * most_across + turn * most_about
+        let (length, most) = (math::hypot(across, about), math::hypot(swing, turn));
+        if length <= 0.0 || most <= 0.0 {
+            return 0.0;
+        }
+        // J b is beta off the z axis; turned by R~ it is alpha off, from |theta - beta| to theta + beta.
+        let (sin, cos) = (across / length, about / length);
+        let [(sin_near, cos_near), (sin_far, cos_far)] = tilt.ends;
+        let nearest = if cos > cos_near {
+            cos_near * cos + sin_near * sin
+        } else if cos < cos_far {
+            cos_far * cos + sin_far * sin
+        } else {
+            1.0
+        };
+        let beyond = sin_far * cos + cos_far * sin <= 0.0;
+        let farthest = if beyond { -1.0 } else { cos_far * cos - sin_far * sin };
+        // swing sin alpha + turn |cos alpha| has its greatest value on either side of a right angle, and between the two its least.
+        let reaches = |cosine: f64| nearest >= cosine && cosine >= farthest;
+        let there = |cosine: f64| swing * math::sqrt_f64((1.0 - cosine * cosine).max(0.0)) + turn * cosine.abs();
+        let peak = turn / most;
+        length * if reaches(peak) || reaches(-peak) { most } else { there(nearest).max(there(farthest)) }
     }
 
     /// Greatest gyroscopic torque along `b` for |omega_12| of at most `rate`, rad/s.
@@ -163,5 +181,72 @@ impl Torques {
         };
         let yawing = j.z * acceleration + 0.5 * (j.y - j.x).abs() * cell.rate() * cell.rate();
         tilting + b.z.abs() * yawing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attitude::rotate_back;
+    use crate::extended::attitude::AttitudeLaw;
+    use crate::extended::example;
+    use crate::extended::parameters::ExtendedParameters;
+    use nalgebra::Quaternion;
+
+    /// Xorshift, for tests that repeat to the bit.
+    struct Random(u64);
+
+    impl Random {
+        fn signed(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+        }
+
+        fn vector(&mut self) -> Vector3<f64> {
+            Vector3::new(self.signed(), self.signed(), self.signed())
+        }
+    }
+
+    /// The law's own torques, each cell of the tilt by itself: with a narrow hysteresis, and with one so wide that the greatest
+    /// yaw of a nearly inverted vehicle is no longer at the switch.
+    #[test]
+    fn in_every_cell_of_the_tilt_no_torque_is_beyond_its_bound() {
+        for (eta, delta) in [(0.1, 0.02), (0.7, 1.0), (0.95, 1.0)] {
+            let attitude = AttitudeParameters { eta, delta, ..example::PARAMETERS.attitude };
+            let parameters = ExtendedParameters { attitude, ..example::PARAMETERS };
+            let parameters = Extended::new(parameters, &example::vehicle()).unwrap();
+            let inertia = Vector3::new(3e-3, 5e-3, 7e-3);
+            let torques = Torques::new(&parameters, &inertia);
+            let law = AttitudeLaw::new(&attitude, &inertia.cast());
+            let mut random = Random(7);
+            for (cell, tilt) in torques.tilt_cells().enumerate() {
+                let (mut fed, mut swung) = (0.0_f64, 0.0_f64);
+                for _ in 0..20_000 {
+                    let r = (cell as f64 + 0.5 + 0.5 * random.signed()) / TILT_CELLS as f64;
+                    let rest = math::sqrt_f64((1.0 - r * r).max(0.0));
+                    let least = (-torques.qbar).max(-rest);
+                    let q_0 = least + (rest - least) * (0.5 + 0.5 * random.signed());
+                    let q_3 = math::sqrt_f64((rest * rest - q_0 * q_0).max(0.0));
+                    let across = random.vector().xy().normalize() * r;
+                    let q = Quaternion::new(q_0, across.x, across.y, q_3);
+                    let error = q.cast::<f32>();
+                    let still = Vector3::zeros();
+                    let fast = (random.vector() * 1e4).cast();
+                    let b = if random.signed() > 0.0 { Vector3::z() } else { random.vector() };
+                    let parts = law.torque(&error, &fast, &still, &still);
+                    let along = b.dot(&(parts.potential + parts.damping).cast()).abs() + torques.bias(&b);
+                    fed = fed.max(along / torques.feedback(&b, &tilt));
+                    let side = random.vector().xy().normalize() * 40.0;
+                    let turn = f64::from(parameters.heading.acceleration) * random.signed().signum();
+                    let acceleration = Vector3::new(side.x, side.y, turn).cast::<f32>();
+                    let moved = inertia.component_mul(&rotate_back(&error, &acceleration).cast());
+                    swung = swung.max(b.dot(&moved).abs() / torques.swung(&b, &tilt, 40.0));
+                }
+                assert!(fed <= 1.0 + 1e-4 && swung <= 1.0 + 1e-5, "eta {eta}, cell {cell}: {fed} and {swung}");
+                assert!(fed > 0.8 && swung > 0.9, "eta {eta}, cell {cell}: only {fed} and {swung} of the bounds");
+            }
+        }
     }
 }
