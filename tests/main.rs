@@ -3,12 +3,9 @@
 //!
 //! | what is tested | suites |
 //! |---|---|
-//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
-//! | its proof | [`adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`] |
 //! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
