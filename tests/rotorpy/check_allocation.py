@@ -71,9 +71,14 @@ class Allocations(unittest.TestCase):
         self.assertTrue(20 < given_up[0] < given_up[1] < given_up[2], given_up)
 
     def test_other_geometries_are_refused(self):
-        shifted = dict(PARAMETERS, rotor_pos={k: v + [0.01, 0, 0] for k, v in PARAMETERS["rotor_pos"].items()})
-        turned = dict(PARAMETERS, rotor_directions=np.array([1, 1, -1, -1]))
-        for parameters in (shifted, turned):
+        def with_rotors(**places):
+            return dict(PARAMETERS, rotor_pos=PARAMETERS["rotor_pos"] | places)
+
+        places = PARAMETERS["rotor_pos"]
+        not_opposite = with_rotors(r3=0.9 * places["r3"])
+        not_square = with_rotors(**{name: place * [1.2, 1.0, 1.0] for name, place in places.items()})
+        turning_alike = dict(PARAMETERS, rotor_directions=np.array([1, 1, -1, -1]))
+        for parameters in (not_opposite, not_square, turning_alike):
             with self.assertRaises(ValueError):
                 TorqueFirst(parameters)
 

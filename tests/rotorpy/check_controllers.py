@@ -81,6 +81,29 @@ class Ours(unittest.TestCase):
             asked(self.law)
 
 
+class Lines(unittest.TestCase):
+    def test_hold_the_numbers_in_the_order_of_the_interface(self):
+        state = {"x": [1.0, 2.0, 3.0], "v": [4.0, 5.0, 6.0], "q": [0.1, 0.2, 0.3, 0.4], "w": [7.0, 8.0, 9.0]}
+        names = ("x", "x_dot", "x_ddot", "x_dddot", "x_ddddot")
+        reference = {name: 10.0 * order + np.arange(3) for order, name in enumerate(names, 1)}
+        reference |= {"yaw": 60.0, "yaw_dot": 61.0, "yaw_ddot": 62.0}
+        with tempfile.TemporaryDirectory() as folder:
+            recorder, heard = pathlib.Path(folder) / "recorder", pathlib.Path(folder) / "heard"
+            recorder.write_text(f'#!/bin/sh\necho "$@" > {heard}\nread line\necho "$line" >> {heard}\necho 8.0 0.1 0.0 0.0\n')
+            recorder.chmod(0o755)
+            law = Law(recorder, "some.toml", ["--more", "1"])
+            speeds, _ = law.command(0.5, 0.01, state, reference)
+            law.close()
+            called, line = heard.read_text().splitlines()
+        self.assertEqual(called, "law some.toml --more 1")
+        expected = [0.5, 0.01, *range(1, 7), 0.1, 0.2, 0.3, 0.4, 7, 8, 9, *range(10, 13), *range(20, 23), *range(30, 33),
+                    *range(40, 43), *range(50, 53), 60, 61, 62]
+        self.assertEqual([float(word) for word in line.split()], expected)
+        # Roll to the right by 0.1 N m: the rotors on the left, 1 and 4, push harder than their 2 N by a quarter over the lever.
+        more = 0.1 / 4 / PARAMETERS["rotor_pos"]["r1"][1]
+        np.testing.assert_allclose(PARAMETERS["k_eta"] * speeds**2, [2 + more, 2 - more, 2 - more, 2 + more], rtol=1e-9)
+
+
 class Vehicles(unittest.TestCase):
     def test_the_projects_hummingbird_is_rotorpys(self):
         check_vehicle(HUMMINGBIRD)

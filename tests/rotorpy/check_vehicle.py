@@ -34,8 +34,9 @@ class Conditioned(unittest.TestCase):
         np.testing.assert_allclose(np.concatenate([state["x"], state["v"], state["w"]]), 0.0, atol=1e-9)
 
     def test_still_rotors_fall_freely(self):
-        state = moved(Conditions(drag=False, lag=False), np.zeros(4), 100)
-        np.testing.assert_allclose(state["x"], [0.0, 0.0, -GRAVITY / 2], rtol=1e-9)
+        start = Start(position=(1.0, 2.0, 3.0), velocity=(0.5, -0.25, 1.0))
+        state = moved(Conditions(drag=False, lag=False), np.zeros(4), 100, start)
+        np.testing.assert_allclose(state["x"], [1.5, 1.75, 4.0 - GRAVITY / 2], rtol=1e-9)
 
     def test_without_lag_the_command_acts_at_once(self):
         # Thrust of twice the weight for a second.

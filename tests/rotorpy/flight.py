@@ -76,8 +76,9 @@ class Record:
         return float(np.sqrt((self.distance()[self.last(duration)] ** 2).mean()))
 
     def rotor_activity(self, duration):
-        """Mean absolute change of a rotor's command from tick to tick, N."""
-        return float(np.abs(np.diff(self.thrusts[self.last(duration)], axis=0)).mean())
+        """How much a rotor's command changes from tick to tick, N: mean absolute value, and root mean square."""
+        change = np.diff(self.thrusts[self.last(duration)], axis=0)
+        return float(np.abs(change).mean()), float(np.sqrt((change**2).mean()))
 
 
 def fly(flight, controller, period, step):

@@ -13,9 +13,9 @@ from flight import Flight
 from sensors import Noise
 from vehicle import Conditions, Start
 
-# Time limits, s. The circle's and the noisy hover's figures are of the last 20 s.
-RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 120.0, 60.0, 60.0, 30.0, 30.0
-FIGURE = 20.0
+# Time limits, s, and how long the last part is that the circle's and the noisy hover's figures are of.
+RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 120.0, 60.0, 60.0, 50.0, 40.0
+CIRCLE_FIGURE, NOISY_FIGURE = 20.0, 30.0
 CIRCLE_FREQUENCY = 0.25  # Hz
 
 
@@ -46,11 +46,12 @@ def deepest(record):
 
 
 def circled(record):
-    return {"rms": record.rms(FIGURE), "drift": record.offset(2 / CIRCLE_FREQUENCY)[1]}
+    return {"rms": record.rms(CIRCLE_FIGURE), "drift": record.offset(2 / CIRCLE_FREQUENCY)[1]}
 
 
 def noisy(record):
-    return {"rms": record.rms(FIGURE), "rotor_change": record.rotor_activity(FIGURE)}
+    mean, root_mean_square = record.rotor_activity(NOISY_FIGURE)
+    return {"rms": record.rms(NOISY_FIGURE), "rotor_change": mean, "rotor_change_rms": root_mean_square}
 
 
 def hover(x=0.0):
@@ -88,7 +89,7 @@ def circle(name, **conditions):
 def noisy_hover(name, bandwidth):
     noise = Noise(gyro=0.01, position=0.002, attitude=np.radians(0.2), bandwidth=bandwidth, delay=0.02)
     flight = Flight(hover(), NOISY, noise=noise)
-    figure = "RMS [m], rotor command change [N/tick]"
+    figure = "RMS [m], mean rotor command change [N/tick]"
     return [Row(f"hover with noise, 20 ms late, {name}{gains}", figure, flight, noisy, eased)
             for gains, eased in (("", False), (", gains eased", True))]
 

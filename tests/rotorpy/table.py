@@ -10,8 +10,8 @@ def arrival(figures, limit):
 
 
 def drifts(figures, distance):
-    """Whether a mean position still moves: in 10 s by more than 1 mm and by 1 % of the distance that is asked about."""
-    return 10.0 * figures["drift"] > max(1e-3, 0.01 * distance)
+    """Whether a mean position still moves: in 10 s by more than 1 mm and by 5 % of the distance that is asked about."""
+    return 10.0 * figures["drift"] > max(1e-3, 0.05 * distance)
 
 
 def cell(figures, limit):
