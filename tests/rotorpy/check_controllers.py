@@ -1,5 +1,7 @@
 """The controllers behind one interface: RotorPy's, and the project's over its pipe."""
 
+import contextlib
+import io
 import pathlib
 import tempfile
 import unittest
@@ -7,13 +9,12 @@ import unittest
 import numpy as np
 from rotorpy.trajectories.hover_traj import HoverTraj
 
-from compare import PROGRAM, TOP, check_vehicle
-from controllers import SE3, Law, SE3TorqueFirst
+from compare import HUMMINGBIRD, PROGRAM, arguments, check_vehicle
+from controllers import SE3, Law, SE3TorqueFirst, UnusableAnswer
 from flight import Flight, fly
 from vehicle import GRAVITY, PARAMETERS, Conditions, Start, Vehicle
 
 PERIOD, STEP = 0.01, 0.005
-HUMMINGBIRD = TOP / "vehicles/hummingbird.toml"
 HOVER = np.sqrt(PARAMETERS["mass"] * GRAVITY / 4 / PARAMETERS["k_eta"])  # rad/s
 
 
@@ -72,12 +73,12 @@ class Ours(unittest.TestCase):
         self.assertLess(fly(above, self.law, PERIOD, STEP).thrusts[-1].sum(), PARAMETERS["mass"] * GRAVITY)
 
     def test_a_refused_line_ends_the_flight_with_its_reason(self):
-        with self.assertRaisesRegex(RuntimeError, "dt: must be above 0"):
+        with self.assertRaisesRegex(UnusableAnswer, "dt: must be above 0"):
             self.law.command(0.0, 0.0, Vehicle(Conditions(), Start(), STEP).state, HoverTraj().update(0.0))
 
     def test_a_program_that_ends_is_an_error(self):
         self.law.process.kill()
-        with self.assertRaisesRegex(RuntimeError, "ended early"):
+        with self.assertRaisesRegex(UnusableAnswer, "ended early"):
             asked(self.law)
 
 
@@ -114,12 +115,32 @@ class Vehicles(unittest.TestCase):
             for name, old, new in (("vehicle.mass", "mass = 0.500", "mass = 0.501"),
                                    ("rotors.thrust_coefficient", "5.57e-6", "5.58e-6"),
                                    ("rotors.spin", '["cw", "ccw", "cw", "ccw"]', '["ccw", "cw", "ccw", "cw"]'),
+                                   ("rotors.lag", "lag = 0.005 ", "delay = 0.005 "),
                                    ("rotors.position", "[0.120208, 0.120208, 0.0]", "[0.121, 0.120208, 0.0]")):
                 self.assertIn(old, text)
                 other = pathlib.Path(folder) / "other.toml"
                 other.write_text(text.replace(old, new))
-                with self.assertRaisesRegex(SystemExit, name):
+                with self.assertRaisesRegex(ValueError, name):
                     check_vehicle(other)
+
+    def test_a_file_that_cannot_be_read_is_refused_by_name(self):
+        with self.assertRaisesRegex(ValueError, "nowhere.toml"):
+            check_vehicle("nowhere.toml")
+
+
+class Arguments(unittest.TestCase):
+    def test_a_law_takes_its_file_and_further_arguments(self):
+        given = arguments(["--law", "new", f"{HUMMINGBIRD} --more 1", "--law", "old", str(HUMMINGBIRD)])
+        self.assertEqual(given.law, {"new": (str(HUMMINGBIRD), ("--more", "1")), "old": (str(HUMMINGBIRD), ())})
+
+    def test_what_cannot_be_flown_is_refused(self):
+        for words, reason in ((["--law", "SE3", str(HUMMINGBIRD)], "label is taken"), (["--law", "new", "x.toml"], "x.toml"),
+                              (["--rate", "0"], "above zero"), (["--rows", "nothing"], "no row")):
+            said = io.StringIO()
+            with self.assertRaises(SystemExit) as stopped, contextlib.redirect_stderr(said):
+                arguments(words)
+            self.assertEqual(stopped.exception.code, 2)
+            self.assertIn(reason, said.getvalue())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Flies RotorPy's Hummingbird under RotorPy's controller and under the project's law, side by side, and prints a table.
 
     compare.py                                     the law of vehicles/hummingbird.toml
-    compare.py --law LABEL FILE [ARGUMENT...]      another scenario's law; repeatable, further arguments go to `host-sim law`
+    compare.py --law LABEL "FILE [ARGUMENT...]"    another scenario's law; repeatable, further arguments go to `host-sim law`
 """
 
 import argparse
@@ -10,13 +10,14 @@ import importlib.metadata
 import json
 import math
 import pathlib
+import shlex
 import sys
 import time
 import tomllib
 
 import numpy as np
 
-from controllers import SE3, Law, SE3TorqueFirst
+from controllers import SE3, Law, SE3TorqueFirst, UnusableAnswer
 from flight import fly
 from rows import rows
 from table import cell, markdown
@@ -24,6 +25,7 @@ from vehicle import GRAVITY, PARAMETERS
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = TOP / "target/release/host-sim"
+HUMMINGBIRD = TOP / "vehicles/hummingbird.toml"
 SE3_LABEL, TORQUE_FIRST_LABEL = "SE3", "SE3, torque first"
 
 # The attitude loop's damping halved and its stiffness quartered.
@@ -32,24 +34,41 @@ EASED = 0.5
 
 def check_vehicle(file):
     """Refuses a scenario of another vehicle than RotorPy's: its law would fly a body it was not told of."""
-    with open(file, "rb") as text:
-        scenario = tomllib.load(text)
-    vehicle, rotors = scenario["vehicle"], scenario.get("rotors", {})
-    pairs = {
-        "vehicle.mass": (vehicle["mass"], PARAMETERS["mass"]),
-        "vehicle.inertia": (vehicle["inertia"], [PARAMETERS[name] for name in ("Ixx", "Iyy", "Izz")]),
-        "vehicle.gravity": (vehicle["gravity"], GRAVITY),
-        "rotors.position": (rotors.get("position"), list(PARAMETERS["rotor_pos"].values())),
-        "rotors.spin": ([{"cw": 1, "ccw": -1}[spin] for spin in rotors.get("spin", [])], PARAMETERS["rotor_directions"]),
-        "rotors.thrust_coefficient": (rotors.get("thrust_coefficient"), PARAMETERS["k_eta"]),
-        "rotors.drag_coefficient": (rotors.get("drag_coefficient"), PARAMETERS["k_m"]),
-        "rotors.speed": (rotors.get("speed"), [PARAMETERS["rotor_speed_min"], PARAMETERS["rotor_speed_max"]]),
-        "rotors.lag": (rotors.get("lag"), PARAMETERS["tau_m"]),
+    try:
+        with open(file, "rb") as text:
+            scenario = tomllib.load(text)
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"{file}: {error}") from error
+    theirs = {
+        "vehicle": {
+            "mass": PARAMETERS["mass"],
+            "inertia": [PARAMETERS[name] for name in ("Ixx", "Iyy", "Izz")],
+            "gravity": GRAVITY,
+        },
+        "rotors": {
+            "position": list(PARAMETERS["rotor_pos"].values()),
+            "spin": [{1: "cw", -1: "ccw"}[turning] for turning in PARAMETERS["rotor_directions"]],
+            "thrust_coefficient": PARAMETERS["k_eta"],
+            "drag_coefficient": PARAMETERS["k_m"],
+            "speed": [PARAMETERS["rotor_speed_min"], PARAMETERS["rotor_speed_max"]],
+            "lag": PARAMETERS["tau_m"],
+        },
     }
-    for name, (ours, theirs) in pairs.items():
-        ours, theirs = np.asarray(ours, float), np.asarray(theirs, float)
-        if ours.shape != theirs.shape or not np.allclose(ours, theirs, rtol=1e-5, atol=0.0):
-            sys.exit(f"error: {file}: {name}: {ours.tolist()}, but RotorPy's vehicle has {theirs.tolist()}")
+    for section, keys in theirs.items():
+        for key, wanted in keys.items():
+            found = scenario.get(section, {}).get(key)
+            if found is None or not same(found, wanted):
+                wanted = np.asarray(wanted).tolist()
+                raise ValueError(f"{file}: {section}.{key}: {found}, but RotorPy's vehicle has {wanted}")
+
+
+def same(found, wanted):
+    """Equal, numbers to the five digits that files carry."""
+    if np.shape(found) != np.shape(wanted):
+        return False
+    if np.asarray(wanted).dtype.kind == "U":
+        return found == wanted
+    return np.allclose(np.asarray(found, float), np.asarray(wanted, float), rtol=1e-5, atol=0.0)
 
 
 def controller(label, laws, eased):
@@ -99,25 +118,42 @@ def figures(row, record):
     return found if record.lost else found | row.measure(record)
 
 
-def arguments():
+def positive(kind):
+    """A type of argument: a number above zero."""
+
+    def number(text):
+        value = kind(text)
+        if not 0 < value < math.inf:
+            raise argparse.ArgumentTypeError(f"must be above zero, found {text}")
+        return value
+
+    return number
+
+
+def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--law", nargs="+", action="append", metavar=("LABEL", "FILE"), default=None)
+    parser.add_argument("--law", nargs=2, action="append", metavar=("LABEL", "FILE"))
     parser.add_argument("--se3-only", action="store_true", help="without the project's law")
-    parser.add_argument("--rate", type=float, default=100.0, help="of the controllers, Hz")
-    parser.add_argument("--step", type=float, default=0.005, help="the vehicle's longest step, s")
+    parser.add_argument("--rate", type=positive(float), default=100.0, help="of the controllers, Hz")
+    parser.add_argument("--step", type=positive(float), default=0.005, help="the vehicle's longest step, s")
     parser.add_argument("--rows", default="", help="only rows whose name contains this")
-    parser.add_argument("--jobs", type=int, default=1, help="flights at a time")
+    parser.add_argument("--jobs", type=positive(int), default=1, help="flights at a time")
     parser.add_argument("--out", type=pathlib.Path, default=TOP / "target/rotorpy/measured.json")
-    given = parser.parse_args()
+    given = parser.parse_args(words)
     laws = {}
-    for label, *rest in [] if given.se3_only else given.law or [["law", str(TOP / "vehicles/hummingbird.toml")]]:
-        if not rest:
-            parser.error(f"--law {label}: needs a scenario file")
+    for label, command in [] if given.se3_only else given.law or [["law", str(HUMMINGBIRD)]]:
+        file, *further = shlex.split(command) or [""]
         if label in (SE3_LABEL, TORQUE_FIRST_LABEL, *laws):
             parser.error(f"--law {label}: that label is taken")
-        check_vehicle(rest[0])
-        laws[label] = (rest[0], tuple(rest[1:]))
+        try:
+            check_vehicle(file)
+        except ValueError as error:
+            parser.error(f"--law {label}: {error}")
+        laws[label] = (file, tuple(further))
     given.law = laws
+    given.chosen = [row for row in rows() if given.rows in row.name]
+    if not given.chosen:
+        parser.error(f"--rows {given.rows}: no row's name contains that")
     return given
 
 
@@ -126,13 +162,13 @@ def main():
     started = time.monotonic()
     period = 1.0 / given.rate
     step = period / math.ceil(period / given.step - 1e-9)
-    chosen = [row for row in rows() if given.rows in row.name]
-    if not chosen:
-        sys.exit(f"error: --rows {given.rows}: no row's name contains that")
-    records = fly_all(chosen, given.law, period, step, given.jobs)
+    try:
+        records = fly_all(given.chosen, given.law, period, step, given.jobs)
+    except UnusableAnswer as error:
+        sys.exit(f"error: {error}")
     labels = [SE3_LABEL, TORQUE_FIRST_LABEL, *given.law]
     lines, raw = [], []
-    for row in chosen:
+    for row in given.chosen:
         measured = {label: figures(row, records[key]) for label in labels
                     if (key := (row.flight, label, row.eased)) in records}
         lines.append([row.name, row.figure, *(cell(measured.get(label), row.flight.limit) for label in labels)])

@@ -50,6 +50,10 @@ class SE3TorqueFirst(SE3):
         return speeds(control["cmd_motor_thrusts"], given)
 
 
+class UnusableAnswer(Exception):
+    """A controller in another process answered with something else than a wrench, or no longer does."""
+
+
 class Law:
     """The project's law in lock-step: `host-sim law FILE` with further arguments, over pipes.
 
@@ -83,7 +87,7 @@ class Law:
         except ValueError:
             wrench = np.empty(0)
         if wrench.shape != (4,):
-            raise RuntimeError(f"{' '.join(self.line)}: {said or 'ended early'}")
+            raise UnusableAnswer(f"{' '.join(self.line)}: {said or 'ended early'}")
         return wrench
 
     def close(self):
