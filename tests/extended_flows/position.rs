@@ -196,24 +196,3 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         assert!((z_2_dot - feedback - force).norm() < 1e-9 * (1.0 + z_2_dot.norm()), "{z_2_dot} {feedback} {force}");
     }
 }
-
-/// The same with the paper's law, whose Theorem 3 has z_1' = z_2 there.
-#[test]
-fn under_a_force_error_the_papers_z_1_moves_by_it_as_well() {
-    let mut rng = random::generator(314);
-    let vehicle = random::paper_vehicle();
-    let gains = random::paper_gains(&vehicle);
-    let position = controller_core::position::PositionLaw::new(&gains, vehicle.gravity);
-    let [k_f, k_s] = [gains.k_f, gains.k_s].map(f64::from);
-    for _ in 0..1_000 {
-        let [at, velocity, u_f, u_s, force] = [(); 5].map(|()| random::vector(&mut rng, 1.0).cast::<f64>());
-        let x = Translation { position: at, velocity, u_f, u_s };
-        // z_1 does not depend on u_s, nor its derivative on u_s'.
-        let along =
-            Translation { position: velocity, velocity: u_f + force, u_f: (u_s - u_f) * k_f, u_s: Vector3::zeros() };
-        let z = |x: &Translation| position.command(&x.state(), &origin(), &x.filter());
-        let rate = (z(&x.after(&along, 0.5)).z_1 - z(&x.after(&along, -0.5)).z_1).cast::<f64>();
-        let expected = z(&x).z_2.cast::<f64>() + force * (1.0 / k_f + 1.0 / k_s);
-        assert!((rate - expected).norm() < 1e-5, "{rate} instead of {expected}");
-    }
-}
