@@ -232,8 +232,8 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
         for _ in 0..5_000 {
             learnt = scale.learnt(learnt, 10.0, 0.9, truth * 9.0);
         }
-        let allowed =
-            truth.min(example::PARAMETERS.estimates.scale_greatest).max(example::PARAMETERS.estimates.scale_least);
+        let EstimateParameters { scale_least, scale_greatest, .. } = example::PARAMETERS.estimates;
+        let allowed = truth.clamp(scale_least, scale_greatest);
         assert!((learnt - allowed).abs() < 1e-4, "{truth}: {learnt}");
     }
     // Lying on its side it learns nothing.
