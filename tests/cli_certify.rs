@@ -6,7 +6,7 @@ use scenario::Scenario;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-const STUDY: &str = include_str!("../vehicles/study.toml");
+const STUDY: &str = include_str!("../vehicles/study-paper-law.toml");
 
 /// A directory of this suite.
 fn directory(test: &str) -> PathBuf {

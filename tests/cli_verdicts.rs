@@ -4,7 +4,7 @@ use crate::support::binary;
 use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
 use std::path::PathBuf;
 
-const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
+const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird-paper-law.toml");
 
 /// A directory of this suite.
 fn directory(test: &str) -> PathBuf {
@@ -28,7 +28,7 @@ fn certify_refuses_an_unstable_loop_and_names_it() {
     let output = host_sim(&directory, &["certify", "sluggish.toml"]);
     let text = stdout(&output);
     assert_eq!((status(&output), stderr(&output)), (1, String::new()), "{text}");
-    let refusal = "hummingbird: NOT certified: sampled loop roll: unstable, spectral radius 1.";
+    let refusal = "hummingbird-paper-law: NOT certified: sampled loop roll: unstable, spectral radius 1.";
     assert!(text.starts_with(refusal), "{text}");
     // The proof holds all the same, and the verdict says what it is a proof of.
     for words in ["commands (a proof): within every limit", "small motions (an analysis): NOT stable", "UNSTABLE"] {
@@ -43,7 +43,8 @@ fn certify_refuses_a_loop_without_margin_and_says_which_margin() {
     let output = host_sim(&directory, &["certify", "weak.toml"]);
     let text = stdout(&output);
     assert_eq!(status(&output), 1, "{text}");
-    let refusal = "hummingbird: NOT certified: sampled loop roll: unstable with 1.3 ms more delay, must bear 2.0 ms\n";
+    let refusal =
+        "hummingbird-paper-law: NOT certified: sampled loop roll: unstable with 1.3 ms more delay, must bear 2.0 ms\n";
     assert!(text.starts_with(refusal) && !text.contains("UNSTABLE"), "{text}");
 }
 

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
@@ -32,6 +32,8 @@ mod kinematics;
 mod lockstep;
 mod lyapunov;
 mod paper;
+mod pilots_table;
+mod reality;
 mod recovery;
 mod rotor_lag;
 mod sampled_loop;

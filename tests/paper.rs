@@ -70,7 +70,7 @@ fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
         let claims = claims(scenario, &Verdict::of(scenario).unwrap(), &flown);
         println!("{}: there after {:?} s", scenario.name, flown.position_reached());
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
-        let thrust = Certificate::new(&scenario.configuration).unwrap().paper().unwrap().sharp.thrust;
+        let thrust = Certificate::new(&scenario.configuration).unwrap().thrust();
         assert!(thrust.least > 0.0 && thrust.greatest < f64::from(scenario.configuration.limits().thrust_max));
     }
     for name in ["paper", "hover", "circle", "waypoints", "hummingbird", "study", "hummingbird-paper", "study-paper"] {

@@ -5,7 +5,7 @@ use controller_core::certificate::Certificate;
 use host_sim::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};
 use host_sim::flight::Flight;
 use host_sim::flown::Flown;
-use host_sim::tune::candidate::recovery;
+use host_sim::tune::trials::recovery;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn flown(scenario: &Scenario) -> Flown {
 
 /// A recovery from roll -179 degrees and the given yaw, degrees.
 fn recovered(scenario: &Scenario, yaw: f64) -> Flown {
-    let mut scenario = recovery(scenario, RECOVERY);
+    let mut scenario = recovery(scenario, RECOVERY).unwrap();
     scenario.initial.attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, yaw.to_radians());
     flown(&scenario)
 }

@@ -11,7 +11,7 @@ use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::state::Wrench;
 use host_sim::flight::Flight;
-use host_sim::tune::candidate::recovery;
+use host_sim::tune::trials::recovery;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
 use scenario::Scenario;
@@ -174,7 +174,7 @@ fn they_fly_a_circle_of_one_metre_without_a_saturated_rotor() {
 #[test]
 fn they_recover_from_upside_down_and_then_hold_still() {
     for name in VEHICLES {
-        let mut scenario = recovery(&vehicle(name), RECOVERY);
+        let mut scenario = recovery(&vehicle(name), RECOVERY).unwrap();
         let attitudes = [[-179.0, 0.0, 100.0], [-179.0, 0.0, 0.0], [0.0, 178.0, 0.0], [-180.0, 0.0, 0.0]];
         for angles in attitudes.map(|angles| angles.map(f64::to_radians)) {
             let [roll, pitch, yaw] = angles;
@@ -196,7 +196,7 @@ fn they_recover_from_upside_down_and_then_hold_still() {
 fn with_ten_times_table_ones_attitude_feedback_the_same_rotors_saturate() {
     let table_1 = **Scenario::paper().unwrap().configuration.gains().unwrap();
     for name in VEHICLES {
-        let mut scenario = recovery(&vehicle(name), 10.0);
+        let mut scenario = recovery(&vehicle(name), 10.0).unwrap();
         let gains = GainParameters { m_theta: 10.0 * table_1.m_theta, ..table_1 };
         let gains = Gains::new(gains, scenario.configuration.vehicle()).unwrap();
         scenario.configuration = scenario.configuration.with_gains(gains).unwrap();

@@ -30,7 +30,7 @@ search() {
 sibling() {
     {
         echo "# vehicles/$1.toml on the paper's trajectory, from the paper's start upside down. Written by vehicles/retune.sh."
-        sed "/^#/d; s/^name = .*/name = \"$1-paper\"/; s/^duration = 40.0 /duration = 120.0/; /^\[initial\]/,\$d" "vehicles/$1.toml"
+        sed "/^#/d; s/^name = .*/name = \"$1-paper\"/; s/^duration = 40.0 /duration = 60.0 /; /^\[initial\]/,\$d" "vehicles/$1.toml"
         sed -n '/^\[initial\]/,$p' scenarios/paper.toml
         echo
         sed -n '/^\[reference_bounds\]/,$p' "vehicles/$1.toml"

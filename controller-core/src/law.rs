@@ -57,7 +57,7 @@ impl Law {
         }
     }
 
-    /// Filters and lift as after a reset, what has been estimated kept: how a flight goes on without a pose.
+    /// Filters and lift as after a reset, what is known of the vehicle kept: how a flight goes on without a pose.
     pub fn restart(&mut self) {
         match self {
             Self::Paper(law) => law.reset(),

@@ -183,9 +183,15 @@ fn certification(verdict: &Verdict) -> String {
 
 fn report(scenario: &Scenario, outcome: &Outcome) -> String {
     let timing = &scenario.timing;
+    let beyond = match scenario.reality.sections().as_slice() {
+        [] => String::new(),
+        sections => {
+            format!(" Flown beyond the model, with [{}], of which no certificate knows.", sections.join("], ["))
+        }
+    };
     let verdict = if claims::all_hold(&outcome.claims) { "Every claim holds." } else { "Not every claim holds." };
     format!(
-        "# {}\n\n{verdict} {} s at {} Hz, plant step {} s; configuration {}.\n\n{}\n\
+        "# {}\n\n{verdict} {} s at {} Hz, plant step {} s; configuration {}.{beyond}\n\n{}\n\
          ![Position, yaw and their errors](fig1.svg)\n\n\
          ![Thrust, moments, filters and saturated feedback](fig2.svg)\n\n\
          ![The first seconds](first-seconds.svg)\n\n![The path](flight.svg)\n\nEvery control tick is a row of [log.csv](log.csv).\n",

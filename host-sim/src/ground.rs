@@ -60,6 +60,12 @@ impl Ground {
         (ground, state)
     }
 
+    /// Whether the vehicle stands on it.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.standing
+    }
+
     /// Whether a vehicle on which an upward force of `lift`, N, acts besides its weight stands still.
     #[must_use]
     pub fn carries(&self, lift: f64) -> bool {

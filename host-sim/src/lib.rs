@@ -10,13 +10,16 @@
 //! | [`sensors`] | what the controller is told of the state |
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
+//! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`plots`] | log.csv and the figures |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
 
 pub mod actuators;
+pub mod campaign;
 pub mod certify;
 pub mod claims;
+pub mod course;
 pub mod flight;
 pub mod flown;
 pub mod fly;

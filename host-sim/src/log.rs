@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_row_has_a_number_for_each_column_whatever_is_there() {
-        let hummingbird = include_str!("../../vehicles/hummingbird.toml");
+        let hummingbird = include_str!("../../vehicles/hummingbird-paper-law.toml");
         let battery = "[battery]\nfull_voltage = 12\nempty_voltage = 11\nresistance = 0.01\ncapacity = 1\n";
         let wind = "[drag]\n[wind]\nsteady = [1.5, 0, 0]\n";
         for (sections, further) in [
@@ -131,7 +131,7 @@ mod tests {
             (format!("{wind}{battery}[sensors]\n"), ",wind_x,wind_y,wind_z,voltage,current,measured_px"),
         ] {
             let scenario = Scenario::parse(&format!("{hummingbird}\n{sections}"), "f").unwrap();
-            let header = header(4) + &reality_header(&scenario.reality);
+            let header = header(4, scenario.configuration.paper().is_none()) + &reality_header(&scenario.reality);
             let (_, after) = header.split_once(",rotor_4").unwrap();
             assert!(after.starts_with(further) && after.is_empty() == further.is_empty(), "{header}");
             let mut row = Vec::new();

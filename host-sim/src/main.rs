@@ -162,6 +162,9 @@ fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
     Ok(status(certified, None))
 }
 
+/// Members of a search's population.
+const POPULATION: usize = 48;
+
 fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
     let mut scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
@@ -170,13 +173,13 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let (name, path) = destination(arguments, &scenario)?;
     scenario.name = name;
     let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
-    let effort = Effort { generations: arguments.generations, seed: arguments.seed };
+    let effort = Effort { generations: arguments.generations, population: POPULATION, seed: arguments.seed };
     let interrupt = watch()?;
     let tuned = match tune(&scenario, requirements, effort, &interrupt) {
         Ok(tuned) => tuned,
         Err(closest) => {
             let what = closest.failed.clone().unwrap_or_default();
-            let lost = short(closest.height_lost);
+            let lost = short(closest.shown.height_lost);
             let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
             eprintln!(
                 "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
@@ -224,11 +227,18 @@ fn found(tuned: &Tuned, path: &Path, interrupted: bool) -> Result<String, String
     let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
         format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
+    let shown = &tuned.verdict.shown;
     Ok(format!(
-        "{certificate}\n{}\nheight lost {} m with k_p = {} 1/s^2\n{active}{}{} candidates judged; written to {}\n",
+        "{certificate}\n{}\nheight lost {} m, back after {} s; gust {} m; step {} s; under noise {} m and {} N a tick; cost {}\n\
+         {active}{}{} candidates judged; written to {}\n",
         tuned.frontier.table(),
-        short(tuned.verdict.height_lost),
-        short(tuned.verdict.position_gain),
+        short(shown.height_lost),
+        short(shown.recovered),
+        short(shown.gust),
+        short(shown.step),
+        short(shown.noise),
+        short(shown.activity),
+        short(tuned.verdict.cost),
         if interrupted { "interrupted: the best so far; " } else { "" },
         tuned.judged,
         path.display()

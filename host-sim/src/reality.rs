@@ -13,9 +13,11 @@
 //! | [`air`] | forces and moments of rotors and frame in moving air |
 //! | [`wind`], [`dryden`] | how the air moves |
 //!
+//! A disturbance adds a constant force at the centre of mass, world frame, and a constant torque, body frame.
+//!
 //! Forces are evaluated at every stage of the method: the rotors' speeds and gusts at the stage's time, drag at its velocity
 //! and attitude. So where these are smooth, the whole has the method's order. The exceptions: a command that arrives, a
-//! step gust, a rotor that fails and the ground act from the beginning of a plant step on; voltage and turbulence are held
+//! step gust, a disturbance, a rotor that fails and the ground act from the beginning of a plant step on; voltage and turbulence are held
 //! over it. Each costs an error of the order of the step at that instant and leaves the order of the rest alone.
 //!
 //! A vehicle on the ground stands while the forces on it do not lift it; the ground is [`crate::ground`]'s.
@@ -39,9 +41,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use propulsion::Propulsion;
 use scenario::Scenario;
 use scenario::body::BodyState;
+use scenario::reality::disturbance::Disturbance;
 use scenario::reality::truth::Truth;
 use std::collections::VecDeque;
-use wind::MovingAir;
+use wind::{MovingAir, first_step};
 
 /// What surrounds a vehicle at an instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -50,6 +53,8 @@ pub struct Surroundings {
     pub wind: Option<Vector3<f64>>,
     /// Voltage, V, and current, A, of the battery; none without one.
     pub battery: Option<(f64, f64)>,
+    /// Whether it stands on the ground.
+    pub standing: bool,
 }
 
 /// A vehicle as it really is.
@@ -58,6 +63,8 @@ pub struct RealVehicle {
     body: RigidBody,
     air: Air,
     wind: Option<MovingAir>,
+    /// With the plant step at which it begins, and its force, N, world.
+    disturbance: Option<(Disturbance, u64, Vector3<f64>)>,
     mixer: Option<Box<Mixer>>,
     propulsion: Propulsion,
     ground: Option<Ground>,
@@ -81,7 +88,7 @@ impl RealVehicle {
         let (reality, step) = (&scenario.reality, scenario.timing.step());
         let model = configuration.vehicle();
         let truth = reality.truth.clone().unwrap_or_else(|| Truth::of_model(model));
-        let propulsion = Propulsion::new(configuration, scenario.rotor_lag, reality, step);
+        let propulsion = Propulsion::new(configuration, truth.lag.unwrap_or(scenario.rotor_lag), reality, step);
         let gravity = f64::from(model.gravity);
         let (ground, start) = match reality.ground {
             Some(ground) => {
@@ -93,6 +100,10 @@ impl RealVehicle {
         Self {
             air: Air::new(configuration.rotors(), &truth, &reality.drag.unwrap_or_default()),
             wind: reality.wind.map(|wind| MovingAir::new(&wind, step)),
+            disturbance: reality.disturbance.map(|disturbance| {
+                let force = disturbance.acceleration * f64::from(model.mass);
+                (disturbance, first_step(disturbance.start, step), force)
+            }),
             mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
             propulsion,
             ground,
@@ -124,6 +135,7 @@ impl RealVehicle {
         Surroundings {
             wind: self.wind.as_ref().map(|wind| wind.velocity(self.now, 0.0)),
             battery: self.propulsion.battery(),
+            standing: self.ground.as_ref().is_some_and(Ground::stands),
         }
     }
 
@@ -161,11 +173,18 @@ impl RealVehicle {
     fn advance(&mut self) {
         let stages = self.propulsion.advance(self.now);
         let (air, wind, now) = (&self.air, &self.wind, self.now);
+        let disturbance = self.disturbance.filter(|(_, first, _)| now >= *first);
         let forces = |stage: usize, state: &BodyState| {
             let moving = wind.as_ref().map_or_else(Vector3::zeros, |wind| wind.velocity(now, STAGE_TIMES[stage]));
             let attitude = UnitQuaternion::new_unchecked(state.attitude);
             let airspeed = attitude.inverse_transform_vector(&(state.velocity - moving));
-            air.act(&Flow { airspeed, angular_velocity: state.angular_velocity }, &stages[stage])
+            let (force, torque) = air.act(&Flow { airspeed, angular_velocity: state.angular_velocity }, &stages[stage]);
+            match &disturbance {
+                Some((disturbance, _, push)) => {
+                    (force + attitude.inverse_transform_vector(push), torque + disturbance.torque)
+                }
+                None => (force, torque),
+            }
         };
         let carried = self.ground.as_ref().is_some_and(|ground| {
             let state = self.body.state();

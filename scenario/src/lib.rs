@@ -9,7 +9,7 @@
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
-//! | `[truth]`, `[drag]`, `[wind]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
+//! | `[truth]`, `[drag]`, `[wind]`, `[disturbance]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
 //! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the list of sections

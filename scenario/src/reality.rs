@@ -5,6 +5,7 @@
 //! | [`[truth]`](truth) | mass, inertia, centre of mass, what the rotors deliver | |
 //! | [`[drag]`](drag) | what the air does to frame and rotors | |
 //! | [`[wind]`](wind) | how the air moves | `[drag]` |
+//! | [`[disturbance]`](disturbance) | a force and a torque that nobody explains | |
 //! | [`[battery]`](battery) | a voltage that sags and runs down | `[rotors]` |
 //! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
 //! | [`[ground]`](ground) | something to stand on | |
@@ -14,6 +15,7 @@
 //! flown *in*. `[sensors] delay` alone is part of the sampled loops.
 
 pub mod battery;
+pub mod disturbance;
 pub mod drag;
 pub mod failure;
 pub mod ground;
@@ -26,6 +28,7 @@ use crate::body::BodyState;
 use crate::section::{FieldError, Section};
 use battery::Battery;
 use controller_core::certificate::configuration::Configuration;
+use disturbance::Disturbance;
 use drag::Drag;
 use failure::Failure;
 use ground::Ground;
@@ -34,7 +37,7 @@ use truth::Truth;
 use wind::Wind;
 
 /// The names of the sections.
-pub const SECTIONS: [&str; 7] = ["truth", "drag", "wind", "battery", "failure", "ground", "sensors"];
+pub const SECTIONS: [&str; 8] = ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors"];
 
 /// What the file says beyond the model. By default nothing: the vehicle is the model, in still vacuum, its state known.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -45,6 +48,8 @@ pub struct Reality {
     pub drag: Option<Drag>,
     /// `[wind]`.
     pub wind: Option<Wind>,
+    /// `[disturbance]`.
+    pub disturbance: Option<Disturbance>,
     /// `[battery]`.
     pub battery: Option<Battery>,
     /// `[failure]`.
@@ -78,11 +83,28 @@ impl Reality {
             truth: truth::read(root, configuration.vehicle(), rotors)?,
             drag: drag::read(root, rotors.is_some())?,
             wind: wind::read(root)?,
+            disturbance: disturbance::read(root)?,
             battery: battery::read(root)?,
             failure: failure::read(root, rotors.unwrap_or(0))?,
             ground: ground::read(root, initial)?,
             sensors,
         })
+    }
+
+    /// The sections that the file has.
+    #[must_use]
+    pub fn sections(&self) -> Vec<&'static str> {
+        let there = [
+            self.truth.is_some(),
+            self.drag.is_some(),
+            self.wind.is_some(),
+            self.disturbance.is_some(),
+            self.battery.is_some(),
+            self.failure.is_some(),
+            self.ground.is_some(),
+            self.sensors.is_some(),
+        ];
+        SECTIONS.into_iter().zip(there).filter_map(|(section, there)| there.then_some(section)).collect()
     }
 
     /// Whether the vehicle and the air are the model's, whatever the sensors say of them.

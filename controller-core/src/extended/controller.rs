@@ -166,9 +166,11 @@ impl Controller {
         self.memory = Self::fresh(&self.vehicle, Estimates::NONE);
     }
 
-    /// The same with what has been estimated kept: how a flight goes on without a pose.
+    /// The same with what has been estimated of the vehicle itself kept, torque and thrust scale: how a flight goes on without a
+    /// pose. The force is forgotten: it came from velocities that are no longer known.
     pub fn restart(&mut self) {
-        self.memory = Self::fresh(&self.vehicle, self.memory.estimates);
+        let estimates = Estimates { force: ForceEstimate::NONE, ..self.memory.estimates };
+        self.memory = Self::fresh(&self.vehicle, estimates);
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on

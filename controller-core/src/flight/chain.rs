@@ -6,7 +6,7 @@
 //! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
 //! that it is where it should be (position and velocity errors zero); then z_1 = z_2 = 0, the filters stay at zero, and
 //! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had. The extended
-//! law keeps what it has estimated, held: against a wind it leans, u = g e3 - d.
+//! law keeps what it knows of the vehicle, its torque bias and thrust scale, and learns nothing meanwhile.
 //!
 //! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
 //! to fade out, so no bridge is needed, and such a start fits in a tick.

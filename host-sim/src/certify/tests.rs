@@ -3,7 +3,7 @@
 use super::*;
 use scenario::PAPER;
 
-const STUDY: &str = include_str!("../../../vehicles/study.toml");
+const STUDY: &str = include_str!("../../../vehicles/study-paper-law.toml");
 
 fn report(text: &str) -> (String, bool) {
     certify(&Scenario::parse(text, "f").unwrap()).unwrap()
@@ -50,7 +50,10 @@ fn the_loops_are_reported_for_all_six_axes_with_their_timing() {
     assert!(text.contains("at 100 Hz, rotor lag 0 ms, delay 0 ms"));
     let late = |delay: &str| report(&STUDY.replace("delay = 0.010", &format!("delay = {delay}")));
     let (text, certified) = late("0.200");
-    assert!(!certified && text.starts_with("study: NOT certified: sampled loop roll: unstable, spectral"), "{text}");
+    assert!(
+        !certified && text.starts_with("study-paper-law: NOT certified: sampled loop roll: unstable, spectral"),
+        "{text}"
+    );
     assert!(line(&text, "roll ").ends_with(" UNSTABLE") && text.contains("delay 200 ms"), "{text}");
     let (text, certified) = late("0.027");
     assert!(

@@ -4,7 +4,7 @@ use super::*;
 use crate::flight::Flight;
 use scenario::body::attitude_from_euler;
 
-const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
 fn sensors(keys: &str) -> Sensors {
     Sensors::new(&Scenario::parse(&format!("{HUMMINGBIRD}\n[sensors]\n{keys}"), "f").unwrap()).unwrap()

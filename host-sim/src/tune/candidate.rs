@@ -1,7 +1,7 @@
-//! One candidate: gains from a point of the search space, and a verdict on them.
+//! One candidate: a point of the search space, and a verdict on it.
 //!
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
-//! radii, margins, recovery from upside down, the file's own flight. A verdict that fails says how far it got and by how
+//! radii, margins, the trials of [`super::trials`], the file's own flight. A verdict that fails says how far it got and by how
 //! much it missed, so that the search has a slope to follow.
 //!
 //! The gain margin is asked for twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
@@ -11,25 +11,20 @@
 
 use super::requirements::Requirements;
 use super::space::{Point, Space};
+use super::trials::{MODELS, Shown, show};
 use crate::claims::reached;
 use crate::flight::Flight;
 use crate::flown::Flown;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
-use controller_core::heading::Heading;
-use controller_core::reference::hover::Hover;
-use nalgebra::Vector3;
 use scenario::Scenario;
-use scenario::body::{BodyState, attitude_from_euler};
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
-use scenario::timing::Timing;
-use std::sync::Arc;
 
-/// Greatest position error in the last quarter of a recovery, m.
-const STILL_POSITION: f64 = 0.01;
-/// Greatest norm of the modified Rodrigues parameters there.
-const STILL_MRP: f64 = 1e-3;
+/// By which share of its time a recovery must have ended.
+const RECOVERED_BY: f64 = 0.75;
+/// What a law that estimates may leave of a gust, m.
+const OFFSET: f64 = 0.01;
 
 /// What a candidate showed.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,10 +34,10 @@ pub struct Verdict {
     pub violation: f64,
     /// Which test failed, in words.
     pub failed: Option<String>,
-    /// Height lost in the recovery, m.
-    pub height_lost: f64,
-    /// k_p, 1/s^2.
-    pub position_gain: f64,
+    /// What the trials showed on the file's own model.
+    pub shown: Shown,
+    /// The mean of [`Shown::cost`] over all models.
+    pub cost: f64,
     /// The inequality with the least margin.
     pub tightest: Option<Inequality>,
 }
@@ -51,8 +46,8 @@ impl Verdict {
     /// Of a candidate that nobody judged.
     #[must_use]
     pub fn missing() -> Self {
-        let (failed, height_lost) = (Some("not judged".to_owned()), f64::INFINITY);
-        Self { violation: f64::INFINITY, failed, height_lost, position_gain: 0.0, tightest: None }
+        let failed = Some("not judged".to_owned());
+        Self { violation: f64::INFINITY, failed, shown: NOTHING, cost: f64::INFINITY, tightest: None }
     }
 
     /// Whether every requirement is met.
@@ -62,10 +57,22 @@ impl Verdict {
     }
 }
 
+/// What no trial showed.
+const NOTHING: Shown = Shown {
+    height_lost: f64::INFINITY,
+    recovered: f64::INFINITY,
+    turned: f64::INFINITY,
+    gust: f64::INFINITY,
+    offset: f64::INFINITY,
+    step: f64::INFINITY,
+    activity: f64::INFINITY,
+    noise: f64::INFINITY,
+    clipped: 0,
+};
+
 /// Judges candidates for one scenario.
 pub struct Judge {
     scenario: Scenario,
-    recovery: Scenario,
     space: Space,
     requirements: Requirements,
 }
@@ -76,7 +83,7 @@ impl Judge {
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
         let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
         let space = Space::new(&scenario.configuration, floor);
-        Self { recovery: recovery(scenario, requirements.recovery), scenario: scenario.clone(), space, requirements }
+        Self { scenario: scenario.clone(), space, requirements }
     }
 
     /// The file's own constants as a point: where the search starts.
@@ -94,13 +101,7 @@ impl Judge {
     /// Puts `point` through the tests.
     #[must_use]
     pub fn judge(&self, point: &Point) -> Verdict {
-        let mut verdict = Verdict {
-            violation: 0.0,
-            failed: None,
-            height_lost: f64::INFINITY,
-            position_gain: point[0].exp(),
-            tightest: None,
-        };
+        let mut verdict = Verdict { violation: 0.0, failed: None, ..Verdict::missing() };
         let Err((tests_left, missed, what)) = self.run(point, &mut verdict) else {
             return verdict;
         };
@@ -150,14 +151,7 @@ impl Judge {
             }
         }
 
-        let flown = fly(&self.recovery, certified).ok_or((1, 1e3, "recovery diverged".to_owned()))?;
-        verdict.height_lost = flown.height_lost;
-        let restless =
-            (flown.steady_position_error / STILL_POSITION - 1.0).max(flown.steady_mrp_error / STILL_MRP - 1.0);
-        let restless = restless.max(flown.clipped as f64);
-        if restless > 0.0 {
-            return Err((1, restless, "recovery: not still at the end, or a clipped command".to_owned()));
-        }
+        self.try_out(&scenario, certified, verdict)?;
 
         let flown = fly(&scenario, certified).ok_or((0, 1e3, "the file's flight diverged".to_owned()))?;
         let beyond = (flown.steady_position_error / needed.position_error - 1.0)
@@ -172,21 +166,32 @@ impl Judge {
         }
         Ok(())
     }
-}
 
-/// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off the
-/// heading asked for), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
-#[must_use]
-pub fn recovery(scenario: &Scenario, duration: f64) -> Scenario {
-    let rest = Vector3::zeros();
-    let attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, 100.0_f64.to_radians());
-    let initial = BodyState { position: rest, velocity: rest, attitude, angular_velocity: rest };
-    let timing = Timing { ticks: (duration / scenario.timing.period()) as u64, ..scenario.timing };
-    let mut recovery = Scenario { name: "recovery".to_owned(), initial, timing, ..scenario.clone() };
-    if let Ok(hover) = Hover::new(Vector3::zeros(), Heading::FORWARD) {
-        recovery.trajectory = Arc::new(hover);
+    /// The trials, on each model; on the file's own nothing may be clipped, and the recovery must end.
+    fn try_out(
+        &self,
+        scenario: &Scenario,
+        certified: &Certified,
+        verdict: &mut Verdict,
+    ) -> Result<(), (u8, f64, String)> {
+        let recovery = self.requirements.recovery;
+        let mut costs = Vec::new();
+        for model in &MODELS {
+            let lost = (1, 1e3, format!("a trial was not flown to its end: {model:?}"));
+            costs.push(show(scenario, certified, model, recovery).ok_or(lost)?);
+        }
+        verdict.shown = costs[0];
+        verdict.cost = costs.iter().map(Shown::cost).sum::<f64>() / costs.len() as f64;
+        let restless = (verdict.shown.recovered / (RECOVERED_BY * recovery) - 1.0).max(verdict.shown.clipped as f64);
+        if restless > 0.0 {
+            return Err((1, restless, "recovery: not near in time, or a clipped command".to_owned()));
+        }
+        let estimates = scenario.configuration.paper().is_none();
+        if estimates && verdict.shown.offset > OFFSET {
+            return Err((1, verdict.shown.offset / OFFSET - 1.0, "gust: an offset is left".to_owned()));
+        }
+        Ok(())
     }
-    recovery
 }
 
 /// Flies what is certified as `scenario` says; none if it cannot be flown to its end.

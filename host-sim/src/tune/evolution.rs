@@ -3,8 +3,9 @@
 //! For each member x of the population a trial is made from three others, x_a + F (x_b - x_c), coordinates taken over with
 //! probability `CROSSOVER` (DE/rand/1/bin; half of the time x_a is the best member, which is faster and still
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
-//! one nearer to acceptance wins, of two that are the one nearer to the goal.
+//! one nearer to acceptance wins, of two that are the one of less cost.
 
+use super::Effort;
 use super::candidate::{Judge, Verdict};
 use super::frontier::Frontier;
 use super::space::Point;
@@ -13,41 +14,14 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-/// Members of the population.
-const POPULATION: usize = 48;
 /// Probability with which a coordinate comes from the mutant.
 const CROSSOVER: f64 = 0.8;
 /// Spread of the first population around the file's gains, in natural logarithms.
-const SPREAD: f64 = 2.0;
+const SPREAD: f64 = 0.6;
 
-/// What the search is after.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Goal {
-    /// The least height lost.
-    Height,
-    /// The greatest k_p among those that lose at most this height, m.
-    PositionGain {
-        /// The height, m.
-        height_at_most: f64,
-    },
-}
-
-impl Goal {
-    /// (violation, cost), to be compared in this order: less is better.
-    fn rank(&self, verdict: &Verdict) -> (f64, f64) {
-        match self {
-            Self::Height => (verdict.violation, verdict.height_lost),
-            Self::PositionGain { height_at_most } => {
-                let above = (verdict.height_lost / height_at_most - 1.0).max(0.0);
-                let violation = if verdict.accepted() { above } else { 1e3 + verdict.violation };
-                (violation, -verdict.position_gain)
-            }
-        }
-    }
-
-    fn better(&self, a: &Verdict, b: &Verdict) -> bool {
-        self.rank(a) < self.rank(b)
-    }
+/// Whether `a` is better than `b`.
+fn better(a: &Verdict, b: &Verdict) -> bool {
+    (a.violation, a.cost) < (b.violation, b.cost)
 }
 
 /// The population.
@@ -60,11 +34,13 @@ pub struct Evolution {
 impl Evolution {
     /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
     #[must_use]
-    pub fn new(judge: &Judge, seed: u64, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+    pub fn new(judge: &Judge, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
         let mut points = vec![start.clone()];
-        points.resize_with(POPULATION, || start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+        points.resize_with(effort.population.max(4), || {
+            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
+        });
         let (members, judged) = judge_all(judge, points, interrupt);
         for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
             frontier.offer(point, verdict);
@@ -72,9 +48,9 @@ impl Evolution {
         Self { members, random, judged }
     }
 
-    /// One generation towards `goal`; accepted candidates go into `frontier` as well.
-    pub fn generation(&mut self, judge: &Judge, goal: Goal, frontier: &mut Frontier, interrupt: &Interrupt) {
-        let best = self.leader(goal);
+    /// One generation; accepted candidates go into `frontier` as well.
+    pub fn generation(&mut self, judge: &Judge, frontier: &mut Frontier, interrupt: &Interrupt) {
+        let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
         let (trials, judged) = judge_all(judge, trials, interrupt);
         self.judged += judged;
@@ -82,7 +58,7 @@ impl Evolution {
             if verdict.accepted() {
                 frontier.offer(&point, &verdict);
             }
-            if goal.better(&verdict, &member.1) {
+            if better(&verdict, &member.1) {
                 *member = (point, verdict);
             }
         }
@@ -90,15 +66,15 @@ impl Evolution {
 
     /// The best accepted member, if there is one.
     #[must_use]
-    pub fn best(&self, goal: Goal) -> Option<(Point, Verdict)> {
-        let best = self.members[self.leader(goal)].clone();
+    pub fn best(&self) -> Option<(Point, Verdict)> {
+        let best = self.members[self.leader()].clone();
         best.1.accepted().then_some(best)
     }
 
     /// The verdict nearest to acceptance.
     #[must_use]
     pub fn closest(&self) -> Verdict {
-        self.members[self.leader(Goal::Height)].1.clone()
+        self.members[self.leader()].1.clone()
     }
 
     /// Candidates judged so far.
@@ -107,9 +83,9 @@ impl Evolution {
         self.judged
     }
 
-    fn leader(&self, goal: Goal) -> usize {
+    fn leader(&self) -> usize {
         let indices = 1..self.members.len();
-        indices.fold(0, |best, i| if goal.better(&self.members[i].1, &self.members[best].1) { i } else { best })
+        indices.fold(0, |best, i| if better(&self.members[i].1, &self.members[best].1) { i } else { best })
     }
 
     fn trial(&mut self, parent: usize, best: usize) -> Point {
@@ -145,24 +121,15 @@ fn judge_all(judge: &Judge, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(
 mod tests {
     use super::*;
 
-    fn verdict(violation: f64, height_lost: f64, position_gain: f64) -> Verdict {
-        Verdict { violation, failed: None, height_lost, position_gain, tightest: None }
+    fn verdict(violation: f64, cost: f64) -> Verdict {
+        Verdict { violation, cost, ..Verdict::missing() }
     }
 
     #[test]
-    fn an_acceptable_candidate_beats_a_better_one_that_is_not() {
-        let (poor, rejected) = (verdict(0.0, 50.0, 1.0), verdict(0.5, 1.0, 9.0));
-        for goal in [Goal::Height, Goal::PositionGain { height_at_most: 2.0 }] {
-            assert!(goal.better(&poor, &rejected) && !goal.better(&rejected, &poor), "{goal:?}");
-        }
-        assert!(Goal::Height.better(&verdict(0.4, f64::INFINITY, 1.0), &rejected), "the nearer to acceptance wins");
-    }
-
-    #[test]
-    fn position_gain_counts_only_within_the_height_allowed() {
-        let goal = Goal::PositionGain { height_at_most: 4.0 };
-        let (within, stiff, beyond) = (verdict(0.0, 3.0, 2.0), verdict(0.0, 4.0, 5.0), verdict(0.0, 4.1, 9.0));
-        assert!(goal.better(&stiff, &within) && goal.better(&within, &beyond) && goal.better(&stiff, &beyond));
-        assert!(Goal::Height.better(&within, &stiff));
+    fn an_acceptable_candidate_beats_a_cheaper_one_that_is_not() {
+        let (poor, rejected) = (verdict(0.0, 50.0), verdict(0.5, 1.0));
+        assert!(better(&poor, &rejected) && !better(&rejected, &poor));
+        assert!(better(&verdict(0.4, f64::INFINITY), &rejected), "the nearer to acceptance wins");
+        assert!(better(&verdict(0.0, 3.0), &poor), "of two accepted the cheaper");
     }
 }

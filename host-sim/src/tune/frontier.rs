@@ -1,4 +1,4 @@
-//! The trade between height lost and position gain: every accepted candidate that no other beats in both.
+//! The trade between height lost and gusts: every accepted candidate that no other beats in both.
 
 use super::candidate::Verdict;
 use super::space::Point;
@@ -7,7 +7,7 @@ use crate::table::{aligned, percent, short};
 /// Rows a table of it shows at most.
 const ROWS: usize = 12;
 
-/// Accepted candidates, least height first, k_p rising with it.
+/// Accepted candidates, least height first, the excursion in a gust falling with it.
 #[derive(Debug, Clone, Default)]
 pub struct Frontier {
     members: Vec<(Point, Verdict)>,
@@ -16,31 +16,27 @@ pub struct Frontier {
 impl Frontier {
     /// Takes a candidate in, unless another one is at least as good in both respects.
     pub fn offer(&mut self, point: &Point, verdict: &Verdict) {
-        let beats = |a: &Verdict, b: &Verdict| a.height_lost <= b.height_lost && a.position_gain >= b.position_gain;
+        let beats =
+            |a: &Verdict, b: &Verdict| a.shown.height_lost <= b.shown.height_lost && a.shown.gust <= b.shown.gust;
         if self.members.iter().any(|(_, member)| beats(member, verdict)) {
             return;
         }
         self.members.retain(|(_, member)| !beats(verdict, member));
-        let place = self.members.partition_point(|(_, member)| member.height_lost < verdict.height_lost);
+        let height = verdict.shown.height_lost;
+        let place = self.members.partition_point(|(_, member)| member.shown.height_lost < height);
         self.members.insert(place, (point.clone(), verdict.clone()));
     }
 
     /// The least height lost, m.
     #[must_use]
     pub fn least_height(&self) -> Option<f64> {
-        self.members.first().map(|(_, verdict)| verdict.height_lost)
-    }
-
-    /// The candidate of greatest k_p among those that lose at most `height` m.
-    #[must_use]
-    pub fn greatest_gain_within(&self, height: f64) -> Option<(Point, Verdict)> {
-        self.members.iter().take_while(|(_, verdict)| verdict.height_lost <= height).last().cloned()
+        self.members.first().map(|(_, verdict)| verdict.shown.height_lost)
     }
 
     /// A table for a terminal, thinned to a dozen rows.
     #[must_use]
     pub fn table(&self) -> String {
-        let head = ["height lost [m]", "k_p [1/s^2]", "active constraint", "margin"];
+        let head = ["height lost [m]", "gust [m]", "step [s]", "activity [N]", "cost", "active constraint", "margin"];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
         let step = self.members.len().div_ceil(ROWS).max(1);
         let last = self.members.len().saturating_sub(1);
@@ -48,7 +44,8 @@ impl Frontier {
             if index % step == 0 || index == last {
                 let (name, margin) =
                     verdict.tightest.map_or(("", f64::NAN), |tightest| (tightest.name, tightest.margin()));
-                let numbers = [short(verdict.height_lost), short(verdict.position_gain)];
+                let shown = &verdict.shown;
+                let numbers = [shown.height_lost, shown.gust, shown.step, shown.activity, verdict.cost].map(short);
                 rows.push([numbers.to_vec(), vec![name.to_owned(), percent(margin)]].concat());
             }
         }
@@ -60,18 +57,16 @@ impl Frontier {
 mod tests {
     use super::*;
 
-    fn verdict(height_lost: f64, position_gain: f64) -> Verdict {
-        Verdict { violation: 0.0, failed: None, height_lost, position_gain, tightest: None }
-    }
-
     #[test]
     fn it_keeps_what_no_other_beats_in_both_respects() {
         let mut frontier = Frontier::default();
-        for (height, gain) in [(5.0, 9.0), (4.0, 5.0), (6.0, 8.0), (4.0, 6.0), (3.0, 1.0)] {
-            frontier.offer(&vec![0.0; 10], &verdict(height, gain));
+        for (height, gust) in [(5.0, 1.0), (4.0, 5.0), (6.0, 2.0), (4.0, 4.0), (3.0, 9.0)] {
+            let mut verdict = Verdict::missing();
+            (verdict.shown.height_lost, verdict.shown.gust) = (height, gust);
+            frontier.offer(&vec![0.0; 10], &verdict);
         }
-        let kept: Vec<_> = frontier.members.iter().map(|(_, v)| (v.height_lost, v.position_gain)).collect();
-        assert_eq!(kept, [(3.0, 1.0), (4.0, 6.0), (5.0, 9.0)]);
-        assert_eq!(frontier.greatest_gain_within(4.5).map(|(_, v)| v.position_gain), Some(6.0));
+        let kept: Vec<_> = frontier.members.iter().map(|(_, v)| (v.shown.height_lost, v.shown.gust)).collect();
+        assert_eq!(kept, [(3.0, 9.0), (4.0, 4.0), (5.0, 1.0)]);
+        assert_eq!(frontier.least_height(), Some(3.0));
     }
 }

@@ -40,8 +40,9 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
         }
     }
     let head = format!(
-        "{HEAD} height lost from upside down {} m; every margin at least {:.1} %.\n",
-        short(tuned.verdict.height_lost),
+        "{HEAD} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
+        short(tuned.verdict.shown.height_lost),
+        short(tuned.verdict.shown.gust),
         100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
     );
     let text = document.to_string();

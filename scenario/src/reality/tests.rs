@@ -16,6 +16,7 @@ centre_of_mass = [0.005, 0.0, -0.002]
 thrust_scale = 0.8
 rotor_scales = [1, 0.95, 1.0, 1.0]
 thrust_curve = 0.3
+lag = 0.015
 
 [drag]
 linear = [0.3, 0.3, 0.1]
@@ -29,6 +30,11 @@ flapping = 1e-7
 steady = [3.0, 0.0, 4.0]
 gust = { kind = \"one-cosine\", start = 5.0, velocity = [5.0, 0.0, 0.0], duration = 2.0 }
 turbulence = { wind_at_20_feet = 6.0, altitude = 10.0, seed = 7 }
+
+[disturbance]
+acceleration = [1.0, 0.0, -0.5]
+torque = [0.0, 0.0, 0.002]
+start = 2.5
 
 [battery]
 full_voltage = 12.6
@@ -77,9 +83,9 @@ fn with(line: &str, nth: usize, replacement: &str) -> String {
 
 #[test]
 fn every_key_becomes_what_the_file_says() {
-    let Reality { truth, drag, wind, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
+    let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
     let truth = truth.unwrap();
-    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve), (0.55, 0.8, 0.3));
+    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve, truth.lag), (0.55, 0.8, 0.3, Some(0.015)));
     assert_eq!(truth.inertia, Vector3::new(3.9e-3, 3.9e-3, 7.5e-3));
     assert_eq!(
         (truth.centre_of_mass, truth.rotor_scales),
@@ -96,6 +102,9 @@ fn every_key_becomes_what_the_file_says() {
     // The steady wind's speed where the file names none.
     assert_eq!((turbulence.wind_at_20_feet, turbulence.altitude, turbulence.airspeed), (6.0, 10.0, 5.0));
     assert_eq!(turbulence.seed, 7);
+    let disturbance = disturbance.unwrap();
+    assert_eq!((disturbance.acceleration, disturbance.start), (Vector3::new(1.0, 0.0, -0.5), 2.5));
+    assert_eq!(disturbance.torque, Vector3::new(0.0, 0.0, 0.002));
     let battery = battery.unwrap();
     assert_eq!((battery.full_voltage, battery.empty_voltage, battery.nominal_voltage), (12.6, 10.5, 12.0));
     assert_eq!((battery.resistance, battery.capacity, battery.charge, battery.efficiency), (0.03, 7200.0, 0.9, 0.6));
@@ -113,12 +122,14 @@ fn every_key_becomes_what_the_file_says() {
 fn a_file_without_them_is_the_model_and_a_section_without_keys_changes_little() {
     let model = read("").unwrap();
     assert_eq!(model.reality, Reality::default());
+    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTIONS);
     assert!(model.reality.is_model());
     let empty = read("[truth]\n[drag]\n[wind]\n[sensors]\n").unwrap().reality;
     assert_eq!(empty.truth.as_ref().unwrap().mass, f64::from(0.5_f32));
     assert_eq!((empty.drag, empty.wind), (Some(Drag::default()), Some(Wind::default())));
     assert_eq!(empty.sensors.unwrap().velocity, VelocitySource::Exact { noise: 0.0 });
     assert!(!empty.is_model());
+    assert_eq!(empty.sections(), ["truth", "drag", "wind", "sensors"]);
     assert!(read("[sensors]").unwrap().reality.is_model());
 }
 
@@ -159,6 +170,7 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("rotor_scales", 0, "rotor_scales = [1, 1, 1, \"a\"]".into(), "truth.rotor_scales[3]", "must be a number"),
         ("thrust_curve", 0, "thrust_curve = 1.5".into(), "truth.thrust_curve", "from 0 to 1, found 1.5"),
         ("thrust_curve", 0, "thrust_curv = 1.0".into(), "truth.thrust_curv", "did you mean \"thrust_curve\"?"),
+        ("lag", 0, "lag = 1.5".into(), "truth.lag", "from 0 to 1 s, found 1.5"),
         ("linear", 0, "linear = [0.1, -0.1, 0]".into(), "drag.linear[1]", "from 0 to 1000, found -0.1"),
         ("frame", 0, "frame = 0.1".into(), "drag.frame", "a list of three numbers"),
         ("flapping", 0, "flapping = inf".into(), "drag.flapping", "finite"),
@@ -179,6 +191,8 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("turbulence", 0, turbulence("wind_at_20_feet = 5, altitude = 2"), "wind.turbulence.altitude", "from 3.048 to"),
         ("steady", 0, "steady = [0.0, 0.0, 0.0]".into(), "wind.turbulence.airspeed", "where wind.steady does not say"),
         ("seed", 0, "seed = 1.5".into(), "sensors.seed", "whole number"),
+        ("torque", 0, "torque = [0, 101, 0]".into(), "disturbance.torque[1]", "from -100 to 100 N m"),
+        ("acceleration", 0, "accelerations = 1".into(), "disturbance.accelerations", "did you mean \"acceleration\"?"),
         ("full_voltage", 0, String::new(), "battery.full_voltage", "missing"),
         ("empty_voltage", 0, "empty_voltage = 13".into(), "battery.empty_voltage", "at most battery.full_voltage"),
         ("resistance", 0, "resistance = -1".into(), "battery.resistance", "from 0 to 10 ohm"),
@@ -230,6 +244,7 @@ fn a_section_that_needs_another_says_which() {
         ("[drag]\nrotor_across = 1e-4", "drag.rotor_across: needs [rotors]"),
         ("[truth]\nrotor_scales = [1]", "truth.rotor_scales: needs [rotors]"),
         ("[truth]\nthrust_curve = 0.1", "truth.thrust_curve: needs [rotors]"),
+        ("[truth]\nlag = 0.1", "truth.lag: needs [rotors]"),
         ("[sampling]\ndelay = 0.6\n[sensors]\ndelay = 0.05", "sensors.delay: must be from 0 to 0.04"),
     ] {
         let what = paper(sections).expect_err(sections);

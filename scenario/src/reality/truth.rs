@@ -7,7 +7,8 @@
 //! centre_of_mass = [0.005, 0.0, 0.0]   # m, body, from the model's; left out: zero
 //! thrust_scale = 0.8                   # what every rotor delivers of its thrust and drag torque; left out: 1
 //! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
-//! thrust_curve = 0.3                   # share of the motor command that acts on thrust, not on speed; left out: 0
+//! thrust_curve = 0.3                   # a of the thrust a u + (1 - a) u^2 of a motor command u; left out: 0
+//! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
 //! ```
 //!
 //! The state that a flight reports and its controller is told is that of the body's origin, the *model's* centre of mass,
@@ -34,6 +35,8 @@ pub struct Truth {
     pub rotor_scales: Vec<f64>,
     /// a of the thrust a u + (1 - a) u^2 that a motor command u gives; the controller's model has a = 0.
     pub thrust_curve: f64,
+    /// Lag of the rotors' speeds, s; none for the model's.
+    pub lag: Option<f64>,
 }
 
 impl Truth {
@@ -47,6 +50,7 @@ impl Truth {
             thrust_scale: 1.0,
             rotor_scales: Vec::new(),
             thrust_curve: 0.0,
+            lag: None,
         }
     }
 }
@@ -59,7 +63,7 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     let Some(section) = root.optional_section("truth")? else {
         return Ok(None);
     };
-    let keys = ["mass", "inertia", "centre_of_mass", "thrust_scale", "rotor_scales", "thrust_curve"];
+    let keys = ["mass", "inertia", "centre_of_mass", "thrust_scale", "rotor_scales", "thrust_curve", "lag"];
     section.allow(&keys)?;
     let modelled = Truth::of_model(model);
     let mass = section.number_or("mass", modelled.mass)?;
@@ -69,9 +73,10 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     Vehicle::new(parameters).map_err(|error| root.refused(&in_truth(error)))?;
     let scale = Allowed::new(0.0..=10.0, "");
     let rotor_scales = read_rotor_scales(&section, rotors, &scale)?;
-    if section.has("thrust_curve") && rotors.is_none() {
-        return Err(without_rotors(&section, "thrust_curve"));
+    if let Some(key) = ["thrust_curve", "lag"].into_iter().find(|key| section.has(key) && rotors.is_none()) {
+        return Err(without_rotors(&section, key));
     }
+    let lag = section.has("lag").then(|| Allowed::new(0.0..=1.0, "s").number(&section, "lag")).transpose()?;
     Ok(Some(Truth {
         mass,
         inertia,
@@ -79,6 +84,7 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
         thrust_scale: scale.number_or(&section, "thrust_scale", 1.0)?,
         rotor_scales,
         thrust_curve: Allowed::new(0.0..=1.0, "").number_or(&section, "thrust_curve", 0.0)?,
+        lag,
     }))
 }
 

@@ -1,0 +1,128 @@
+//! What a pilot would say of a flight: how far it fell, how far it overshot, when it was there for good, how restless it was.
+//!
+//! Of the true motion, whatever the law was told of it. With x the position, x_d the reference's, at the ticks k = 0 … n - 1:
+//!
+//! | figure | |
+//! |---|---|
+//! | height lost | start minus lowest height |
+//! | rise | greatest height above the start and above the reference |
+//! | excursion | greatest \|x - x_d\| |
+//! | settled | since when \|x - x_d\| has been within a distance, for good |
+//! | turned | since when the yaw has been within 0.1 rad of the reference's, for good |
+//! | end error | \|x - x_d\| at the last tick |
+//! | RMS | of \|x - x_d\| over the last half of the flight |
+//! | activity | RMS of the change of a rotor's commanded thrust from one tick to the next, over the last half |
+
+use crate::flight::{Flight, FlightError, Tick};
+use controller_core::allocation::Thrusts;
+use scenario::Scenario;
+
+/// How near the yaw is to be, rad.
+const NEAR_YAW: f64 = 0.1;
+
+/// A flight's course.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// m.
+    pub height_lost: f64,
+    /// m; negative where it never rose above both.
+    pub rise: f64,
+    /// m.
+    pub excursion: f64,
+    /// s; none if it was further away at the last tick.
+    pub settled: Option<f64>,
+    /// s; none if it was further off at the last tick.
+    pub turned: Option<f64>,
+    /// m.
+    pub end_error: f64,
+    /// m.
+    pub rms: f64,
+    /// N; zero without rotors.
+    pub activity: f64,
+    /// Ticks at which something of a command was cut.
+    pub clipped: u64,
+    /// |yaw error| at the last tick, rad.
+    pub yaw_error: f64,
+}
+
+/// Of the last half: sums of squares of distances and of changes, and how many.
+#[derive(Debug, Clone, Default)]
+struct LastHalf {
+    squares: f64,
+    ticks: u64,
+    changes: f64,
+    changed: u64,
+    before: Option<Thrusts>,
+}
+
+impl Course {
+    /// Flies a whole `flight` of `scenario`; settled is within `near`, m.
+    ///
+    /// # Errors
+    /// If it cannot be flown to its end.
+    pub fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Self, FlightError> {
+        let ticks = scenario.timing.ticks;
+        let start = scenario.initial.position.z;
+        let mut course = Self {
+            height_lost: 0.0,
+            rise: f64::NEG_INFINITY,
+            excursion: 0.0,
+            settled: Some(0.0),
+            turned: Some(0.0),
+            end_error: 0.0,
+            rms: 0.0,
+            activity: 0.0,
+            clipped: 0,
+            yaw_error: 0.0,
+        };
+        let mut last_half = LastHalf::default();
+        for number in 0..ticks {
+            let tick = flight.tick()?;
+            course.observe(&tick, start, near, scenario.timing.period_us);
+            if 2 * number >= ticks {
+                last_half.observe(&tick, course.end_error);
+            }
+        }
+        course.settled = course.settled.filter(|_| course.end_error <= near);
+        course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
+        course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
+        course.activity = (last_half.changes / last_half.changed.max(1) as f64).sqrt();
+        Ok(course)
+    }
+
+    fn observe(&mut self, tick: &Tick, start: f64, near: f64, period_us: u64) {
+        let (position, wanted) = (&tick.state.position, tick.reference.position.map(f64::from));
+        let error = (position - wanted).norm();
+        self.height_lost = self.height_lost.max(start - position.z);
+        self.rise = self.rise.max(position.z - start.max(wanted.z));
+        self.excursion = self.excursion.max(error);
+        self.end_error = error;
+        self.clipped += u64::from(tick.clipped);
+        let next = (tick.time_us + period_us) as f64 / 1e6;
+        if error > near {
+            self.settled = Some(next);
+        }
+        let heading = tick.reference.heading.direction();
+        let yaw = tick.state.yaw() - f64::from(heading.y).atan2(f64::from(heading.x));
+        self.yaw_error = yaw.sin().atan2(yaw.cos()).abs();
+        if self.yaw_error > NEAR_YAW {
+            self.turned = Some(next);
+        }
+    }
+}
+
+impl LastHalf {
+    fn observe(&mut self, tick: &Tick, error: f64) {
+        self.squares += error * error;
+        self.ticks += 1;
+        if let Some(before) = &self.before {
+            let changes = tick.rotor_thrusts.iter().zip(before).map(|(now, then)| f64::from(now - then).powi(2));
+            self.changed += tick.rotor_thrusts.len() as u64;
+            self.changes += changes.sum::<f64>();
+        }
+        self.before = Some(tick.rotor_thrusts.clone());
+    }
+}
+
+#[cfg(test)]
+mod tests;
