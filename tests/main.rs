@@ -3,7 +3,7 @@
 //!
 //! | what is tested | suites |
 //! |---|---|
-//! | the law | [`independent_law`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
@@ -24,6 +24,7 @@ mod documentation;
 mod emulated_bits;
 mod extended_adversary;
 mod extended_flows;
+mod extended_independent;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;

@@ -80,8 +80,8 @@ fn z(p: &PositionParameters, x: &Translation) -> [Vector3<f64>; 2] {
 }
 
 /// The closed loop with the core's feedback and a force error.
-fn flow(p: &PositionParameters, x: &Translation, force: &Vector3<f64>) -> Translation {
-    let feedback = PositionLaw::new(p, 0.01).unwrap().feedback(&x.state(), &origin(), &x.filter()).feedback;
+fn flow(law: &PositionLaw, p: &PositionParameters, x: &Translation, force: &Vector3<f64>) -> Translation {
+    let feedback = law.feedback(&x.state(), &origin(), &x.filter()).feedback;
     let [k_f, k_s] = bandwidths(p);
     Translation {
         position: x.velocity,
@@ -102,7 +102,7 @@ fn integral(to: f64, gain: f64, inner: f64, outer: f64) -> f64 {
     // mu = (inner / gain) sinh x.
     let scale = inner / gain;
     let end = (to / scale).asinh();
-    let steps = 400;
+    let steps = 200;
     let width = end / f64::from(steps);
     let f = |x: f64| approached(scale * x.sinh(), gain, inner, outer) * scale * x.cosh();
     (0..steps)
@@ -127,10 +127,10 @@ fn v_0(p: &PositionParameters, x: &Translation) -> f64 {
 fn v_0_never_rises_along_flows() {
     let mut rng = random::generator(311);
     let mut falls = 0;
-    for number in 0..20_000 {
+    for number in 0..5_000 {
         let p = random_parameters(&mut rng).position;
         let x = Translation::random(&mut rng, &p);
-        let along = flow(&p, &x, &Vector3::zeros());
+        let along = flow(&PositionLaw::new(&p, 0.01).unwrap(), &p, &x, &Vector3::zeros());
         let step = 1e-5;
         let v_dot = (v_0(&p, &x.after(&along, step)) - v_0(&p, &x.after(&along, -step))) / (2.0 * step);
         let [_, z_2] = z(&p, &x);
@@ -141,24 +141,25 @@ fn v_0_never_rises_along_flows() {
         assert!(v_dot <= allowed, "case {number}: V_0' = {v_dot:e} beyond {allowed:e} at {x:?} with {p:?}");
         falls += u32::from(v_dot < -100.0 * allowed);
     }
-    println!("V_0 falls beyond doubt in {falls} of 20000");
-    assert!(falls > 15_000, "{falls}");
+    println!("V_0 falls beyond doubt in {falls} of 5000");
+    assert!(falls > 4_500, "{falls}");
 }
 
 #[test]
 fn v_0_never_rises_on_flights_and_they_arrive() {
     let mut rng = random::generator(312);
     let p = law(&paper_vehicle()).parameters.position;
+    let position = PositionLaw::new(&p, 0.01).unwrap();
     for _ in 0..20 {
         let mut x = Translation::random(&mut rng, &p);
         let (mut energy, step) = (v_0(&p, &x), 2e-3);
         for tick in 0..30_000 {
             let still = Vector3::zeros();
             let half = 0.5 * step;
-            let a = flow(&p, &x, &still);
-            let b = flow(&p, &x.after(&a, half), &still);
-            let c = flow(&p, &x.after(&b, half), &still);
-            let d = flow(&p, &x.after(&c, step), &still);
+            let a = flow(&position, &p, &x, &still);
+            let b = flow(&position, &p, &x.after(&a, half), &still);
+            let c = flow(&position, &p, &x.after(&b, half), &still);
+            let d = flow(&position, &p, &x.after(&c, step), &still);
             x = x.after(&a, step / 6.0).after(&b, step / 3.0).after(&c, step / 3.0).after(&d, step / 6.0);
             if tick % 20 == 0 {
                 let after = v_0(&p, &x);
@@ -179,7 +180,7 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         let x = Translation { position: x.position / x.position.norm(), velocity: x.velocity / x.velocity.norm(), ..x };
         let force = random::vector(&mut rng, 5.0).cast::<f64>();
         let position = PositionLaw::new(&p, 0.01).unwrap();
-        let along = flow(&p, &x, &force);
+        let along = flow(&position, &p, &x, &force);
         let [z_1, z_2] = z(&p, &x);
         let core = |x: &Translation| position.feedback(&x.state(), &origin(), &x.filter());
         assert!((core(&x).z_1.cast::<f64>() - z_1).norm() < 1e-5 * (1.0 + z_1.norm()));
@@ -193,26 +194,5 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         assert!((z_1_dot - z_2 - moved).norm() < 1e-9 * (1.0 + z_1_dot.norm()), "{z_1_dot} {z_2} {moved}");
         let feedback = core(&x).feedback.cast::<f64>();
         assert!((z_2_dot - feedback - force).norm() < 1e-9 * (1.0 + z_2_dot.norm()), "{z_2_dot} {feedback} {force}");
-    }
-}
-
-/// The same with the paper's law, whose Theorem 3 has z_1' = z_2 there.
-#[test]
-fn under_a_force_error_the_papers_z_1_moves_by_it_as_well() {
-    let mut rng = random::generator(314);
-    let vehicle = random::paper_vehicle();
-    let gains = random::paper_gains(&vehicle);
-    let position = controller_core::position::PositionLaw::new(&gains, vehicle.gravity);
-    let [k_f, k_s] = [gains.k_f, gains.k_s].map(f64::from);
-    for _ in 0..1_000 {
-        let [at, velocity, u_f, u_s, force] = [(); 5].map(|()| random::vector(&mut rng, 1.0).cast::<f64>());
-        let x = Translation { position: at, velocity, u_f, u_s };
-        // z_1 does not depend on u_s, nor its derivative on u_s'.
-        let along =
-            Translation { position: velocity, velocity: u_f + force, u_f: (u_s - u_f) * k_f, u_s: Vector3::zeros() };
-        let z = |x: &Translation| position.command(&x.state(), &origin(), &x.filter());
-        let rate = (z(&x.after(&along, 0.5)).z_1 - z(&x.after(&along, -0.5)).z_1).cast::<f64>();
-        let expected = z(&x).z_2.cast::<f64>() + force * (1.0 / k_f + 1.0 / k_s);
-        assert!((rate - expected).norm() < 1e-5, "{rate} instead of {expected}");
     }
 }

@@ -1,6 +1,8 @@
 //! What the suites about the extended law share: the configurations it is tried on, and everything it can be asked for.
 
 pub mod force_generator;
+pub mod oracle;
+pub mod rounding;
 pub mod situation;
 
 use crate::support::random::{self, ChaCha8Rng};

@@ -232,8 +232,8 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
         for _ in 0..5_000 {
             learnt = scale.learnt(learnt, 10.0, 0.9, truth * 9.0);
         }
-        let allowed =
-            truth.min(example::PARAMETERS.estimates.scale_greatest).max(example::PARAMETERS.estimates.scale_least);
+        let EstimateParameters { scale_least, scale_greatest, .. } = example::PARAMETERS.estimates;
+        let allowed = truth.clamp(scale_least, scale_greatest);
         assert!((learnt - allowed).abs() < 1e-4, "{truth}: {learnt}");
     }
     // Lying on its side it learns nothing.
@@ -314,9 +314,13 @@ fn held_estimates_stay_as_they_are() {
     };
     let learnt = fly(&mut controller, 50);
     assert!(learnt.force.average.x > 0.5);
-    controller.hold_estimates();
-    let held = fly(&mut controller, 50);
-    assert_eq!((held.force.average, held.torque, held.scale), (learnt.force.average, learnt.torque, learnt.scale));
+    for _ in 0..50 {
+        controller.hold_estimates();
+        let held = fly(&mut controller, 1);
+        assert_eq!((held.force.average, held.torque, held.scale), (learnt.force.average, learnt.torque, learnt.scale));
+    }
+    // They go on once the wrench that acts is one that was commanded since.
+    assert!(fly(&mut controller, 5).force.average.x > learnt.force.average.x);
 }
 
 #[test]

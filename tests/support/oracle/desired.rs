@@ -27,26 +27,31 @@ impl Command {
         Matrix3::from_columns(&[upsilon, rho.cross(&upsilon), rho])
     }
 
+    /// The motion's fastest time scale, 1/s: R_d is singular where u_z vanishes, so u_z sets it.
+    pub fn fastest(&self) -> f64 {
+        let vertical = self.u.z.abs();
+        (self.u_dot.norm() / vertical)
+            .max((self.u_ddot.norm() / vertical).sqrt())
+            .max(self.heading[1].abs())
+            .max(self.heading[2].abs().sqrt())
+            .max(1e-3)
+    }
+
     /// R_d, omega_d and omega_d' with [omega_d]_x = R_d^T dR_d/dt, differentiated numerically, twice.
     ///
     /// Sixth-order central differences at 1/200 of the motion's fastest time scale: the truncation is about
     /// 36 (1/200)^6 = 6e-13 of that scale's rate and the rounding of f64 about 5e-14; the second differentiation
     /// multiplies both by 200. Both are far below single precision.
     pub fn differentiate(&self) -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>) {
-        // R_d is singular where u_z vanishes, so u_z sets the scale.
-        let vertical = self.u.z.abs();
-        let fastest = (self.u_dot.norm() / vertical)
-            .max((self.u_ddot.norm() / vertical).sqrt())
-            .max(self.heading[1].abs())
-            .max(self.heading[2].abs().sqrt())
-            .max(1e-3);
-        let step = 1.0 / (200.0 * fastest);
-        let rate = |e: f64| {
-            let derivative = central_difference(|d| self.desired_attitude(e + d), step);
-            self.desired_attitude(e).transpose() * derivative
-        };
-        (self.desired_attitude(0.0), unskew(&rate(0.0)), unskew(&central_difference(rate, step)))
+        differentiate(|e| self.desired_attitude(e), self.fastest())
     }
+}
+
+/// R, omega and omega' at zero of a `frame` that moves at the rate `fastest`, 1/s.
+pub fn differentiate(frame: impl Fn(f64) -> Matrix3<f64>, fastest: f64) -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>) {
+    let step = 1.0 / (200.0 * fastest);
+    let rate = |e: f64| frame(e).transpose() * central_difference(|d| frame(e + d), step);
+    (frame(0.0), unskew(&rate(0.0)), unskew(&central_difference(rate, step)))
 }
 
 /// f'(0) to sixth order in `h`.
