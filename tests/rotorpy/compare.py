@@ -9,19 +9,19 @@ import concurrent.futures
 import importlib.metadata
 import json
 import math
+import os
 import pathlib
 import shlex
+import subprocess
 import sys
+import tempfile
 import time
-import tomllib
-
-import numpy as np
 
 from controllers import SE3, Law, SE3TorqueFirst, UnusableAnswer
 from flight import fly
 from rows import rows
+from scenario_file import changed, check_vehicle
 from table import cell, markdown
-from vehicle import GRAVITY, PARAMETERS
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = TOP / "target/release/host-sim"
@@ -32,62 +32,27 @@ SE3_LABEL, TORQUE_FIRST_LABEL = "SE3", "SE3, torque first"
 EASED = 0.5
 
 
-def check_vehicle(file):
-    """Refuses a scenario of another vehicle than RotorPy's: its law would fly a body it was not told of."""
-    try:
-        with open(file, "rb") as text:
-            scenario = tomllib.load(text)
-    except (OSError, tomllib.TOMLDecodeError) as error:
-        raise ValueError(f"{file}: {error}") from error
-    theirs = {
-        "vehicle": {
-            "mass": PARAMETERS["mass"],
-            "inertia": [PARAMETERS[name] for name in ("Ixx", "Iyy", "Izz")],
-            "gravity": GRAVITY,
-        },
-        "rotors": {
-            "position": list(PARAMETERS["rotor_pos"].values()),
-            "spin": [{1: "cw", -1: "ccw"}[turning] for turning in PARAMETERS["rotor_directions"]],
-            "thrust_coefficient": PARAMETERS["k_eta"],
-            "drag_coefficient": PARAMETERS["k_m"],
-            "speed": [PARAMETERS["rotor_speed_min"], PARAMETERS["rotor_speed_max"]],
-            "lag": PARAMETERS["tau_m"],
-        },
-    }
-    for section, keys in theirs.items():
-        for key, wanted in keys.items():
-            found = scenario.get(section, {}).get(key)
-            if found is None or not same(found, wanted):
-                wanted = np.asarray(wanted).tolist()
-                raise ValueError(f"{file}: {section}.{key}: {found}, but RotorPy's vehicle has {wanted}")
-
-
-def same(found, wanted):
-    """Equal, numbers to the five digits that files carry."""
-    if np.shape(found) != np.shape(wanted):
-        return False
-    if np.asarray(wanted).dtype.kind == "U":
-        return found == wanted
-    return np.allclose(np.asarray(found, float), np.asarray(wanted, float), rtol=1e-5, atol=0.0)
-
-
-def controller(label, laws, eased):
+def controller(label, laws, eased, told, folder):
+    """A new one. `told` changes a copy of the law's file, in this folder."""
     if label == SE3_LABEL:
         return SE3(EASED if eased else 1.0)
     if label == TORQUE_FIRST_LABEL:
         return SE3TorqueFirst(EASED if eased else 1.0)
     file, arguments = laws[label]
-    return Law(PROGRAM, file, arguments)
+    copy = pathlib.Path(folder) / pathlib.Path(file).name
+    copy.write_text(changed(pathlib.Path(file).read_text(), told))
+    return Law(PROGRAM, copy, arguments)
 
 
 def flown(task):
     """One flight of one controller."""
     (flight, label, eased), laws, period, step = task
-    pilot = controller(label, laws, eased)
-    try:
-        return fly(flight, pilot, period, step)
-    finally:
-        pilot.close()
+    with tempfile.TemporaryDirectory() as folder:
+        pilot = controller(label, laws, eased, flight.told, folder)
+        try:
+            return fly(flight, pilot, period, step)
+        finally:
+            pilot.close()
 
 
 def fly_all(chosen, laws, period, step, jobs):
@@ -111,6 +76,22 @@ def fly_all(chosen, laws, period, step, jobs):
             records[other] = records[plain]
     fly_each(again)
     return records
+
+
+def verdict(file):
+    """What `certify` says of a scenario, in a line."""
+    said = subprocess.run([PROGRAM, "certify", file], capture_output=True, text=True)
+    first = (said.stdout or said.stderr).partition("\n")[0]
+    if said.returncode not in (0, 1):
+        raise UnusableAnswer(f"{PROGRAM} certify {file}: {first}")
+    return first
+
+
+def clippings(records, chosen, label):
+    """Flights of the rows in which this controller asked a rotor for more or less than it can give, and in how many ticks."""
+    keys = {(row.flight, label, row.eased) for row in chosen}
+    clipped = [record.clipped for key, record in records.items() if key in keys]
+    return f"{label} in {sum(ticks > 0 for ticks in clipped)} of {len(clipped)} flights, {sum(clipped)} ticks"
 
 
 def figures(row, record):
@@ -137,7 +118,7 @@ def arguments(words=None):
     parser.add_argument("--rate", type=positive(float), default=100.0, help="of the controllers, Hz")
     parser.add_argument("--step", type=positive(float), default=0.005, help="the vehicle's longest step, s")
     parser.add_argument("--rows", default="", help="only rows whose name contains this")
-    parser.add_argument("--jobs", type=positive(int), default=1, help="flights at a time")
+    parser.add_argument("--jobs", type=positive(int), default=os.cpu_count() or 1, help="flights at a time")
     parser.add_argument("--out", type=pathlib.Path, default=TOP / "target/rotorpy/measured.json")
     given = parser.parse_args(words)
     laws = {}
@@ -163,22 +144,27 @@ def main():
     period = 1.0 / given.rate
     step = period / math.ceil(period / given.step - 1e-9)
     try:
+        verdicts = {label: verdict(file) for label, (file, _) in given.law.items()}
         records = fly_all(given.chosen, given.law, period, step, given.jobs)
-    except UnusableAnswer as error:
+    except (UnusableAnswer, ValueError) as error:
         sys.exit(f"error: {error}")
     labels = [SE3_LABEL, TORQUE_FIRST_LABEL, *given.law]
     lines, raw = [], []
     for row in given.chosen:
         measured = {label: figures(row, records[key]) for label in labels
                     if (key := (row.flight, label, row.eased)) in records}
-        lines.append([row.name, row.figure, *(cell(measured.get(label), row.flight.limit) for label in labels)])
-        raw.append({"row": row.name, "figure": row.figure, "limit": row.flight.limit, "measured": measured})
+        lines.append([row.name, row.figure, *(cell(measured.get(label), row.flight.duration) for label in labels)])
+        raw.append({"row": row.name, "figure": row.figure, "duration": row.flight.duration, "measured": measured})
     versions = {name: importlib.metadata.version(name) for name in ("rotorpy", "numpy", "scipy")}
-    settings = {"rate": given.rate, "step": step, "versions": versions, "laws": given.law}
+    settings = {"rate": given.rate, "step": step, "versions": versions, "laws": given.law, "verdicts": verdicts}
     given.out.parent.mkdir(parents=True, exist_ok=True)
     given.out.write_text(json.dumps({"settings": settings, "rows": raw}, indent=1) + "\n")
     print(markdown(["flight", "figure", *labels], lines))
-    print(f"\nRotorPy {versions['rotorpy']}; controllers at {given.rate:g} Hz, vehicle in steps of {1e3 * step:g} ms; "
+    print()
+    for label, said in verdicts.items():
+        print(f"{label}: {given.law[label][0]}: {said}")
+    print(f"clipped: {'; '.join(clippings(records, given.chosen, label) for label in labels)}")
+    print(f"RotorPy {versions['rotorpy']}; controllers at {given.rate:g} Hz, vehicle in steps of {1e3 * step:g} ms; "
           f"{time.monotonic() - started:.0f} s; every figure in {given.out}")
 
 

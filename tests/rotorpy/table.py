@@ -5,8 +5,8 @@ def number(value):
     return "<1e-6" if 0 < abs(value) < 1e-6 else f"{value:.3g}"
 
 
-def arrival(figures, limit):
-    return f"not in {limit:.0f} s" if figures["arrival"] is None else number(figures["arrival"])
+def arrival(figures, duration):
+    return f"not in {duration:.0f} s" if figures["arrival"] is None else number(figures["arrival"])
 
 
 def drifts(figures, distance):
@@ -14,16 +14,16 @@ def drifts(figures, distance):
     return 10.0 * figures["drift"] > max(1e-3, 0.05 * distance)
 
 
-def cell(figures, limit):
-    """What the table says of one flight's figures; `limit` is the flight's, s."""
+def cell(figures, duration):
+    """What the table says of the figures of one flight of so many seconds."""
     if figures is None:
         return "-"
     if figures["lost"]:
         return "lost"
     if "height_lost" in figures:
-        return f"{number(figures['height_lost'])}, {number(figures['risen'])}, {arrival(figures, limit)}"
+        return f"{number(figures['height_lost'])}, {number(figures['risen'])}, {arrival(figures, duration)}"
     if "arrival" in figures:
-        return arrival(figures, limit)
+        return arrival(figures, duration)
     if "rotor_change" in figures:
         return f"{number(figures['rms'])}, {number(figures['rotor_change'])}"
     distance = next(figures[name] for name in ("offset", "deepest", "rms") if name in figures)
