@@ -162,7 +162,7 @@ def main():
     print(markdown(["flight", "figure", *labels], lines))
     print()
     for label, said in verdicts.items():
-        print(f"{label}: {given.law[label][0]}: {said}")
+        print(f"{label}: certify says {said}")
     print(f"clipped: {'; '.join(clippings(records, given.chosen, label) for label in labels)}")
     print(f"RotorPy {versions['rotorpy']}; controllers at {given.rate:g} Hz, vehicle in steps of {1e3 * step:g} ms; "
           f"{time.monotonic() - started:.0f} s; every figure in {given.out}")

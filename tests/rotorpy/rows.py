@@ -14,8 +14,8 @@ from sensors import Noise
 from vehicle import Conditions, Start
 
 # Durations, s, and how long the last part is that the circle's and the noisy hover's figures are of.
-RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 20.0, 30.0, 20.0, 40.0, 40.0
-CIRCLE_FIGURE, NOISY_FIGURE = 20.0, 30.0
+RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 20.0, 30.0, 20.0, 40.0, 30.0
+CIRCLE_FIGURE, NOISY_FIGURE = 20.0, 20.0
 CIRCLE_FREQUENCY = 0.25  # Hz
 
 # The law feeds drag forward and reckons with lag, as its file says; where there is neither, its file says so.
@@ -102,7 +102,7 @@ def rows():
     wind = holding(wind=(5.0, 0.0, 0.0))
     return [
         *(recovery(f"roll {roll}, yaw 100 off", float(roll), 100.0) for roll in (0, 90, 135, 170, 179, 180)),
-        *(recovery(f"roll {roll}, yaw right", float(roll), 0.0) for roll in (179, 180)),
+        *(recovery(f"roll {roll}, yaw as it should be", float(roll), 0.0) for roll in (179, 180)),
         offset("1 m/s^2", push),
         offset("5 m/s wind", wind),
         offset("thrust 20 % low", holding(rotor_thrust=(0.8,) * 4)),
