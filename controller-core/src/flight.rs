@@ -27,7 +27,7 @@ pub mod propagation;
 pub mod reason;
 pub mod rules;
 
-pub use chain::Flown;
+pub use chain::{Flown, Memory};
 pub use measurement::{
     BODY_RATE_MAX, DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
 };

@@ -109,10 +109,7 @@ impl Law {
     pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
         match self {
             Self::Paper(law) => law.command(state, reference),
-            Self::Extended(law) => {
-                let (wrench, Diagnostics { mrp, .. }) = law.step(state, reference)?;
-                Ok(Command { wrench, mrp })
-            }
+            Self::Extended(law) => law.command(state, reference),
         }
     }
 

@@ -27,6 +27,25 @@ pub fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
+/// `x` cut to ± `level`; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
+#[must_use]
+pub fn within(x: f32, level: f32) -> f32 {
+    between(x, -level, level)
+}
+
+/// `x` cut to an interval; a NaN stays one.
+#[must_use]
+pub fn between(x: f32, least: f32, greatest: f32) -> f32 {
+    let x = if x > greatest { greatest } else { x };
+    if x < least { least } else { x }
+}
+
+/// The greater of two numbers; the first where they cannot be compared.
+#[must_use]
+pub fn greater(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
 /// C's `sqrtf` for machines that have no C library, in one instruction.
 ///
 /// Under this name the code generator knows it, and where a call is optimised it puts the instruction itself in the call's

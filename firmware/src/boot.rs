@@ -11,13 +11,14 @@ use crate::parameters::table::Name;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
-use controller_core::flight::Pilot;
-use controller_core::governor::{GovernorLimits, Memory};
+use controller_core::flight::{Memory, Pilot};
+use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// Where a pilot lies, and what its governor remembers.
+/// Where a pilot lies, and what its governor and mixer work with.
 pub struct Place {
+    certification: StaticCell<Result<Certified, Refused>>,
     pilot: StaticCell<Pilot<'static>>,
     memory: ConstStaticCell<Memory>,
 }
@@ -26,7 +27,7 @@ impl Place {
     /// For one pilot.
     #[allow(clippy::new_without_default)] // it is made where it stays
     pub const fn new() -> Self {
-        Self { pilot: StaticCell::new(), memory: ConstStaticCell::new(Memory::EMPTY) }
+        Self { certification: StaticCell::new(), pilot: StaticCell::new(), memory: ConstStaticCell::new(Memory::EMPTY) }
     }
 }
 
@@ -47,8 +48,8 @@ pub fn start<M: RawMutex>(
         vertical_speed: parameters.get(Name::VerticalSpeed),
         ..GovernorLimits::default()
     };
-    let certification = certify(configuration);
-    log(&certification);
+    let certification = certify(place, configuration);
+    log(certification);
     Ok((pilot(place, certification.as_ref(), &limits), outputs))
 }
 
@@ -56,8 +57,8 @@ pub fn start<M: RawMutex>(
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]
-fn certify(configuration: Configuration) -> Result<Certified, Refused> {
-    Certified::new(configuration)
+fn certify(place: &'static Place, configuration: Configuration) -> &'static Result<Certified, Refused> {
+    place.certification.init_with(|| Certified::new(configuration))
 }
 
 #[inline(never)]

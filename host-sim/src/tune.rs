@@ -12,6 +12,7 @@
 //! same constants.
 
 pub mod candidate;
+pub mod effort;
 pub mod evolution;
 pub mod frontier;
 pub mod output;
@@ -26,21 +27,11 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
+use effort::Effort;
 use evolution::Evolution;
 use frontier::Frontier;
 use requirements::Requirements;
 use scenario::Scenario;
-
-/// How hard to search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
-    /// Generations.
-    pub generations: u32,
-    /// Members of the population, at least 4.
-    pub population: usize,
-    /// Seed of the search.
-    pub seed: u64,
-}
 
 /// What the search found.
 #[derive(Clone)]

@@ -65,7 +65,7 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         assert_eq!(flight.report().mode, Mode::Levelling);
         flight.poses(true);
         let regained = flight.world.pose().position;
-        let after = worst_tilt(&mut flight, 15.0);
+        let after = worst_tilt(&mut flight, 20.0);
         assert_eq!(flight.report().mode, Mode::Flying);
         assert!(flight.station.heard("Pose regained").is_some());
         assert!(before.max(after) < 0.4, "{before} {after} rad");

@@ -100,7 +100,11 @@ impl Slab {
 pub(super) struct Slabs<const N: usize>(Vec<Slab, N>);
 
 impl<const N: usize> Slabs<N> {
+    /// Of no zonotope.
+    pub(super) const NONE: Self = Self(Vec::new());
+
     /// The zonotope of `generators`, open along `open` if given; `direction` is d, in the wrench's own units.
+    #[inline(never)] // as the polygon's
     pub(super) fn new(
         rotors: &Rotors,
         generators: &[Generator],
@@ -180,6 +184,10 @@ impl Edge {
 pub(super) struct Polygon(Vec<Edge, { 2 * ROTORS_MAX }>);
 
 impl Polygon {
+    /// Of no rotors.
+    pub(super) const NONE: Self = Self(Vec::new());
+
+    #[inline(never)] // its temporaries are not to add up with those of the slabs
     pub(super) fn new(rotors: &Rotors) -> Self {
         let arms = || rotors.effectiveness().iter().map(|column| Vector2::new(column.y, column.z));
         let mut edges = Vec::new();

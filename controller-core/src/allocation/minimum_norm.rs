@@ -59,6 +59,9 @@ pub struct MinimumNorm {
 }
 
 impl MinimumNorm {
+    /// Of no rotors.
+    pub(super) const NONE: Self = Self { actuators: Vec::new() };
+
     /// For `rotors`; configuration time.
     #[must_use]
     pub fn new(rotors: &Rotors) -> Self {

@@ -88,31 +88,45 @@ pub struct Mixer {
 }
 
 impl Mixer {
-    /// Prepares the mixer; configuration time.
+    /// Of no rotors: it asks nothing of nobody.
+    pub const NONE: Self = Self {
+        minimum_norm: MinimumNorm::NONE,
+        roll_pitch: Polygon::NONE,
+        thrust: Slabs::NONE,
+        yaw: Slabs::NONE,
+        spares: Vec::new(),
+        carriers: Vec::new(),
+    };
+
+    /// A mixer for `rotors`; configuration time.
     #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
+        let mut mixer = Self::NONE;
+        mixer.prepare(rotors);
+        mixer
+    }
+
+    /// Prepares the mixer for `rotors` where it lies: built apart and moved here, it would take its size on the stack again.
+    pub fn prepare(&mut self, rotors: &Rotors) {
         let carriers = carriers(rotors);
         let carrying = || carriers.iter().map(|carrier| carrier.rotor);
         let spare = (0..rotors.len()).filter(|index| !carrying().any(|carrier| carrier == *index));
         let order: Vec<usize, ROTORS_MAX> = collected(spare.chain(carrying()));
-        let mut spares = Vec::new();
+        self.spares.clear();
         for (place, rotor) in order.iter().enumerate().take(rotors.len().saturating_sub(ROTORS_MIN)) {
             if let Some(column) = rotors.effectiveness().get(*rotor) {
                 let rest = generators(rotors, order.iter().skip(place + 1));
                 let after = Slabs::new(rotors, &rest, None, *column);
                 // At most four spares beyond four carriers.
-                let _ = spares.push(Spare { rotor: *rotor, after });
+                let _ = self.spares.push(Spare { rotor: *rotor, after });
             }
         }
         let all = generators(rotors, order.iter());
-        Self {
-            minimum_norm: MinimumNorm::new(rotors),
-            roll_pitch: Polygon::new(rotors),
-            thrust: Slabs::new(rotors, &all, Some(Vector4::w()), -Vector4::x()),
-            yaw: Slabs::new(rotors, &all, None, -Vector4::w()),
-            spares,
-            carriers,
-        }
+        self.minimum_norm = MinimumNorm::new(rotors);
+        self.roll_pitch = Polygon::new(rotors);
+        self.thrust = Slabs::new(rotors, &all, Some(Vector4::w()), -Vector4::x());
+        self.yaw = Slabs::new(rotors, &all, None, -Vector4::w());
+        self.carriers = carriers;
     }
 
     /// Thrusts for `wrench`, N and N m, body frame.

@@ -62,6 +62,7 @@ impl ExtendedCertificate {
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    #[inline(never)] // as the paper law's
     pub fn new(configuration: &Configuration, law: &ExtendedLaw) -> Result<Self, ParameterError> {
         let parameters = &law.parameters;
         let bounds = bounds::bounds(configuration, parameters)?;

@@ -24,6 +24,7 @@ impl PaperCertificate {
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    #[inline(never)] // its temporaries are not to add up with the extended law's on a board's stack
     pub fn new(configuration: &Configuration, law: &PaperLaw) -> Result<Self, ParameterError> {
         let printed = form::form(configuration, law, Derivation::Printed);
         let sharp = form::form(configuration, law, Derivation::Sharp);

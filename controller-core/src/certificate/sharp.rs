@@ -297,18 +297,22 @@ impl HeadingCell {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
         let fastest = rate_bound.min(math::sqrt_f64(second_bound));
-        core::array::from_fn(|place| {
-            let cell = HEADING_CELLS - 1 - place;
-            let [near, far] = [cell, cell + 1].map(|end| fastest * end as f64 / HEADING_CELLS as f64);
-            let room = second_bound * second_bound - near * near * near * near;
-            Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
-        })
+        core::array::from_fn(|place| Self::new(HEADING_CELLS - 1 - place, fastest, second_bound))
+    }
+
+    /// The cell of this number from the slowest, of headings no faster than `fastest`.
+    #[inline(never)] // unrolled, it would take more of a board's stack than anything around it
+    fn new(cell: usize, fastest: f64, second_bound: f64) -> Self {
+        let [near, far] = [cell, cell + 1].map(|end| fastest * end as f64 / HEADING_CELLS as f64);
+        let room = second_bound * second_bound - near * near * near * near;
+        Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
     }
 }
 
 /// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for everything in
 /// `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
+#[inline(never)] // a board's stack is not to hold it beside the other bounds
 pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();

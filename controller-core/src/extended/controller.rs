@@ -22,8 +22,9 @@ use crate::allocation::Rotors;
 use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::certified::Certified;
 use crate::certificate::configuration::{ExtendedLaw, LawParameters};
-use crate::controller::Diagnostics;
+use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
+use crate::math;
 use crate::path_lifting::{self, Lift};
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
@@ -208,11 +209,23 @@ impl Controller {
         Estimates { torque: self.torque_bias.estimate(&estimates.torque), ..estimates }
     }
 
+    /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    #[inline(never)]
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
+        let (wrench, Diagnostics { mrp, .. }) = self.step(state, reference)?;
+        Ok(Command { wrench, mrp })
+    }
+
     /// One tick of the law.
     ///
     /// # Errors
     /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or (the
     /// reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
+    // Always inlined: diagnostics that a caller does not read then cost it nothing.
+    #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
         let Memory { filter, lift, heading, .. } = self.memory;
@@ -221,7 +234,7 @@ impl Controller {
 
         let feedback = self.position.feedback(state, reference, &filter);
         let force_acceleration = self.force.acceleration(&estimates.force);
-        let command = self.command(reference, &filter, &estimates.force);
+        let command = self.acceleration_command(reference, &filter, &estimates.force);
         let jerk =
             self.with_drag(&reference.jerk, &reference.acceleration) + feedback.filtered_rate - estimates.force.rate;
         let snap =
@@ -238,26 +251,27 @@ impl Controller {
             self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
         let torque = torque - self.torque_bias.estimate(&estimates.torque);
         let along = self.vehicle.mass * command.dot(&axis);
-        let thrust = along.max(self.floor.least(&torque, estimates.scale));
+        let thrust = math::greater(along, self.floor.least(&torque, estimates.scale));
 
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         let wrench = Wrench { thrust, torque };
         if !wrench.is_finite() {
             return Err(InputError::OutOfRange { field: "reference" });
         }
-        let mut actuators = self.memory.actuators;
-        actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) / estimates.scale);
-        let acted = self.actuators.advance(&mut actuators);
-        self.memory = Memory {
-            filter: self.position.advance(&filter, &feedback.feedback),
-            lift: Some(lifted.lift),
-            heading: Some(heading::advanced(&heading, &turning, self.period)),
-            estimates: Estimates { force: self.force.advanced(&estimates.force, &force_acceleration), ..estimates },
-            held: self.memory.held.saturating_sub(1),
-            last: Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity }),
-            actuators,
-            acted,
-        };
+        // Field by field, in place: the whole would be copied twice.
+        let memory = &mut self.memory;
+        memory.filter = self.position.advance(&filter, &feedback.feedback);
+        memory.lift = Some(lifted.lift);
+        memory.heading = Some(heading::advanced(&heading, &turning, self.period));
+        memory.estimates.force = self.force.advanced(&estimates.force, &force_acceleration);
+        memory.estimates.torque = estimates.torque;
+        memory.estimates.scale = estimates.scale;
+        memory.held = memory.held.saturating_sub(1);
+        memory.last =
+            Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity });
+        let per_scale = 1.0 / estimates.scale;
+        memory.actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) * per_scale);
+        memory.acted = self.actuators.advance(&mut memory.actuators);
 
         let diagnostics = Diagnostics {
             position_error: feedback.position_error,
@@ -308,7 +322,7 @@ impl Controller {
     }
 
     /// u = u_f + g e3 + p_d'' + kappa p_d' - d.
-    fn command(&self, reference: &Reference, filter: &FilterState, force: &ForceEstimate) -> Vector3<f32> {
+    fn acceleration_command(&self, reference: &Reference, filter: &FilterState, force: &ForceEstimate) -> Vector3<f32> {
         let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered - force.value;
         command.z += self.vehicle.gravity;
         command
@@ -328,6 +342,7 @@ impl Controller {
     }
 
     #[cold]
+    #[inline(never)]
     fn examine(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
         state.check()?;
         reference.check()?;

@@ -15,7 +15,7 @@
 
 use super::parameters::EstimateParameters;
 use crate::error::{ParameterError, Reason, require};
-use crate::math;
+use crate::math::{self, within};
 use nalgebra::Vector3;
 
 /// zeta, d and d', world frame; m/s^2 and m/s^3.
@@ -142,9 +142,4 @@ impl ForceGenerator {
         let value = estimate.value + (estimate.rate + rate) * (0.5 * self.period);
         ForceEstimate { average: estimate.average, value, rate }
     }
-}
-
-/// `x` cut to ± `level`.
-fn within(x: f32, level: f32) -> f32 {
-    x.min(level).max(-level)
 }

@@ -32,7 +32,7 @@ impl HeadingLag {
     /// No lag, turning at `rate`, rad/s, as far as the generator may.
     #[must_use]
     pub fn none(rate: f32, parameters: &HeadingParameters) -> Self {
-        Self { half_angle: Vector2::new(1.0, 0.0), rate: rate.min(parameters.rate).max(-parameters.rate) }
+        Self { half_angle: Vector2::new(1.0, 0.0), rate: math::within(rate, parameters.rate) }
     }
 
     /// R_z(-chi) times the paper's error: R~ as a quaternion of any length along R_d^T R.
@@ -62,9 +62,9 @@ pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &HeadingPar
     let AngularMotion { velocity: w, acceleration: a } = motion;
     let (c, s) = (lag.half_angle.x, lag.half_angle.y);
     let lag_rate = lag.rate - w.z;
-    let wanted = (a.z - c_2 * lag_rate - 2.0 * c_1 * s).min(most).max(-most);
+    let wanted = math::within(a.z - c_2 * lag_rate - 2.0 * c_1 * s, most);
     // The rate at the end of the period is what W_max bounds.
-    let reached = (lag.rate + wanted * period).min(fastest).max(-fastest);
+    let reached = math::within(lag.rate + wanted * period, fastest);
     let turn = (reached - lag.rate) / period;
 
     let (cos, sin) = (c * c - s * s, 2.0 * c * s);

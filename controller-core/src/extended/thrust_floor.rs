@@ -11,6 +11,7 @@
 
 use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::math;
 use heapless::Vec;
 use nalgebra::Vector3;
 
@@ -45,6 +46,6 @@ impl ThrustFloor {
     #[must_use]
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let floor = self.rotors.iter().map(|floor| scale * floor.least + floor.per_torque.dot(torque));
-        floor.fold(0.0, f32::max) + self.margin
+        floor.fold(0.0, math::greater) + self.margin
     }
 }

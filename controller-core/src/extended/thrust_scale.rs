@@ -9,6 +9,7 @@
 //! Only the vertical equation: along the thrust axis wind across would leak in. A steady wind along the vertical reads as scale.
 
 use super::parameters::EstimateParameters;
+use crate::math;
 
 /// c_0, m/s^2: below it a thrust says little about the scale.
 const LEAST_THRUST: f32 = 2.0;
@@ -40,7 +41,7 @@ impl ThrustScale {
         let upwards = thrust_axis_z * thrust;
         let weight = upwards / (thrust * thrust + LEAST_THRUST * LEAST_THRUST);
         let most = RATE_MAX * self.period;
-        let step = (self.rate * self.period * (lift - scale * upwards) * weight).min(most).max(-most);
-        (scale + step).min(self.greatest).max(self.least)
+        let step = math::within(self.rate * self.period * (lift - scale * upwards) * weight, most);
+        math::between(scale + step, self.least, self.greatest)
     }
 }

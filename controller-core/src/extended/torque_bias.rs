@@ -57,6 +57,6 @@ impl TorqueBias {
     /// The average as far as it is believed, N m.
     #[must_use]
     pub fn estimate(&self, average: &Vector3<f32>) -> Vector3<f32> {
-        average.inf(&self.level).sup(&-self.level)
+        average.zip_map(&self.level, math::within)
     }
 }

@@ -3,7 +3,7 @@
 //! In a tick, in this order: the newest usable measurements are taken; a request is answered; the rules' conditions are worked
 //! out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output is worked out.
 
-use super::chain::{Chain, Flown};
+use super::chain::{Chain, Flown, Memory};
 use super::measurement::{Newest, is_fresh};
 use super::permission::{self, MotorTest};
 use super::propagation::PropagatedAttitude;
@@ -15,10 +15,10 @@ use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
-use crate::governor::{GovernorLimits, Memory, Setpoint};
+use crate::governor::{GovernorLimits, Setpoint};
 use crate::state::State;
 
-/// Everything that decides what the motors do. Memory: about 1.5 KB, and the governor's [`Memory`].
+/// Everything that decides what the motors do. Size: about 1.5 KB, and its [`Memory`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m> {
     chain: Result<Chain<'m>, Grounded>,
@@ -34,7 +34,7 @@ pub struct Pilot<'m> {
 
 impl<'m> Pilot<'m> {
     /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. Its
-    /// governor remembers in `memory`.
+    /// governor and mixer lie in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
     /// arms, and says why.

@@ -11,9 +11,9 @@ use controller_core::allocation::{Mixer, QuadX, Rotors};
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::flight::{
-    ImuSample, Inputs, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
+    ImuSample, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
 };
-use controller_core::governor::{GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
 use std::sync::LazyLock;

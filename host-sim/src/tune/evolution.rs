@@ -5,8 +5,8 @@
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
 //! one nearer to acceptance wins, of two that are the one of less cost.
 
-use super::Effort;
 use super::candidate::{Judge, Verdict};
+use super::effort::Effort;
 use super::frontier::Frontier;
 use super::space::Point;
 use crate::interrupt::Interrupt;

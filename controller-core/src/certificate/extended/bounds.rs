@@ -41,6 +41,7 @@ struct Row {
 ///
 /// # Errors
 /// If a number is not finite; the constructors before it leave no way to that.
+#[inline(never)] // as the turning rates
 pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<ExtendedBounds, ParameterError> {
     let (vehicle, references, rotors) = (configuration.vehicle(), configuration.bounds(), configuration.rotors());
     let reach = Reach::new(parameters, references, f64::from(vehicle.gravity));

@@ -109,6 +109,7 @@ impl Torques {
 
     /// Greatest feedback along `b`: potential, damping and bias estimate.
     #[must_use]
+    #[inline(never)] // called from many places, before flight
     pub fn feedback(&self, b: &Vector3<f64>, tilt: &TiltCell) -> f64 {
         let [.., m_omega_t, m_omega_z, _] = self.attitude;
         let (across, about) = (math::hypot(b.x, b.y), b.z.abs());
@@ -124,6 +125,7 @@ impl Torques {
 
     /// Greatest J R~^T omega_d' along `b` for |omega'_12| of at most `swing`, rad/s^2.
     #[must_use]
+    #[inline(never)] // called from many places, before flight
     pub fn swung(&self, b: &Vector3<f64>, tilt: &TiltCell, swing: f64) -> f64 {
         let [turn, _] = self.turn;
         let weighted = self.inertia.component_mul(b);
@@ -155,6 +157,7 @@ impl Torques {
     ///
     /// # Errors
     /// If a number is not finite; the constructors before it leave no way to that.
+    #[inline(never)] // called from many places, before flight
     pub fn gyroscopic(&self, b: &Vector3<f64>, rate: f64) -> Result<f64, ParameterError> {
         let [_, turn] = self.turn;
         let shape = Shape::Gyroscopic { inertia: self.inertia, rate: math::hypot(rate, turn) };
@@ -166,6 +169,7 @@ impl Torques {
     /// With a = (J_1 b_1, J_2 b_2) and c = ((J_1 + J_3 - J_2) b_1, (J_2 + J_3 - J_1) b_2) it is at most |a| |w| / n +
     /// (p / n) sqrt((2r / n)^2 |a|^2 + W^2 |c|^2 + (4 r / n) |W| |a x c|) + |b_3| (J_3 A + |J_2 - J_1| p^2 / 2 n^2).
     #[must_use]
+    #[inline(never)] // called from many places, before flight
     pub fn feedforward(&self, b: &Vector3<f64>, cell: &Cell) -> f64 {
         let [acceleration, rate] = self.turn;
         let j = &self.inertia;
