@@ -166,3 +166,13 @@ fn the_study_does_what_is_required() {
         &Required { height: 12.0, recovered: 20.0, gust: 1.5, step: 4.0, far: 15.0, windy: 0.2, noise: 1e-2 },
     );
 }
+
+#[test]
+fn the_papers_vehicle_loses_less_than_three_metres() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let scenario = Scenario::load(&folder.join("paper-extended.toml")).unwrap();
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    let course = Subject { scenario: scenario.clone(), certified }.fly(&recovery(&scenario, 40.0).unwrap());
+    println!("paper's vehicle: {:.2} m lost, back after {:.2} s", course.height_lost, course.settled.unwrap());
+    assert!(course.height_lost <= 3.0 && course.settled.unwrap() < 12.0, "{course:?}");
+}

@@ -10,6 +10,8 @@
 //!
 //! Table I flies here and nowhere else in this crate: it does not survive a late sample.
 
+pub mod recovery;
+
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Controller;
@@ -108,10 +110,15 @@ impl Replay {
     /// The number, as 64 hexadecimal digits.
     #[must_use]
     pub fn digest(self) -> heapless::String<64> {
-        const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
-        let nibbles = self.hash.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
-        nibbles.map(|nibble| DIGITS[usize::from(nibble)]).collect()
+        digest(self.hash)
     }
+}
+
+/// A hash as 64 hexadecimal digits.
+fn digest(hash: Sha256) -> heapless::String<64> {
+    const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
+    let nibbles = hash.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+    nibbles.map(|nibble| DIGITS[usize::from(nibble)]).collect()
 }
 
 /// A state as it is recorded.

@@ -74,7 +74,7 @@ pub enum Command {
         /// Scenario file [default: the paper's, built in]
         file: Option<PathBuf>,
     },
-    /// Search gains: everything certifies; then the least height lost from upside down; then the greatest k_p.
+    /// Search gains: everything certifies; then the least cost of what a pilot feels: height lost, gusts, steps, noise.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
     /// Serve the control law alone, lock-step on standard input and output.
@@ -156,8 +156,9 @@ pub struct TuneArguments {
 
 const TUNE_HELP: &str = "\
 The height lost is the start less the lowest point of a flight from the paper's first attitude (roll -179 degrees, yaw
-100 degrees off the heading), at rest, on a hover reference where it starts. Printed at the end: the frontier of height lost against k_p with the inequality that limits each, and
-the answer: the greatest k_p within 5 % of the least height.
+100 degrees off the heading), at rest, on a hover reference where it starts. Gusts, steps and noise are flown as well, on the vehicle as
+the file says and as it may really be. Printed at the end: the frontier of height lost against the excursion in a gust, with the
+inequality that limits each, and the answer: the least cost.
 
 Interrupted, a search writes the best it has found so far and says so; the exit status is then 130 or 143. If it has found
 nothing yet, it writes nothing.";

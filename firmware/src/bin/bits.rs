@@ -1,5 +1,6 @@
-//! The paper's flight replayed on an emulated board, from the states in the file `states.f32` of the emulator's working
-//! directory; prints the number that [`firmware::replay`] makes of it. Run by `.ci/emulated bits`.
+//! The paper's flight and a recovery replayed on an emulated board, from the states in the files `states.f32` and
+//! `recovery.f32` of the emulator's working directory; prints the numbers that [`firmware::replay`] makes of them, a line
+//! each. Run by `.ci/emulated bits`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -7,6 +8,7 @@
 mod target {
     use cortex_m_semihosting::hprintln;
     use firmware::boards::mps2::exit;
+    use firmware::replay::recovery::{self, Recovery};
     use firmware::replay::{RECORD, Replay, TICKS};
     use semihosting::fs::File;
     use semihosting::io::Read;
@@ -14,13 +16,16 @@ mod target {
     #[cortex_m_rt::entry]
     fn main() -> ! {
         match replay() {
-            Ok(digest) => hprintln!("{}", digest),
+            Ok([paper, recovery]) => {
+                hprintln!("{}", paper);
+                hprintln!("{}", recovery);
+            }
             Err(problem) => exit::fail(problem),
         }
         exit::end(true)
     }
 
-    fn replay() -> Result<heapless::String<64>, &'static str> {
+    fn replay() -> Result<[heapless::String<64>; 2], &'static str> {
         let mut file = File::open(c"states.f32").map_err(|_| "states.f32: cannot be opened")?;
         let mut replay = Replay::new().ok_or("Table I is not certified on this machine")?;
         let mut record = [0; RECORD];
@@ -28,7 +33,13 @@ mod target {
             file.read_exact(&mut record).map_err(|_| "states.f32: too short")?;
             replay.tick(&record).map_err(|_| "the law refuses a recorded state")?;
         }
-        Ok(replay.digest())
+        let mut file = File::open(c"recovery.f32").map_err(|_| "recovery.f32: cannot be opened")?;
+        let mut recovery = Recovery::new().ok_or("the embedded scenario is not certified on this machine")?;
+        for _ in 0..recovery::TICKS {
+            file.read_exact(&mut record).map_err(|_| "recovery.f32: too short")?;
+            recovery.tick(&record).map_err(|_| "the law refuses a recorded state of the recovery")?;
+        }
+        Ok([replay.digest(), recovery.digest()])
     }
 }
 
