@@ -1,5 +1,6 @@
 """Delay, noise and velocity filter against what can be worked out by hand."""
 
+import dataclasses
 import unittest
 
 import numpy as np
@@ -104,6 +105,25 @@ class Velocity(unittest.TestCase):
         found = np.array([tracker.update(random.normal(0.0, 0.002, 3)) for _ in range(40000)])[1000:].std()
         self.assertLess(abs(found / wanted - 1.0), 0.05)
         self.assertLess(abs(wanted - 0.009), 0.001)
+
+    def test_an_observer_knows_an_acceleration_at_once_and_tilted(self):
+        # A constant 3 m/s^2 along world x, the vehicle pitched: its accelerometer feels it beside gravity.
+        noise = Noise(0.0, 0.0, 0.0, 20.0, 0.0, accelerometer=0.0)
+        observer, plain = Sensors(noise, PERIOD), Sensors(dataclasses.replace(noise, accelerometer=None), PERIOD)
+        quaternion = Rotation.from_euler("yz", [20, 50], degrees=True).as_quat()
+        for tick in range(100):
+            time = tick * PERIOD
+            true = {"x": np.array([1.5 * time**2, 0.0, 0.0]), "v": np.array([3.0 * time, 0.0, 0.0]), "q": quaternion,
+                    "w": np.zeros(3)}
+            seen, lagging = observer.measure(true), plain.measure(true)
+            np.testing.assert_allclose(seen["v"], true["v"], rtol=0, atol=1e-9)
+        self.assertGreater(abs(lagging["v"] - true["v"]).max(), 0.2)
+
+    def test_an_accelerometer_s_noise_has_the_stated_deviation(self):
+        sensors = Sensors(Noise(0.0, 0.0, 0.0, 20.0, 0.0, accelerometer=0.05), PERIOD)
+        found = np.array([sensors.acceleration(state(0.0), LEVEL) for _ in range(20001)])[1:]
+        np.testing.assert_allclose(found.std(axis=0), 0.05, rtol=5 / np.sqrt(2 * 20000))
+        np.testing.assert_allclose(found.mean(axis=0), 0.0, atol=5 * 0.05 / np.sqrt(20000))
 
     def test_a_fast_filter_takes_differences(self):
         tracker = AlphaBeta(1e9, PERIOD)

@@ -14,7 +14,7 @@ from sensors import Noise
 from vehicle import Conditions, Start
 
 # Durations, s, and how long the last part is that the circle's and the noisy hover's figures are of.
-RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 20.0, 30.0, 20.0, 40.0, 30.0
+RECOVERY, HOLDING, STEP, CIRCLE, NOISY = 15.0, 30.0, 15.0, 40.0, 30.0
 CIRCLE_FIGURE, NOISY_FIGURE = 20.0, 20.0
 CIRCLE_FREQUENCY = 0.25  # Hz
 
@@ -89,8 +89,9 @@ def circle(name, told=(), **conditions):
     return Row(f"circle 1 m, 0.25 Hz, {name}", "RMS [m]", flight, circled)
 
 
-def noisy_hover(name, bandwidth):
-    noise = Noise(gyro=0.01, position=0.002, attitude=np.radians(0.2), bandwidth=bandwidth, delay=0.02)
+def noisy_hover(name, bandwidth, accelerometer=None):
+    noise = Noise(gyro=0.01, position=0.002, attitude=np.radians(0.2), bandwidth=bandwidth, delay=0.02,
+                  accelerometer=accelerometer)
     flight = Flight(hover(), NOISY, noise=noise)
     figure = "RMS [m], mean rotor command change [N/tick]"
     return [Row(f"hover with noise, 20 ms late, {name}{gains}", figure, flight, noisy, eased)
@@ -118,6 +119,7 @@ def rows():
         circle("drag and lag"),
         circle("drag and lag, 5 m/s wind", wind=(5.0, 0.0, 0.0)),
         *noisy_hover("exact velocity", None),
+        *noisy_hover("velocity from an observer", 8.0, accelerometer=0.05),
         *noisy_hover("velocity from positions, 20 rad/s", 20.0),
         *noisy_hover("velocity from positions, 40 rad/s", 40.0),
     ]

@@ -4,9 +4,13 @@ White noise from a fixed seed, the same for every controller:
 
 - gyro, position: normal, each axis on its own;
 - attitude: turned about a body-fixed vector whose components are normal;
-- velocity: exact, or, as where poses are all there is, from the noisy positions x by an alpha-beta filter with a double
-  pole p = exp(-bandwidth T): x^ += T v^, then with r = x - x^: x^ += alpha r, v^ += beta r / T,
-  alpha = 1 - p^2, beta = (1 - p)^2.
+- accelerometer: f = R' ((v - v of the last tick) / T + g e3), its mean over the tick, plus normal noise on each axis;
+- velocity: exact, or from the noisy positions x by an alpha-beta filter with a double pole p = exp(-bandwidth T):
+
+      x^ += T v^ + T^2/2 a,  v^ += T a,  then with r = x - x^:  x^ += alpha r,  v^ += beta r / T,
+      alpha = 1 - p^2,  beta = (1 - p)^2
+
+  with a = 0, as where poses are all there is, or, with an accelerometer (an observer), a = R_m f - g e3, R_m the noisy attitude.
 
 Everything then arrives a whole number of ticks late; before that, what was measured first.
 """
@@ -15,6 +19,9 @@ import collections
 import dataclasses
 
 import numpy as np
+from scipy.spatial.transform import Rotation
+
+from vehicle import GRAVITY
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,6 +31,7 @@ class Noise:
     attitude: float  # rad
     bandwidth: float | None  # rad/s, of the velocity filter; None: exact velocity
     delay: float  # s
+    accelerometer: float | None = None  # m/s^2; None: the filter has none
     seed: int = 1
 
 
@@ -36,14 +44,14 @@ class AlphaBeta:
         self.position = None
         self.velocity = np.zeros(3)
 
-    def update(self, measured):
+    def update(self, measured, acceleration=np.zeros(3)):
         if self.position is None:
             self.position = measured.copy()
             return self.velocity
-        predicted = self.position + self.period * self.velocity
+        predicted = self.position + self.period * self.velocity + self.period**2 / 2 * acceleration
         innovation = measured - predicted
         self.position = predicted + self.alpha * innovation
-        self.velocity = self.velocity + self.beta / self.period * innovation
+        self.velocity = self.velocity + self.period * acceleration + self.beta / self.period * innovation
         return self.velocity
 
 
@@ -80,6 +88,7 @@ class Sensors:
             self.delay = Delay(ticks)
             self.filter = noise.bandwidth and AlphaBeta(noise.bandwidth, period)
             self.random = np.random.default_rng(noise.seed)
+            self.period, self.true_velocity = period, None
 
     def measure(self, state):
         if self.noise is None:
@@ -87,5 +96,17 @@ class Sensors:
         gyro, position, attitude = (self.random.normal(0.0, sd, 3)
                                     for sd in (self.noise.gyro, self.noise.position, self.noise.attitude))
         measured = {"x": state["x"] + position, "q": turned(state["q"], attitude), "w": state["w"] + gyro}
-        measured["v"] = self.filter.update(measured["x"]) if self.filter else state["v"]
+        measured["v"] = state["v"]
+        if self.filter:
+            measured["v"] = self.filter.update(measured["x"], self.acceleration(state, measured["q"]))
         return self.delay.pass_through(measured)
+
+    def acceleration(self, state, attitude):
+        """What the filter takes for the vehicle's acceleration since the last tick, m/s^2, world."""
+        before, self.true_velocity = self.true_velocity, state["v"].copy()
+        if self.noise.accelerometer is None or before is None:
+            return np.zeros(3)
+        gravity = np.array([0.0, 0.0, GRAVITY])
+        felt = Rotation.from_quat(state["q"]).inv().apply((state["v"] - before) / self.period + gravity)
+        sample = felt + self.random.normal(0.0, self.noise.accelerometer, 3)
+        return Rotation.from_quat(attitude).apply(sample) - gravity
