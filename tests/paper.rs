@@ -73,7 +73,17 @@ fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
         let thrust = Certificate::new(&scenario.configuration).unwrap().thrust();
         assert!(thrust.least > 0.0 && thrust.greatest < f64::from(scenario.configuration.limits().thrust_max));
     }
-    for name in ["paper", "hover", "circle", "waypoints", "hummingbird", "study", "hummingbird-paper", "study-paper"] {
+    for name in [
+        "paper",
+        "hover",
+        "circle",
+        "waypoints",
+        "hummingbird",
+        "study",
+        "hummingbird-paper",
+        "study-paper",
+        "paper-extended",
+    ] {
         assert!(all.iter().any(|scenario| scenario.name == name), "{name} is missing");
     }
 }

@@ -160,7 +160,7 @@ fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     is_grounded(Pilot::new(Ok(&rotorless), &limits, memory()), Grounded::NoRotors);
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
-    let field = "reference_bounds.horizontal_acceleration";
+    let field = "reference_bounds.horizontal_speed";
     is_grounded(Pilot::new(Ok(&hover), &limits, memory()), Grounded::Parameter(field));
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
     is_grounded(Pilot::new(Ok(&certified()), &slow, memory()), Grounded::Parameter("governor.horizontal_speed"));

@@ -2,7 +2,7 @@
 //!
 //! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with the
 //! rotors' time constant. So between two ticks the command c_(k-n-1) acts for a time f h, then c_(k-n), and with x the wrench
-//! and e(t) = e^(-t / lag), its end and its mean over the interval are linear in x, c_(k-n-1) and c_(k-n): [`Response`].
+//! and e(t) = e^(-t / lag), its end and its mean over the interval are linear in x, c_(k-n-1) and c_(k-n): `Response`.
 //!
 //! The estimates compare accelerations averaged over an interval with this mean. The rotors' speeds lag, not their thrusts;
 //! the difference is of second order in the command's step.

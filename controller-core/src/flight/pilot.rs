@@ -18,7 +18,7 @@ use crate::error::InputError;
 use crate::governor::{GovernorLimits, Setpoint};
 use crate::state::State;
 
-/// Everything that decides what the motors do. Size: about 1.5 KB, and its [`Memory`].
+/// Everything that decides what the motors do. Size: about 2.5 KB, and its [`Memory`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m> {
     chain: Result<Chain<'m>, Grounded>,

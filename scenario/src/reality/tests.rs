@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use sensors::VelocitySource;
 use wind::Shape;
 
-const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
 const REALITY: &str = "
 [truth]

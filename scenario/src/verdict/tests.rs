@@ -6,7 +6,7 @@ use crate::sampled_loop::Axis;
 use crate::stability::Shortfall;
 use std::path::{Path, PathBuf};
 
-const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
 fn refusal(text: &str) -> Option<Refusal> {
     Verdict::of(&Scenario::parse(text, "f").unwrap()).unwrap().refusal()
