@@ -168,7 +168,7 @@ impl Flight {
         let asked = wrench.scaled(1.0 / self.law.thrust_scale());
         let (clipped, rotor_thrusts) =
             self.vehicle.hold(&asked, self.steps_per_tick).map_err(|error| fail(Cause::Actuation(error)))?;
-        if clipped {
+        if clipped || surroundings.standing {
             self.law.hold_estimates();
         }
         self.tick += 1;
