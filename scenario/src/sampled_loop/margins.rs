@@ -35,7 +35,7 @@ pub(super) struct SampleMargins {
 }
 
 /// The margins of `chain`, which is stable with its commands `delay` samples late.
-pub(super) fn margins(chain: &SampledLoop, delay: f64) -> SampleMargins {
+pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64) -> SampleMargins {
     let sweep = Sweep::of(chain, LOWEST, delay);
     let (gain_down, gain_up) = sweep.critical_gains();
     let unit_gain = sweep.crossings(gain);
@@ -52,7 +52,7 @@ fn gain(response: Complex<f64>) -> f64 {
 
 /// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
 /// `unit_gain` and nowhere below.
-fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
+fn delay_margin(chain: &SampledLoop<'_>, delay: f64, unit_gain: f64) -> f64 {
     /// Brackets are found in a few steps.
     const STEPS: usize = 40;
     /// Of a sample.
@@ -90,13 +90,13 @@ fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
 
 /// The response along a grid of frequencies, rising.
 struct Sweep<'a> {
-    chain: &'a SampledLoop,
+    chain: &'a SampledLoop<'a>,
     points: Vec<(f64, Complex<f64>)>,
 }
 
 impl<'a> Sweep<'a> {
     /// From `lowest` up, fine enough to follow a response that `delay` samples turn.
-    fn of(chain: &'a SampledLoop, lowest: f64, delay: f64) -> Self {
+    fn of(chain: &'a SampledLoop<'a>, lowest: f64, delay: f64) -> Self {
         let step = PI / (8.0 * (delay + 1.0));
         let mut points = Vec::with_capacity(160);
         let mut angle = lowest;
