@@ -6,7 +6,7 @@
 //! The state of the closed loop is (y_1 .. y_M, a = y_0, the law's states, w_(k-1), w_(k-2), ..): its matrix gives the spectral
 //! radius. The same recurrence on the unit circle, without the delay line, gives the loop's frequency response.
 
-use super::compensator::Compensator;
+use super::compensator::{Compensator, Response};
 use super::lag::{Arrival, INTEGRATORS, INVERSE_FACTORIAL};
 use super::spectral_radius::spectral_radius;
 use nalgebra::{Complex, DMatrix};
@@ -79,9 +79,20 @@ impl<'a> SampledLoop<'a> {
         matrix
     }
 
-    /// The loop's frequency response L at `angle` = omega h in (0, pi], broken at the actuator's command, with the sign
-    /// that makes -1 the critical point.
+    /// The law's part of the frequency response at `angle` = omega h in (0, pi], which no delay changes.
+    pub fn law_response(&self, angle: f64) -> Response {
+        let (sin, cos) = angle.sin_cos();
+        self.law.response(Complex::new(cos, sin))
+    }
+
+    /// The loop's frequency response L at `angle`, broken at the actuator's command, with the sign that makes -1 the critical
+    /// point.
     pub fn response(&self, angle: f64) -> Complex<f64> {
+        self.response_with(angle, &self.law_response(angle))
+    }
+
+    /// The same where the law's part of it is known.
+    pub fn response_with(&self, angle: f64, law: &Response) -> Complex<f64> {
         let Arrival { whole_delay, free, newer, older } = &self.arrival;
         let (sin, cos) = angle.sin_cos();
         let z = Complex::new(cos, sin);
@@ -91,15 +102,17 @@ impl<'a> SampledLoop<'a> {
         let input = |m: usize| z.conj() * older[m] + newer[m];
 
         let actual = input(0) / (z - free[0]);
-        let mut y = [Complex::new(0.0, 0.0); INTEGRATORS];
+        let mut y = [Complex::new(0.0, 0.0); INTEGRATORS + 1];
+        let mut command = Complex::new(0.0, 0.0);
         for m in 1..=self.integrators {
             let mut sum = input(m) + actual * free[m];
             for j in 1..m {
-                sum += y[m - j - 1] * INVERSE_FACTORIAL[j];
+                sum += y[m - j] * INVERSE_FACTORIAL[j];
             }
-            y[m - 1] = sum / increment;
+            y[m] = sum / increment;
+            command += y[m] * law[m - 1];
         }
         let (sin, cos) = (angle * *whole_delay as f64).sin_cos();
-        -self.law.response(z, &y) * Complex::new(cos, -sin)
+        -command * Complex::new(cos, -sin)
     }
 }

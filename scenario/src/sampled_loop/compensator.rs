@@ -7,12 +7,15 @@
 //! y are the integrals of the actuator's command that an axis has (see [`super::lag`]), w the command, x whatever the law
 //! remembers. What it remembers of its own commands is closed inside: w = C x + D y is inserted before A and B are formed.
 //!
-//! A is kept in upper Hessenberg form, to which an orthogonal change of x takes it. (z - A) x = B y is then solved for a
-//! frequency by one elimination per column.
+//! A is kept in upper Hessenberg form, to which an orthogonal change of x takes it: z - A is then solved by one elimination per
+//! column, for every frequency that is looked at.
 
 use super::lag::INTEGRATORS;
 use nalgebra::linalg::Hessenberg;
 use nalgebra::{Complex, DMatrix, RowDVector, RowSVector};
+
+/// w per y_m at some z; entry m - 1.
+pub(super) type Response = [Complex<f64>; INTEGRATORS];
 
 /// Of the law for one axis.
 #[derive(Debug, Clone)]
@@ -63,43 +66,39 @@ impl Compensator {
         Self { transition, input: turn.tr_mul(&self.input), output: self.output * &turn, direct: self.direct }
     }
 
-    /// w for the `measured` y at z.
-    pub fn response(&self, z: Complex<f64>, measured: &[Complex<f64>; INTEGRATORS]) -> Complex<f64> {
-        let zero = Complex::new(0.0, 0.0);
-        let through = |row: &dyn Fn(usize) -> f64| (0..INTEGRATORS).fold(zero, |sum, m| sum + measured[m] * row(m));
+    /// w per y_m at z: C (z - A)^-1 B + D.
+    pub fn response(&self, z: Complex<f64>) -> Response {
         let size = self.size();
-        // Rows of (z - A | B y), eliminated from above; below the diagonal only one entry of each column is not zero.
-        let width = size + 1;
-        let mut rows: Vec<Complex<f64>> = Vec::with_capacity(size * width);
+        let complex = |value: f64| Complex::new(value, 0.0);
+        // r (z - A) = C: combining columns from the right makes z - A triangular, r is then found from the left.
+        let mut columns: Vec<Complex<f64>> = self.transition.iter().map(|entry| complex(-entry)).collect();
         for i in 0..size {
-            rows.extend((0..size).map(|j| Complex::new(-self.transition[(i, j)], 0.0)));
-            rows[i * width + i] += z;
-            rows.push(through(&|m| self.input[(i, m)]));
+            columns[i * size + i] += z;
         }
-        for j in 1..size {
-            let (above, below) = rows.split_at_mut(j * width);
-            let (above, below) = (&mut above[(j - 1) * width..], &mut below[..width]);
-            if below[j - 1].norm_sqr() > above[j - 1].norm_sqr() {
-                above.swap_with_slice(below);
+        let mut row: Vec<Complex<f64>> = self.output.iter().copied().map(complex).collect();
+        for j in (1..size).rev() {
+            let (left, right) = columns.split_at_mut(j * size);
+            let (left, right) = (&mut left[(j - 1) * size..], &mut right[..size]);
+            if left[j].norm_sqr() > right[j].norm_sqr() {
+                left.swap_with_slice(right);
+                row.swap(j - 1, j);
             }
-            if below[j - 1] != zero {
-                let factor = below[j - 1] / above[j - 1];
-                for (below, above) in below[j..].iter_mut().zip(&above[j..]) {
-                    *below -= factor * above;
-                }
+            let factor = left[j] / right[j];
+            for (left, right) in left[..j].iter_mut().zip(&right[..j]) {
+                *left -= factor * right;
             }
+            row[j - 1] = row[j - 1] - factor * row[j];
         }
-        let mut command = through(&|m| self.direct[m]);
-        for i in (0..size).rev() {
-            let row = &rows[i * width..(i + 1) * width];
-            let x = row[size] / row[i];
-            command += x * self.output[i];
-            for above in 0..i {
-                let entry = rows[above * width + i];
-                rows[above * width + size] -= entry * x;
-            }
+        for i in 0..size {
+            let column = &columns[i * size..];
+            let known: Complex<f64> = row[..i].iter().zip(column).map(|(r, entry)| r * entry).sum();
+            row[i] = (row[i] - known) / column[i];
         }
-        command
+        core::array::from_fn(|m| {
+            row.iter().zip(&self.input.column(m)).fold(complex(self.direct[m]), |sum, (r, entry)| sum + r * entry)
+        })
     }
 }
 
+#[cfg(test)]
+mod tests;

@@ -250,3 +250,6 @@ fn filters(gains: &PositionGains, memory: &mut Memory, position: f64, velocity: 
     memory.intermediate = keep_intermediate * u_s + (1.0 - keep_intermediate) * ubar;
     Moving { value: u_f, rate, acceleration }
 }
+
+#[cfg(test)]
+mod tests;
