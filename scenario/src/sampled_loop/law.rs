@@ -219,7 +219,8 @@ impl Law {
     /// What the law takes for the mean of what acts until the next tick, `command` being given.
     fn acted(&self, memory: &mut Memory, command: f64) -> f64 {
         let Arrival { whole_delay, free, newer, older } = &self.actuator;
-        let commanded = |age: usize| if age == 0 { command } else { memory.commanded.get(age - 1).copied().unwrap_or(0.0) };
+        let commanded =
+            |age: usize| if age == 0 { command } else { memory.commanded.get(age - 1).copied().unwrap_or(0.0) };
         let (new, old) = (commanded(*whole_delay), commanded(whole_delay + 1));
         let [acting, mean] = [0, 1].map(|m| free[m] * memory.acting + newer[m] * new + older[m] * old);
         memory.acting = acting;

@@ -2,7 +2,6 @@
 //!
 //! The motion is a sum of sines that no loop closes, so that nothing settles and every state of the law takes part.
 
-use super::super::LoopModel;
 use super::super::compensator::Compensator;
 use super::INTEGRATORS;
 use crate::Scenario;
@@ -35,37 +34,41 @@ fn directions(axis: Axis) -> (Vector3<f64>, Vector3<f64>) {
     }
 }
 
-/// Position or angle at tick k and its derivative, of amplitude about one: four sines, slow to fast, with phases of their own.
-fn wave(k: usize, period: f64, phase: f64) -> (f64, f64) {
-    let t = k as f64 * period;
-    [(0.5, 0.4), (2.3, 0.3), (9.0, 0.2), (40.0, 0.02)].iter().fold((0.0, 0.0), |(value, rate), (frequency, amplitude)| {
-        let (sin, cos) = (frequency * t + phase * frequency).sin_cos();
-        (value + amplitude * sin, rate + amplitude * frequency * cos)
-    })
+/// Position or angle at tick k and its derivative, about one in size: four oscillations, slow to fast, out of rest and about
+/// zero, since the estimates integrate. `pace` tells one from another.
+fn wave(k: usize, period: f64, pace: f64) -> (f64, f64) {
+    // The first tick is at rest: a law that has just been reset has none before it to compare with.
+    let Some(since) = k.checked_sub(1) else { return (0.0, 0.0) };
+    let t = since as f64 * period;
+    [(0.5, 0.4), (2.3, 0.3), (9.0, 0.2), (40.0, 0.02)].iter().fold(
+        (0.0, 0.0),
+        |(value, rate), (frequency, amplitude)| {
+            let frequency = pace * frequency;
+            let (sin, cos) = (frequency * t).sin_cos();
+            (value + amplitude * cos, rate - amplitude * frequency * sin)
+        },
+    )
 }
 
-/// What the flown law and the compensator command, in the compensator's units.
-fn commands(scenario: &Scenario, axis: Axis) -> (Vec<f64>, Vec<f64>) {
+/// The motion along an axis at a tick, SI units: position, velocity, angle, rate.
+fn motion(axis: Axis, k: usize, period: f64) -> [f64; 4] {
+    let [(p, v), (angle, rate)] = [wave(k, period, 1.0), wave(k, period, 0.8)];
+    // Along the vertical gravity's rounding is in every difference; across everything is about zero.
+    let reach = if axis == Axis::Vertical { 1e-3 } else { 2e-5 };
+    [reach * p, reach * v, 3e-5 * angle, 3e-5 * rate]
+}
+
+/// What the flown law commands in the motion times `sign`: acceleration or angular acceleration.
+fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
     let vehicle = scenario.configuration.vehicle();
-    let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(f64::from);
     let period = scenario.timing.period();
     let (along, about) = directions(axis);
     let inertia = vehicle.inertia.cast::<f64>().dot(&about.abs());
-    let model: LoopModel = scenario.loops().unwrap();
-    let Compensator { transition, input, output, direct } = model.law(axis).compensator();
-    let mut x = DVector::zeros(transition.nrows());
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
     let mut law = Law::new(&certified, period as f32).unwrap();
     let hover = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
-
-    let (mut flown, mut linear) = (Vec::new(), Vec::new());
-    for k in 0..TICKS {
-        // From rest: a law that has just been reset has no last tick to compare with.
-        let fade = if k == 0 { 0.0 } else { 1.0 };
-        let [(p, v), (angle, rate)] = [wave(k, period, 0.3), wave(k, period, 1.7)];
-        // Along the vertical gravity's rounding is in every difference; across everything is about zero.
-        let reach = fade * if axis == Axis::Vertical { 4e-4 } else { 2e-5 };
-        let [p, v, angle, rate] = [reach * p, reach * v, fade * 3e-5 * angle, fade * 3e-5 * rate];
+    let tick = |k| {
+        let [p, v, angle, rate] = motion(axis, k, period).map(|value| sign * value);
         let (sin, cos) = (0.5 * angle).sin_cos();
         let vector = about * sin;
         let told = State {
@@ -75,38 +78,56 @@ fn commands(scenario: &Scenario, axis: Axis) -> (Vec<f64>, Vec<f64>) {
             angular_velocity: (about * rate).cast(),
         };
         let (Wrench { thrust, torque }, _) = law.step(&told, &hover).unwrap();
-        let scale = f64::from(law.thrust_scale());
-        flown.push(if axis == Axis::Vertical {
-            f64::from(thrust) / scale / mass - gravity
+        let sent = 1.0 / f64::from(law.thrust_scale());
+        if axis == Axis::Vertical {
+            f64::from(thrust) * sent / f64::from(vehicle.mass) - f64::from(vehicle.gravity)
         } else {
-            torque.cast::<f64>().dot(&about) / scale / inertia
-        });
-
-        let (rate, angle) = (rate * period, angle);
-        let y: [f64; INTEGRATORS] = match axis {
-            Axis::Vertical => [v / period, p / period.powi(2), 0.0, 0.0],
-            Axis::Roll | Axis::Pitch | Axis::Yaw => [rate, angle, 0.0, 0.0],
-            Axis::LateralX | Axis::LateralY => [rate, angle, v / (gravity * period), p / (gravity * period.powi(2))],
-        };
-        let y = SVector::<f64, INTEGRATORS>::from(y);
-        let unit = if axis == Axis::Vertical { 1.0 } else { period.powi(-2) };
-        linear.push(unit * (output.dot(&x.transpose()) + (direct * y)[0]));
-        x = &transition * x + &input * y;
-    }
-    (flown, linear)
+            torque.cast::<f64>().dot(&about) * sent / inertia
+        }
+    };
+    (0..TICKS).map(tick).collect()
 }
 
-/// The greatest difference over the greatest command.
+/// What the compensator commands in the motion.
+fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
+    let gravity = f64::from(scenario.configuration.vehicle().gravity);
+    let period = scenario.timing.period();
+    let Compensator { transition, input, output, direct } = scenario.loops().unwrap().law(axis).compensator();
+    let mut x = DVector::zeros(transition.nrows());
+    let tick = |k| {
+        let [p, v, angle, rate] = motion(axis, k, period);
+        let (p, v, rate) = (p / period.powi(2), v / period, rate * period);
+        let (y, unit) = match axis {
+            Axis::Vertical => ([v, p, 0.0, 0.0], 1.0),
+            Axis::Roll | Axis::Pitch | Axis::Yaw => ([rate, angle, 0.0, 0.0], period.powi(-2)),
+            Axis::LateralX | Axis::LateralY => ([rate, angle, v / gravity, p / gravity], period.powi(-2)),
+        };
+        let y = SVector::<f64, INTEGRATORS>::from(y);
+        let command = unit * ((&output * &x)[0] + (direct * y)[0]);
+        x = &transition * &x + &input * y;
+        command
+    };
+    (0..TICKS).map(tick).collect()
+}
+
+/// The greatest difference over the greatest command. Half the difference of both senses leaves out what is of second order.
 fn difference(scenario: &Scenario, axis: Axis) -> f64 {
-    let (flown, linear) = commands(scenario, axis);
-    let peak = linear.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
-    let off = flown.iter().zip(&linear).fold(0.0_f64, |off, (flown, linear)| off.max((flown - linear).abs()));
+    let [ahead, back] = [1.0, -1.0].map(|sign| flown(scenario, axis, sign));
+    let flown = ahead.iter().zip(&back).map(|(ahead, back)| 0.5 * (ahead - back));
+    let (off, peak) = flown.zip(linear(scenario, axis)).fold((0.0_f64, 0.0_f64), |(off, peak), (flown, linear)| {
+        (off.max((flown - linear).abs()), peak.max(linear.abs()))
+    });
     off / peak
 }
 
 #[test]
 fn the_linear_law_commands_what_the_flown_law_commands() {
-    for (name, text) in FILES {
+    // Parts of a sample late as well as whole ones.
+    let study = FILES[1].1;
+    let late = [("study, 3 ms", "0.003"), ("study, 14 ms", "0.014")]
+        .map(|(name, delay)| (name, study.replace("delay = 0.010", &format!("delay = {delay}"))));
+    let texts = FILES.iter().copied().chain(late.iter().map(|(name, text)| (*name, text.as_str())));
+    for (name, text) in texts {
         let whole = Scenario::parse(text, name).unwrap();
         // An attitude loop alone has no position, so no force is estimated either.
         let (head, tail) = text.split_once("force_across").unwrap();
@@ -116,7 +137,7 @@ fn the_linear_law_commands_what_the_flown_law_commands() {
             let scenario = if matches!(axis, Axis::Roll | Axis::Pitch) { &attitude_only } else { &whole };
             let off = difference(scenario, axis);
             println!("{name:15} {:10} {off:.1e}", axis.name());
-            let tolerance = if axis == Axis::Vertical { 2e-3 } else { 1e-5 };
+            let tolerance = if axis == Axis::Vertical { 5e-4 } else { 1e-5 };
             assert!(off < tolerance, "{name} {}: {off:e}", axis.name());
         }
     }
