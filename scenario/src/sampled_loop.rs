@@ -7,11 +7,11 @@
 //! | [`Axis`] | command | what follows it |
 //! |---|---|---|
 //! | `Roll`, `Pitch`, `Yaw` | tau_i from MRP and rate error | body rate, angle |
-//! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, omega_d, omega_d' | rate, tilt, velocity, position |
+//! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, force, omega_d, omega_d' | rate, tilt, velocity, position |
 //! | `Vertical` | thrust from z and filters | velocity, position |
 //!
 //! For each: the spectral radius per sample, and the gain and delay margins at the actuator's command. `docs/sampled-loop.md`
-//! derives the matrices. Mass and gravity drop out.
+//! derives the matrices. The extended law's estimates are part of them, each with its own gains. Mass drops out.
 //!
 //! It cannot speak about large errors: a saturated loop has less gain, so a loop with a lower gain limit
 //! ([`Margins::gain_down`]) or a small one may still hang in a limit cycle far from the origin. Nor about noise, flexible
@@ -170,7 +170,7 @@ impl LoopModel {
         Axis::ALL.map(|axis| self.report(axis))
     }
 
-    /// The spectral radius of one loop alone: a tenth of a report's cost.
+    /// The spectral radius of one loop alone: a fraction of a report's cost.
     #[must_use]
     pub fn spectral_radius(&self, axis: Axis) -> f64 {
         let Timing { period, rotor_lag, delay_samples } = self.timing;

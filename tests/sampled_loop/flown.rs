@@ -2,7 +2,7 @@
 //! later in the simulation of the whole vehicle, rotors and six degrees of freedom, until the hover oscillates. All estimates
 //! are at work. `cargo test -p host-sim margins_are_where -- --nocapture` prints the table of `docs/sampled-loop.md`.
 //!
-//! There is no air: the model has none. An attitude loop's own margins are flown without position and velocity, as on a gimbal.
+//! There is no air in them: the model has none. A second test flies in the files' air. An attitude loop's own margins are flown without position and velocity, as on a gimbal.
 
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
@@ -34,6 +34,11 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, "margins").unwrap()
 }
 
+/// No air, nothing but the model.
+fn still(_: Reality) -> Reality {
+    Reality::default()
+}
+
 /// One loop in flight.
 struct Bench {
     scenario: Scenario,
@@ -42,10 +47,10 @@ struct Bench {
 
 impl Bench {
     /// A hover at the origin, a little off along `axis`; `finer` times the file's plant steps.
-    fn new(text: &str, axis: Axis, finer: u32) -> Self {
+    fn new(text: &str, axis: Axis, finer: u32, reality: impl FnOnce(Reality) -> Reality) -> Self {
         let attitude = matches!(axis, Axis::Roll | Axis::Pitch);
         let mut scenario = parse(&if attitude { without_force(text) } else { text.to_owned() });
-        scenario.reality = Reality::default();
+        scenario.reality = reality(scenario.reality);
         scenario.timing.steps_per_tick *= finer;
         scenario.delay_steps *= u64::from(finer);
         // So small that no level is felt when it has grown threefold.
@@ -129,10 +134,10 @@ fn flown(predicted: f64, grows_beyond: bool, grows: impl Fn(f64) -> bool) -> f64
 
 /// Gain up, gain down and delay (s) of one axis, flown.
 fn flown_margins(text: &str, axis: Axis, predicted: &Margins) -> [f64; 3] {
-    let gains = Bench::new(text, axis, 2);
+    let gains = Bench::new(text, axis, 2, still);
     let up = flown(predicted.gain_up, true, |gain| gains.grows(gain, 0));
     let down = flown(predicted.gain_down, false, |gain| gains.grows(gain, 0));
-    let delays = Bench::new(text, axis, 10);
+    let delays = Bench::new(text, axis, 10, still);
     let step = delays.scenario.timing.step();
     let delay = flown(predicted.delay, true, |delay| delays.grows(1.0, (delay / step).round() as u64));
     [up, down, delay]
@@ -162,7 +167,8 @@ fn margins_are_where_the_flight_begins_to_oscillate() {
         .into_iter()
         .flat_map(|thread| thread.join().unwrap())
         .collect();
-    println!("| vehicle | loop | gain up: nothing estimated; predicted; flown | gain down | delay, ms |");
+    println!("In each cell: were nothing estimated; predicted; flown.");
+    println!("| vehicle | loop | gain up | gain down | delay, ms |");
     for (name, axis, resting, found, [up, down, delay]) in &flights {
         let ms = |delay: f64| 1e3 * delay;
         println!(
@@ -183,6 +189,21 @@ fn margins_are_where_the_flight_begins_to_oscillate() {
                 (flown / predicted - 1.0).abs() < TOLERANCE,
                 "{name} {axis:?}: {flown} flown, {predicted} predicted"
             );
+        }
+    }
+}
+
+#[test]
+fn in_air_every_margin_is_wider() {
+    for (name, text) in &FILES[..2] {
+        for axis in Axis::ALL {
+            let Margins { gain_up, gain_down, delay, .. } = predicted(text, axis);
+            let bench = Bench::new(text, axis, 2, |reality| reality);
+            assert!(bench.scenario.reality.drag.is_some());
+            let later = (delay / bench.scenario.timing.step()).ceil() as u64;
+            for (gain, later) in [(gain_up, 0), (gain_down, 0), (1.0, later)] {
+                assert!(!bench.grows(gain, later), "{name} {axis:?}: {gain}, {later} steps");
+            }
         }
     }
 }
