@@ -58,26 +58,23 @@ impl Sub for Moving {
     }
 }
 
-/// What the law remembers of an axis.
+/// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is remembered as
+/// (1 - share) x + share past, to which the next tick adds share now.
 #[derive(Debug, Clone, Default)]
 struct Memory {
     /// u_f.
     filtered: f64,
     /// u_s.
     intermediate: f64,
-    /// What the last tick adds to the acceleration that the next one observes beside the commanded one.
-    force_past: f64,
-    /// zeta.
+    /// Of zeta, such an average.
     average: f64,
     /// d.
     force: f64,
     /// d'.
     force_rate: f64,
-    /// g (s - 1).
+    /// Of g (s - 1), such an average.
     scale: f64,
-    /// What the last tick adds to the torque that the next one observes beside the commanded one.
-    torque_past: f64,
-    /// The averaged torque bias.
+    /// Of the torque bias, such an average.
     torque: f64,
     /// What acts of what was commanded.
     acting: f64,
@@ -142,11 +139,8 @@ impl Law {
         if scale.is_some() {
             used.push(&mut memory.scale);
         }
-        if force.is_some() || scale.is_some() {
-            used.push(&mut memory.force_past);
-        }
         if torque.is_some() {
-            used.extend([&mut memory.torque_past, &mut memory.torque]);
+            used.push(&mut memory.torque);
         }
         // Across, the force is observed beside the thrust's direction, which is measured.
         let thrust_observed = matches!(self.chain, Chain::Vertical(_)) && (force.is_some() || scale.is_some());
@@ -159,61 +153,56 @@ impl Law {
 
     /// One tick: the command for `measured`, the memory as it is at the next tick.
     fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS]) -> f64 {
+        let EstimateGains { force, scale, torque: bias } = self.estimates;
+        let share = force.map_or(0.0, |force| force.averaging);
+        let scale_share = scale.unwrap_or(0.0);
+        let bias_share = bias.unwrap_or(0.0);
         match &self.chain {
             Chain::Attitude(torque) => {
                 let [rate, angle, ..] = *measured;
-                let bias = self.torque_bias(memory, rate);
+                let bias = memory.torque + bias_share * rate;
                 let command = -torque.rate * rate - torque.angle * angle - bias;
-                memory.torque_past = -rate - self.acted(memory, command);
+                memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
                 command
             }
             Chain::Vertical(position) => {
                 let [velocity, height, ..] = *measured;
-                let unexplained = velocity + memory.force_past;
-                if let Some(share) = self.estimates.scale {
-                    memory.scale += share * (unexplained - memory.scale);
-                }
-                let force = self.force(memory, unexplained - memory.scale);
-                let command = (filters(position, memory, height, velocity) - force).value - memory.scale;
-                memory.force_past = -velocity - self.acted(memory, command);
+                let scale = memory.scale + scale_share * velocity;
+                let average = memory.average + share * (velocity - scale);
+                let force = self.force(memory, average);
+                let command = (filters(position, memory, height, velocity) - force).value - scale;
+                let past = -velocity - self.acted(memory, command);
+                memory.scale = averaged(scale, scale_share, past);
+                memory.average = averaged(average, share, past);
                 command
             }
             Chain::Lateral(position, torque) => {
                 let [rate, tilt, velocity, place] = *measured;
-                let half_drag = self.estimates.force.map_or(0.0, |force| 0.5 * force.drag);
-                let force = self.force(memory, velocity * (1.0 + half_drag) - 0.5 * tilt + memory.force_past);
-                let bias = self.torque_bias(memory, rate);
+                let half_drag = force.map_or(0.0, |force| 0.5 * force.drag);
+                let average = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt);
+                let bias = memory.torque + bias_share * rate;
+                let force = self.force(memory, average);
                 let desired = filters(position, memory, place, velocity) - force;
                 let command =
                     torque.rate * (desired.rate - rate) + torque.angle * (desired.value - tilt) + desired.acceleration
                         - bias;
-                memory.force_past = velocity * (half_drag - 1.0) - 0.5 * tilt;
-                memory.torque_past = -rate - self.acted(memory, command);
+                memory.average = averaged(average, share, velocity * (half_drag - 1.0) - 0.5 * tilt);
+                memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
                 command
             }
         }
     }
 
-    /// d as it stands with the acceleration just `observed`; then it advances.
-    fn force(&self, memory: &mut Memory, observed: f64) -> Moving {
-        let Some(ForceGains { averaging, bandwidth, .. }) = self.estimates.force else {
+    /// d as it stands, with the second derivative that `average`, zeta, gives it; then it advances.
+    fn force(&self, memory: &mut Memory, average: f64) -> Moving {
+        let Some(ForceGains { bandwidth, .. }) = self.estimates.force else {
             return Moving { value: 0.0, rate: 0.0, acceleration: 0.0 };
         };
-        memory.average += averaging * (observed - memory.average);
         let (value, rate) = (memory.force, memory.force_rate);
-        let acceleration = bandwidth * (bandwidth * (memory.average - value) - 2.0 * rate);
+        let acceleration = bandwidth * (bandwidth * (average - value) - 2.0 * rate);
         memory.force_rate = rate + acceleration;
         memory.force = value + 0.5 * (rate + memory.force_rate);
         Moving { value, rate, acceleration }
-    }
-
-    /// The torque bias with the body rate just measured.
-    fn torque_bias(&self, memory: &mut Memory, rate: f64) -> f64 {
-        let Some(averaging) = self.estimates.torque else {
-            return 0.0;
-        };
-        memory.torque += averaging * (rate + memory.torque_past - memory.torque);
-        memory.torque
     }
 
     /// What the law takes for the mean of what acts until the next tick, `command` being given.
@@ -230,6 +219,11 @@ impl Law {
         }
         mean
     }
+}
+
+/// What is remembered of an average x: (1 - share) x + share past.
+fn averaged(x: f64, share: f64, past: f64) -> f64 {
+    x + share * (past - x)
 }
 
 /// u_f as it stands, with its derivatives; then the filters advance, ubar held.
