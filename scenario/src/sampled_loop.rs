@@ -7,29 +7,31 @@
 //! | [`Axis`] | command | what follows it |
 //! |---|---|---|
 //! | `Roll`, `Pitch`, `Yaw` | tau_i from MRP and rate error | body rate, angle |
-//! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, omega_d, omega_d' | rate, tilt, velocity, position |
+//! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, force, omega_d, omega_d' | rate, tilt, velocity, position |
 //! | `Vertical` | thrust from z and filters | velocity, position |
 //!
 //! For each: the spectral radius per sample, and the gain and delay margins at the actuator's command. `docs/sampled-loop.md`
-//! derives the matrices. Mass and gravity drop out.
+//! derives the matrices. The extended law's estimates are part of them, each with its own gains. Mass drops out.
 //!
 //! It cannot speak about large errors: a saturated loop has less gain, so a loop with a lower gain limit
 //! ([`Margins::gain_down`]) or a small one may still hang in a limit cycle far from the origin. Nor about noise, flexible
 //! frames, the thrust that a rotor loses in moving air, or the torque of a rotor's own acceleration, which helps yaw.
 
 mod chain;
+mod compensator;
+mod gains;
 mod lag;
 mod law;
 mod margins;
+mod slopes;
 mod spectral_radius;
 
 use chain::SampledLoop;
 use controller_core::certificate::configuration::LawParameters;
 use controller_core::error::{ParameterError, Reason};
-use controller_core::extended::parameters::{AttitudeParameters, Extended};
-use controller_core::gains::Gains;
 use controller_core::vehicle::Vehicle;
-use law::{Law, PositionGains, TorqueGains};
+use law::Law;
+use slopes::Slopes;
 
 /// The longest period between ticks, s; the law's own limit.
 const LONGEST_PERIOD: f32 = 0.1;
@@ -107,54 +109,6 @@ pub struct LoopReport {
     pub margins: Option<Margins>,
 }
 
-/// A law near hover, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Slopes {
-    /// Torque per angle about each body axis, N m/rad.
-    stiffness: [f64; 3],
-    /// Torque per body rate, N m s.
-    damping: [f64; 3],
-    /// Gains across.
-    across: PositionGains,
-    /// Gains along the vertical.
-    vertical: PositionGains,
-}
-
-impl Slopes {
-    /// Of the paper's law: the MRP of a small angle is angle / 4, and (1 + |theta|^2) / 4 is 1/4.
-    fn paper(gains: &Gains) -> Self {
-        let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
-        let position = PositionGains { k_p, k_v, k_f, k_s };
-        Self {
-            stiffness: [f64::from(gains.k_theta) / 16.0; 3],
-            damping: [f64::from(gains.k_omega); 3],
-            across: position,
-            vertical: position,
-        }
-    }
-
-    /// Of the extended law, nothing being estimated: section 4 of `docs/extended-law.md`.
-    fn extended(parameters: &Extended) -> Self {
-        let p = &parameters.position;
-        let AttitudeParameters { w, eta, k_t, eta_t, k_omega_t, k_omega_z, .. } = parameters.attitude;
-        let [w, eta, k_t, eta_t] = [w, eta, k_t, eta_t].map(f64::from);
-        let tilt = w / 4.0 + k_t / (2.0 * eta_t.hypot(1.0));
-        let yaw = w * eta / (4.0 * (1.0 + eta));
-        let gains = |[k_p, k_v, k_f, k_s]: [f32; 4]| PositionGains {
-            k_p: k_p.into(),
-            k_v: k_v.into(),
-            k_f: k_f.into(),
-            k_s: k_s.into(),
-        };
-        Self {
-            stiffness: [tilt, tilt, yaw],
-            damping: [k_omega_t, k_omega_t, k_omega_z].map(f64::from),
-            across: gains([p.k_p_across, p.k_v_across, p.k_f_across, p.k_s_across]),
-            vertical: gains([p.k_p_vertical, p.k_v_vertical, p.k_f_vertical, p.k_s_vertical]),
-        }
-    }
-}
-
 /// A vehicle, its law and its timing, as far as small motions are concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopModel {
@@ -180,28 +134,23 @@ impl LoopModel {
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
         require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::NotBelow(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        let slopes = match law {
-            LawParameters::Paper(law) => Slopes::paper(&law.gains),
-            LawParameters::Extended(law) => Slopes::extended(&law.parameters),
-        };
-        Ok(Self { inertia, slopes, timing })
+        Ok(Self { inertia, slopes: Slopes::of(law, vehicle), timing })
     }
 
     /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
     /// gain margin at the position feedback. The gains need not be ones that may fly.
     #[must_use]
     pub fn with_position_feedback(&self, factor: f64) -> Self {
-        let scaled = |gains: PositionGains| PositionGains { k_p: gains.k_p * factor, k_v: gains.k_v * factor, ..gains };
-        let Slopes { across, vertical, .. } = self.slopes;
-        let slopes = Slopes { across: scaled(across), vertical: scaled(vertical), ..self.slopes };
-        Self { slopes, ..*self }
+        Self { slopes: self.slopes.with_position_feedback(factor), ..*self }
     }
 
     /// Spectral radius and margins of one loop.
     #[must_use]
     pub fn report(&self, axis: Axis) -> LoopReport {
-        let Timing { period, delay_samples, .. } = self.timing;
-        let chain = self.chain(axis);
+        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let law = self.law(axis);
+        let compensator = law.compensator();
+        let chain = SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples);
         let spectral_radius = chain.spectral_radius();
         let margins = (spectral_radius < 1.0).then(|| {
             let margins = margins::margins(&chain, delay_samples);
@@ -221,39 +170,28 @@ impl LoopModel {
         Axis::ALL.map(|axis| self.report(axis))
     }
 
-    /// The spectral radius of one loop alone: a tenth of a report's cost.
+    /// The spectral radius of one loop alone: a fraction of a report's cost.
     #[must_use]
     pub fn spectral_radius(&self, axis: Axis) -> f64 {
-        self.chain(axis).spectral_radius()
-    }
-
-    fn chain(&self, axis: Axis) -> SampledLoop {
         let Timing { period, rotor_lag, delay_samples } = self.timing;
-        let law = match axis {
-            Axis::Roll => Law::attitude(self.torque_gains(0)),
-            Axis::Pitch => Law::attitude(self.torque_gains(1)),
-            Axis::Yaw => Law::attitude(self.torque_gains(2)),
-            Axis::LateralX => Law::lateral(self.position_gains(&self.slopes.across), self.torque_gains(1)),
-            Axis::LateralY => Law::lateral(self.position_gains(&self.slopes.across), self.torque_gains(0)),
-            Axis::Vertical => Law::vertical(self.position_gains(&self.slopes.vertical)),
-        };
-        SampledLoop::new(law, rotor_lag / period, delay_samples)
+        let law = self.law(axis);
+        let compensator = law.compensator();
+        SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples).spectral_radius()
     }
 
-    fn torque_gains(&self, axis: usize) -> TorqueGains {
-        let h = self.timing.period;
-        let inertia = self.inertia[axis];
-        TorqueGains {
-            angle: self.slopes.stiffness[axis] * h * h / inertia,
-            rate: self.slopes.damping[axis] * h / inertia,
+    fn law(&self, axis: Axis) -> Law {
+        let (slopes, period) = (&self.slopes, self.timing.period);
+        let actuator = slopes.actuator(period);
+        let (across, vertical) = (slopes.estimated_across(period), slopes.estimated_vertical(period));
+        let torque = |body: usize| slopes.torque(body, self.inertia[body], period);
+        match axis {
+            Axis::Roll => Law::attitude(torque(0), across, actuator),
+            Axis::Pitch => Law::attitude(torque(1), across, actuator),
+            Axis::Yaw => Law::attitude(torque(2), vertical, actuator),
+            Axis::LateralX => Law::lateral(slopes.across(period), torque(1), across, actuator),
+            Axis::LateralY => Law::lateral(slopes.across(period), torque(0), across, actuator),
+            Axis::Vertical => Law::vertical(slopes.vertical(period), vertical, actuator),
         }
-    }
-
-    /// The same gains with the period for the unit of time.
-    fn position_gains(&self, gains: &PositionGains) -> PositionGains {
-        let h = self.timing.period;
-        let PositionGains { k_p, k_v, k_f, k_s } = *gains;
-        PositionGains { k_p: k_p * h * h, k_v: k_v * h, k_f: k_f * h, k_s: k_s * h }
     }
 }
 

@@ -3,6 +3,7 @@
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
 use super::common::{IDEAL, body_axis, model, vehicle};
+use controller_core::certificate::configuration::LawParameters;
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
@@ -11,7 +12,8 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
 use nalgebra::{DMatrix, DVector, Quaternion, Vector3};
-use scenario::sampled_loop::{Axis, Timing};
+use scenario::Scenario;
+use scenario::sampled_loop::{Axis, LoopModel, Timing};
 
 /// One axis: what is measured (position, velocity, tilt, rate; only those the axis has move) and remembered.
 #[derive(Debug, Clone, Copy, Default)]
@@ -224,6 +226,32 @@ fn spectral_radii_agree_with_eigenvalues_of_the_written_out_loop() {
                 assert!((found - expected).abs() < 1e-8, "{axis:?} {timing:?}: {found} against {expected}");
             }
         }
+    }
+}
+
+#[test]
+fn the_extended_law_without_estimates_is_the_papers_with_other_slopes() {
+    // The same vehicle. Without the section nothing is estimated.
+    let (before, estimates) = include_str!("../../scenarios/paper-extended.toml").split_once("[estimates]").unwrap();
+    let (_, after) = estimates.split_once("[control]").unwrap();
+    let scenario = Scenario::parse(&format!("{before}[control]{after}"), "paper-extended").unwrap();
+    assert_eq!(*scenario.configuration.vehicle(), vehicle());
+    let LawParameters::Extended(law) = scenario.configuration.law() else { panic!("another law") };
+    let (p, a) = (&law.parameters.position, &law.parameters.attitude);
+    let tilt = a.w / 4.0 + a.k_t / (2.0 * a.eta_t.hypot(1.0));
+    let yaw = a.w * a.eta / (4.0 * (1.0 + a.eta));
+    let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL };
+    let model = LoopModel::new(&vehicle(), scenario.configuration.law(), timing).unwrap();
+    for axis in Axis::ALL {
+        let across = [p.k_p_across, p.k_v_across, p.k_f_across, p.k_s_across];
+        let vertical = [p.k_p_vertical, p.k_v_vertical, p.k_f_vertical, p.k_s_vertical];
+        let [k_p, k_v, k_f, k_s] = if axis == Axis::Vertical { vertical } else { across };
+        let (stiffness, k_omega) = if axis == Axis::Yaw { (yaw, a.k_omega_z) } else { (tilt, a.k_omega_t) };
+        let k_theta = 16.0 * stiffness;
+        let gains = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, ..GainParameters::TABLE_1 };
+        let (found, expected) = (model.spectral_radius(axis), spectral_radius(axis, &gains, timing, 1.0));
+        // The slopes are in single precision here.
+        assert!((found - expected).abs() < 1e-7, "{axis:?}: {found} against {expected}");
     }
 }
 

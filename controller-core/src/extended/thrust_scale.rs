@@ -12,7 +12,7 @@ use super::parameters::EstimateParameters;
 use crate::math;
 
 /// c_0, m/s^2: below it a thrust says little about the scale.
-const LEAST_THRUST: f32 = 2.0;
+pub const LEAST_THRUST: f32 = 2.0;
 
 /// r, 1/s: how fast the scale may change at most.
 const RATE_MAX: f32 = 0.2;

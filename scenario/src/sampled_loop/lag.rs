@@ -47,6 +47,45 @@ impl LagResponse {
     }
 }
 
+/// What held commands, some samples late, do to a and y_m in one sample:
+///
+/// ```text
+/// y_m+ = sum_j y_(m-j) / j! + free_m a + newer_m w_(k-n) + older_m w_(k-n-1)
+/// newer_m = forced_m(1 - f),   older_m = forced_m(1) - forced_m(1 - f)
+/// ```
+///
+/// with n whole samples of delay and a fraction f.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arrival {
+    /// n.
+    pub whole_delay: usize,
+    /// Per `a`.
+    pub free: [f64; INTEGRATORS + 1],
+    /// Per w_(k-n).
+    pub newer: [f64; INTEGRATORS + 1],
+    /// Per w_(k-n-1).
+    pub older: [f64; INTEGRATORS + 1],
+}
+
+impl Arrival {
+    /// Through an actuator of the given lag >= 0, `delay` >= 0 late, both in samples.
+    pub fn new(lag: f64, delay: f64) -> Self {
+        let whole_delay = delay.floor();
+        let full = LagResponse::over(1.0, lag);
+        let late = LagResponse::over(1.0 - (delay - whole_delay), lag);
+        let mut older = full.forced;
+        for (older, newer) in older.iter_mut().zip(&late.forced) {
+            *older -= newer;
+        }
+        Self { whole_delay: whole_delay as usize, free: full.free, newer: late.forced, older }
+    }
+
+    /// How many commands before the present one still count.
+    pub fn earlier_commands(&self) -> usize {
+        self.whole_delay + usize::from(self.older.iter().any(|older| *older != 0.0))
+    }
+}
+
 /// phi_0 to phi_(INTEGRATORS + 1) at x > 0, linked by phi_m = 1/m! - x phi_(m+1).
 fn phi(x: f64) -> [f64; INTEGRATORS + 2] {
     /// Terms of the series; at x = 1 the first one left out is below 1e-20 of the sum.

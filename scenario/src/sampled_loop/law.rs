@@ -1,126 +1,250 @@
 //! The law near the origin, one axis at a time, as a linear system in samples.
 //!
-//! Everything is divided by what turns the actuator's command into the first derivative of the chain, so no inertia,
-//! mass or gravity is left; and time is counted in periods h, so a gain per second is multiplied by h. With y_m the
+//! Everything is divided by what turns the actuator's command into the first derivative of the chain, so no inertia or
+//! mass is left; and time is counted in periods h, so a gain per second is multiplied by h. With y_m the
 //! m-th integral of the actual command a (see [`super::lag`]):
 //!
-//! | axis | a | y_1 | y_2 | y_3 | y_4 | u_f, u_s |
+//! | axis | a | y_1 | y_2 | y_3 | y_4 | u_f, u_s, d |
 //! |---|---|---|---|---|---|---|
 //! | attitude about body axis i | tau_i / J_i | body rate | angle | | | |
 //! | vertical | thrust / m - g | velocity | position | | | as they are |
 //! | lateral | tau_i / J_i | body rate | tilt | velocity / g | position / g | divided by g |
 //!
-//! Slopes at the origin: s(k x) has slope k, M tanh(x / M) has slope one, the MRP of a small angle is angle / 4 and
-//! (1 + |theta|^2) / 4 is 1/4. Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and
-//! B = k_omega / J_i; laterally the desired tilt is u_f, omega_d = u_f' and omega_d' = u_f''.
+//! Slopes at the origin: every saturation has slope one, the MRP of a small angle is angle / 4 and (1 + |theta|^2) / 4 is 1/4.
+//! Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and B = k_omega / J_i under the paper's law;
+//! laterally the desired tilt is u_f - d, with omega_d and omega_d' its derivatives.
+//!
+//! [`Law::tick`] is one tick in the flight code's order, estimates first; the matrices are its columns.
 
-use super::lag::INTEGRATORS;
-use nalgebra::{Matrix2, RowVector2, RowVector4, Vector2};
+use super::compensator::Compensator;
+use super::gains::{EstimateGains, ForceGains, PositionGains, TorqueGains};
+use super::lag::{Arrival, INTEGRATORS};
+use core::ops::Sub;
 
-/// Gains of the position law; here times the powers of the period that make them dimensionless.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PositionGains {
-    /// k_p h^2.
-    pub k_p: f64,
-    /// k_v h.
-    pub k_v: f64,
-    /// k_f h.
-    pub k_f: f64,
-    /// k_s h.
-    pub k_s: f64,
-}
-
-/// Gains of the torque law over the axis' inertia, in samples.
+/// What an axis is, with the gains of the laws that act along it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct TorqueGains {
-    /// A = k_theta h^2 / (16 J) under the paper's law.
-    pub angle: f64,
-    /// B = k_omega h / J.
-    pub rate: f64,
+enum Chain {
+    Attitude(TorqueGains),
+    Vertical(PositionGains),
+    Lateral(PositionGains, TorqueGains),
 }
 
-/// The two filters with the feedback through z_1 and z_2 closed around them: x_f+ = transition x_f + input q, driven by
-/// the part q = -(k_p, k_p (1/k_f + 1/k_s) + k_v) (p, v) of ubar that the vehicle's motion makes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Filters {
-    /// From x_f = (u_f, u_s) to the next x_f.
-    pub transition: Matrix2<f64>,
-    /// From ubar to the next x_f.
-    pub input: Vector2<f64>,
-    /// q per y_m; entry m - 1.
-    pub drive: RowVector4<f64>,
-    /// The actuator's command per x_f.
-    pub output: RowVector2<f64>,
-}
-
-/// Command w = `gains` y + filters' output.
+/// The law for one axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
-    /// Number of integrators behind the actuator; y_m beyond it do not exist.
-    pub integrators: usize,
-    /// w per y_m; entry m - 1.
-    pub gains: RowVector4<f64>,
-    /// What the position law remembers; the attitude law remembers nothing.
-    pub filters: Option<Filters>,
+    chain: Chain,
+    estimates: EstimateGains,
+    /// What the law takes its actuator for.
+    actuator: Arrival,
 }
 
-impl Law {
-    /// The attitude law about one axis, its reference at rest.
-    pub fn attitude(torque: TorqueGains) -> Self {
-        Self { integrators: 2, gains: -RowVector4::new(torque.rate, torque.angle, 0.0, 0.0), filters: None }
-    }
-
-    /// The position law along the thrust: w = u_f.
-    pub fn vertical(position: PositionGains) -> Self {
-        let ubar = Feedback::of(position);
-        let drive = RowVector4::new(ubar.velocity, ubar.position, 0.0, 0.0);
-        let filters = Filters::closed(position, ubar, drive, RowVector2::new(1.0, 0.0));
-        Self { integrators: 2, gains: RowVector4::zeros(), filters: Some(filters) }
-    }
-
-    /// The position law across the thrust, realised by tilting through the attitude law.
-    pub fn lateral(position: PositionGains, torque: TorqueGains) -> Self {
-        let PositionGains { k_f, k_s, .. } = position;
-        let ubar = Feedback::of(position);
-        let drive = RowVector4::new(0.0, 0.0, ubar.velocity, ubar.position);
-        // u_f' = k_f (u_s - u_f) and u_f'' = k_f^2 (u_f - u_s) - k_f k_s (u_s - ubar), per (u_f, u_s).
-        let rate = RowVector2::new(-k_f, k_f);
-        let acceleration = RowVector2::new(k_f * k_f, -k_f * (k_f + k_s)) + ubar.filters * (k_f * k_s);
-        let tilt = RowVector2::new(1.0, 0.0);
-        let output = tilt * torque.angle + rate * torque.rate + acceleration;
-        let gains = drive * (k_f * k_s) - RowVector4::new(torque.rate, torque.angle, 0.0, 0.0);
-        Self { integrators: INTEGRATORS, gains, filters: Some(Filters::closed(position, ubar, drive, output)) }
-    }
-}
-
-/// ubar = -(k_p z_1 + k_v z_2), sorted by what it multiplies.
+/// A number and its derivatives, per sample.
 #[derive(Debug, Clone, Copy)]
-struct Feedback {
-    position: f64,
-    velocity: f64,
-    filters: RowVector2<f64>,
+struct Moving {
+    value: f64,
+    rate: f64,
+    acceleration: f64,
 }
 
-impl Feedback {
-    fn of(PositionGains { k_p, k_v, k_f, k_s }: PositionGains) -> Self {
+impl Sub for Moving {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
         Self {
-            position: -k_p,
-            velocity: -(k_p * (1.0 / k_f + 1.0 / k_s) + k_v),
-            filters: -RowVector2::new(k_p / (k_f * k_s) + k_v / k_f, k_v / k_s),
+            value: self.value - other.value,
+            rate: self.rate - other.rate,
+            acceleration: self.acceleration - other.acceleration,
         }
     }
 }
 
-impl Filters {
-    fn closed(gains: PositionGains, ubar: Feedback, drive: RowVector4<f64>, output: RowVector2<f64>) -> Self {
-        let PositionGains { k_f, k_s, .. } = gains;
-        let (keep_filtered, keep_intermediate) = ((-k_f).exp(), (-k_s).exp());
-        // k_f (e^-k_f - e^-k_s) / (k_s - k_f), from the slower exponential so that nothing overflows.
-        let spread = (k_s - k_f).abs();
-        let mean = if spread > 0.0 { -(-spread).exp_m1() / spread } else { 1.0 };
-        let mixed = k_f * (-k_f.min(k_s)).exp() * mean;
-        let open = Matrix2::new(keep_filtered, mixed, 0.0, keep_intermediate);
-        let input = Vector2::new(1.0 - keep_filtered - mixed, 1.0 - keep_intermediate);
-        Self { transition: open + input * ubar.filters, input, drive, output }
+/// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is remembered as
+/// (1 - share) x + share past, to which the next tick adds share now.
+#[derive(Debug, Clone, Default)]
+struct Memory {
+    /// u_f.
+    filtered: f64,
+    /// u_s.
+    intermediate: f64,
+    /// Of zeta, such an average.
+    average: f64,
+    /// d.
+    force: f64,
+    /// d'.
+    force_rate: f64,
+    /// Of g (s - 1), such an average.
+    scale: f64,
+    /// Of the torque bias, such an average.
+    torque: f64,
+    /// What acts of what was commanded.
+    acting: f64,
+    /// Commands, the newest first.
+    commanded: Vec<f64>,
+}
+
+impl Law {
+    /// The attitude law about one axis, its reference at rest.
+    pub fn attitude(torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
+        let estimates = EstimateGains { force: None, scale: None, ..estimates };
+        Self { chain: Chain::Attitude(torque), estimates, actuator }
+    }
+
+    /// The position law along the thrust.
+    pub fn vertical(position: PositionGains, estimates: EstimateGains, actuator: Arrival) -> Self {
+        let estimates = EstimateGains { torque: None, ..estimates };
+        Self { chain: Chain::Vertical(position), estimates, actuator }
+    }
+
+    /// The position law across the thrust, realised by tilting through the attitude law.
+    pub fn lateral(position: PositionGains, torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
+        let estimates = EstimateGains { scale: None, ..estimates };
+        Self { chain: Chain::Lateral(position, torque), estimates, actuator }
+    }
+
+    /// Number of integrators behind the actuator; y_m beyond it do not exist.
+    pub fn integrators(&self) -> usize {
+        match self.chain {
+            Chain::Attitude(_) | Chain::Vertical(_) => 2,
+            Chain::Lateral(..) => INTEGRATORS,
+        }
+    }
+
+    /// The law as matrices.
+    pub fn compensator(&self) -> Compensator {
+        let fresh = Memory { commanded: vec![0.0; self.actuator.earlier_commands()], ..Memory::default() };
+        let size = self.used(&mut fresh.clone()).len();
+        Compensator::of(size, |states, measured| {
+            let mut memory = fresh.clone();
+            for (place, state) in self.used(&mut memory).into_iter().zip(states.iter()) {
+                *place = *state;
+            }
+            let command = self.tick(&mut memory, measured);
+            for (state, place) in states.iter_mut().zip(self.used(&mut memory)) {
+                *state = *place;
+            }
+            command
+        })
+    }
+
+    /// The part of the memory that this law has.
+    fn used<'a>(&self, memory: &'a mut Memory) -> Vec<&'a mut f64> {
+        let EstimateGains { force, scale, torque } = self.estimates;
+        let mut used = Vec::new();
+        if !matches!(self.chain, Chain::Attitude(_)) {
+            used.extend([&mut memory.filtered, &mut memory.intermediate]);
+        }
+        if force.is_some() {
+            used.extend([&mut memory.average, &mut memory.force, &mut memory.force_rate]);
+        }
+        if scale.is_some() {
+            used.push(&mut memory.scale);
+        }
+        if torque.is_some() {
+            used.push(&mut memory.torque);
+        }
+        // Across, the force is observed beside the thrust's direction, which is measured.
+        let thrust_observed = matches!(self.chain, Chain::Vertical(_)) && (force.is_some() || scale.is_some());
+        if torque.is_some() || thrust_observed {
+            used.push(&mut memory.acting);
+            used.extend(&mut memory.commanded);
+        }
+        used
+    }
+
+    /// One tick: the command for `measured`, the memory as it is at the next tick.
+    fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS]) -> f64 {
+        let EstimateGains { force, scale, torque: bias } = self.estimates;
+        let share = force.map_or(0.0, |force| force.averaging);
+        let scale_share = scale.unwrap_or(0.0);
+        let bias_share = bias.unwrap_or(0.0);
+        match &self.chain {
+            Chain::Attitude(torque) => {
+                let [rate, angle, ..] = *measured;
+                let bias = memory.torque + bias_share * rate;
+                let command = -torque.rate * rate - torque.angle * angle - bias;
+                memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
+                command
+            }
+            Chain::Vertical(position) => {
+                let [velocity, height, ..] = *measured;
+                let scale = memory.scale + scale_share * velocity;
+                let average = memory.average + share * (velocity - scale);
+                let force = self.force(memory, average);
+                let command = (filters(position, memory, height, velocity) - force).value - scale;
+                let past = -velocity - self.acted(memory, command);
+                memory.scale = averaged(scale, scale_share, past);
+                memory.average = averaged(average, share, past);
+                command
+            }
+            Chain::Lateral(position, torque) => {
+                let [rate, tilt, velocity, place] = *measured;
+                let half_drag = force.map_or(0.0, |force| 0.5 * force.drag);
+                let average = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt);
+                let bias = memory.torque + bias_share * rate;
+                let force = self.force(memory, average);
+                let desired = filters(position, memory, place, velocity) - force;
+                let command =
+                    torque.rate * (desired.rate - rate) + torque.angle * (desired.value - tilt) + desired.acceleration
+                        - bias;
+                memory.average = averaged(average, share, velocity * (half_drag - 1.0) - 0.5 * tilt);
+                memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
+                command
+            }
+        }
+    }
+
+    /// d as it stands, with the second derivative that `average`, zeta, gives it; then it advances.
+    fn force(&self, memory: &mut Memory, average: f64) -> Moving {
+        let Some(ForceGains { bandwidth, .. }) = self.estimates.force else {
+            return Moving { value: 0.0, rate: 0.0, acceleration: 0.0 };
+        };
+        let (value, rate) = (memory.force, memory.force_rate);
+        let acceleration = bandwidth * (bandwidth * (average - value) - 2.0 * rate);
+        memory.force_rate = rate + acceleration;
+        memory.force = value + 0.5 * (rate + memory.force_rate);
+        Moving { value, rate, acceleration }
+    }
+
+    /// What the law takes for the mean of what acts until the next tick, `command` being given.
+    fn acted(&self, memory: &mut Memory, command: f64) -> f64 {
+        let Arrival { whole_delay, free, newer, older } = &self.actuator;
+        let commanded =
+            |age: usize| if age == 0 { command } else { memory.commanded.get(age - 1).copied().unwrap_or(0.0) };
+        let (new, old) = (commanded(*whole_delay), commanded(whole_delay + 1));
+        let [acting, mean] = [0, 1].map(|m| free[m] * memory.acting + newer[m] * new + older[m] * old);
+        memory.acting = acting;
+        if let Some(oldest) = memory.commanded.last_mut() {
+            *oldest = command;
+            memory.commanded.rotate_right(1);
+        }
+        mean
     }
 }
+
+/// What is remembered of an average x: (1 - share) x + share past.
+fn averaged(x: f64, share: f64, past: f64) -> f64 {
+    x + share * (past - x)
+}
+
+/// u_f as it stands, with its derivatives; then the filters advance, ubar held.
+fn filters(gains: &PositionGains, memory: &mut Memory, position: f64, velocity: f64) -> Moving {
+    let PositionGains { k_p, k_v, k_f, k_s } = *gains;
+    let (u_f, u_s) = (memory.filtered, memory.intermediate);
+    let z_1 = position + (1.0 / k_f + 1.0 / k_s) * velocity + u_f / (k_f * k_s);
+    let z_2 = velocity + u_f / k_f + u_s / k_s;
+    let ubar = -(k_p * z_1 + k_v * z_2);
+    let rate = k_f * (u_s - u_f);
+    let acceleration = k_f * (k_s * (ubar - u_s) - rate);
+
+    let (keep_filtered, keep_intermediate) = ((-k_f).exp(), (-k_s).exp());
+    // k_f (e^-k_f - e^-k_s) / (k_s - k_f), from the slower exponential so that nothing overflows.
+    let spread = (k_s - k_f).abs();
+    let mean = if spread > 0.0 { -(-spread).exp_m1() / spread } else { 1.0 };
+    let mixed = k_f * (-k_f.min(k_s)).exp() * mean;
+    memory.filtered = keep_filtered * u_f + mixed * u_s + (1.0 - keep_filtered - mixed) * ubar;
+    memory.intermediate = keep_intermediate * u_s + (1.0 - keep_intermediate) * ubar;
+    Moving { value: u_f, rate, acceleration }
+}
+
+#[cfg(test)]
+mod tests;

@@ -9,6 +9,7 @@
 //! within 10 % of frequency, that is not seen.
 
 use super::chain::SampledLoop;
+use super::compensator::Response;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
@@ -35,14 +36,15 @@ pub(super) struct SampleMargins {
 }
 
 /// The margins of `chain`, which is stable with its commands `delay` samples late.
-pub(super) fn margins(chain: &SampledLoop, delay: f64) -> SampleMargins {
-    let sweep = Sweep::of(chain, LOWEST, delay);
+pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64) -> SampleMargins {
+    let grid = Grid::of(chain, delay);
+    let sweep = Sweep::along(&grid.points, *chain);
     let (gain_down, gain_up) = sweep.critical_gains();
     let unit_gain = sweep.crossings(gain);
     let (Some(lowest), Some(crossover)) = (unit_gain.first(), unit_gain.last()) else {
         return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
     };
-    SampleMargins { gain_up, gain_down, delay: delay_margin(chain, delay, *lowest), crossover: *crossover }
+    SampleMargins { gain_up, gain_down, delay: delay_margin(chain, &grid, delay, *lowest), crossover: *crossover }
 }
 
 /// Positive where the loop amplifies.
@@ -52,19 +54,19 @@ fn gain(response: Complex<f64>) -> f64 {
 
 /// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
 /// `unit_gain` and nowhere below.
-fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
+fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64) -> f64 {
     /// Brackets are found in a few steps.
     const STEPS: usize = 40;
     /// Of a sample.
-    const RESOLUTION: f64 = 1e-8;
+    const RESOLUTION: f64 = 1e-10;
     // How a fraction of a sample is held changes the gain at high frequencies only: nothing crosses far below.
-    let lowest = 0.5 * unit_gain;
+    let points = grid.from(0.5 * unit_gain);
 
     // Samples of delay that each frequency of unit gain still takes before -1, were the gain to stay.
     let left_at = |extra: f64| {
         let delayed = chain.with_delay(delay + extra);
         // The gain does not turn with the delay, so the grid need not be any finer for it.
-        Sweep::of(&delayed, lowest, 0.0).crossings(gain).into_iter().map(move |angle| {
+        Sweep::along(points, delayed).crossings(gain).into_iter().map(move |angle| {
             let response = delayed.response(angle);
             ((-response.im).atan2(-response.re), angle)
         })
@@ -88,23 +90,41 @@ fn delay_margin(chain: &SampledLoop, delay: f64, unit_gain: f64) -> f64 {
     if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
-/// The response along a grid of frequencies, rising.
+/// Frequencies, rising, with the law's part of the response: the same for every delay.
+struct Grid {
+    points: Vec<(f64, Response)>,
+}
+
+impl Grid {
+    /// Fine enough to follow a response that `delay` samples turn.
+    fn of(chain: &SampledLoop<'_>, delay: f64) -> Self {
+        let step = PI / (8.0 * (delay + 1.0));
+        let mut angles = Vec::new();
+        let mut angle = LOWEST;
+        while angle < HIGHEST {
+            angles.push(angle);
+            angle += step.min(SPACING * angle);
+        }
+        angles.push(HIGHEST);
+        Self { points: angles.into_iter().map(|angle| (angle, chain.law_response(angle))).collect() }
+    }
+
+    /// The part from the last frequency below `lowest` on.
+    fn from(&self, lowest: f64) -> &[(f64, Response)] {
+        let above = self.points.partition_point(|(angle, _)| *angle < lowest);
+        &self.points[above.saturating_sub(1)..]
+    }
+}
+
+/// The response of a loop along a grid.
 struct Sweep<'a> {
-    chain: &'a SampledLoop,
+    chain: SampledLoop<'a>,
     points: Vec<(f64, Complex<f64>)>,
 }
 
 impl<'a> Sweep<'a> {
-    /// From `lowest` up, fine enough to follow a response that `delay` samples turn.
-    fn of(chain: &'a SampledLoop, lowest: f64, delay: f64) -> Self {
-        let step = PI / (8.0 * (delay + 1.0));
-        let mut points = Vec::with_capacity(160);
-        let mut angle = lowest;
-        while angle < HIGHEST {
-            points.push((angle, chain.response(angle)));
-            angle += step.min(SPACING * angle);
-        }
-        points.push((HIGHEST, chain.response(HIGHEST)));
+    fn along(grid: &[(f64, Response)], chain: SampledLoop<'a>) -> Self {
+        let points = grid.iter().map(|(angle, law)| (*angle, chain.response_with(*angle, law))).collect();
         Self { chain, points }
     }
 
@@ -141,24 +161,33 @@ impl<'a> Sweep<'a> {
 
 /// The zero of `value` between two points of opposite sign: regula falsi, Illinois variant.
 fn root(value: impl Fn(f64) -> f64, mut left: (f64, f64), mut right: (f64, f64)) -> f64 {
-    /// Some eight are enough to the last bit; the bound is for values that are noise.
+    /// Some eight are enough; the bound is for values that are noise.
     const STEPS: usize = 60;
+    /// Relative, of two estimates in a row.
+    const RESOLUTION: f64 = 1e-12;
+    let (mut last, mut moved_right) = (left.0, None);
     for _ in 0..STEPS {
         let middle = (left.0 * right.1 - right.0 * left.1) / (right.1 - left.1);
         if !(middle > left.0 && middle < right.0) {
             break;
         }
+        if (middle - last).abs() < RESOLUTION * middle {
+            return middle;
+        }
+        last = middle;
         let at_middle = value(middle);
         if at_middle == 0.0 {
             return middle;
         }
-        if (at_middle < 0.0) == (right.1 < 0.0) {
-            right = (middle, at_middle);
-            left.1 *= 0.5;
-        } else {
-            left = (middle, at_middle);
-            right.1 *= 0.5;
+        // An end that stays for a second time counts half, or it would stay for good.
+        let moves_right = (at_middle < 0.0) == (right.1 < 0.0);
+        let stays_again = moved_right == Some(moves_right);
+        let (moving, staying) = if moves_right { (&mut right, &mut left) } else { (&mut left, &mut right) };
+        *moving = (middle, at_middle);
+        if stays_again {
+            staying.1 *= 0.5;
         }
+        moved_right = Some(moves_right);
     }
     0.5 * (left.0 + right.0)
 }

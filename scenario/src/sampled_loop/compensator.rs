@@ -1,0 +1,104 @@
+//! A law near the origin as what it is: a linear system that measures and commands.
+//!
+//! ```text
+//! x+ = A x + B y,   w = C x + D y
+//! ```
+//!
+//! y are the integrals of the actuator's command that an axis has (see [`super::lag`]), w the command, x whatever the law
+//! remembers. What it remembers of its own commands is closed inside: w = C x + D y is inserted before A and B are formed.
+//!
+//! A is kept in upper Hessenberg form, to which an orthogonal change of x takes it: z - A is then solved by one elimination per
+//! column, for every frequency that is looked at.
+
+use super::lag::INTEGRATORS;
+use nalgebra::linalg::Hessenberg;
+use nalgebra::{Complex, DMatrix, RowDVector, RowSVector};
+
+/// w per y_m at some z; entry m - 1.
+pub(super) type Response = [Complex<f64>; INTEGRATORS];
+
+/// Of the law for one axis.
+#[derive(Debug, Clone)]
+pub(super) struct Compensator {
+    /// A.
+    pub transition: DMatrix<f64>,
+    /// B, a column for each y_m.
+    pub input: DMatrix<f64>,
+    /// C.
+    pub output: RowDVector<f64>,
+    /// D.
+    pub direct: RowSVector<f64, INTEGRATORS>,
+}
+
+impl Compensator {
+    /// The system that `tick` steps: it takes x and y, puts the next x in x's place and returns w. It must be linear. `size` is
+    /// the number of its states.
+    pub fn of(size: usize, tick: impl Fn(&mut [f64], &[f64; INTEGRATORS]) -> f64) -> Self {
+        let mut transition = DMatrix::zeros(size, size);
+        let mut input = DMatrix::zeros(size, INTEGRATORS);
+        let mut output = RowDVector::zeros(size);
+        let mut direct = RowSVector::zeros();
+        let mut x = vec![0.0; size];
+        for i in 0..size {
+            x.fill(0.0);
+            x[i] = 1.0;
+            output[i] = tick(&mut x, &[0.0; INTEGRATORS]);
+            transition.column_mut(i).copy_from_slice(&x);
+        }
+        for m in 0..INTEGRATORS {
+            x.fill(0.0);
+            direct[m] = tick(&mut x, &core::array::from_fn(|i| f64::from(u8::from(i == m))));
+            input.column_mut(m).copy_from_slice(&x);
+        }
+        Self { transition, input, output, direct }.in_hessenberg_form()
+    }
+
+    /// The number of states.
+    pub fn size(&self) -> usize {
+        self.transition.nrows()
+    }
+
+    fn in_hessenberg_form(self) -> Self {
+        if self.size() < 3 {
+            return self;
+        }
+        let (turn, transition) = Hessenberg::new(self.transition).unpack();
+        Self { transition, input: turn.tr_mul(&self.input), output: self.output * &turn, direct: self.direct }
+    }
+
+    /// w per y_m at z: C (z - A)^-1 B + D.
+    pub fn response(&self, z: Complex<f64>) -> Response {
+        let size = self.size();
+        let complex = |value: f64| Complex::new(value, 0.0);
+        // r (z - A) = C: combining columns from the right makes z - A triangular, r is then found from the left.
+        let mut columns: Vec<Complex<f64>> = self.transition.iter().map(|entry| complex(-entry)).collect();
+        for i in 0..size {
+            columns[i * size + i] += z;
+        }
+        let mut row: Vec<Complex<f64>> = self.output.iter().copied().map(complex).collect();
+        for j in (1..size).rev() {
+            let (left, right) = columns.split_at_mut(j * size);
+            let (left, right) = (&mut left[(j - 1) * size..], &mut right[..size]);
+            if left[j].norm_sqr() > right[j].norm_sqr() {
+                left.swap_with_slice(right);
+                row.swap(j - 1, j);
+            }
+            let factor = left[j] / right[j];
+            for (left, right) in left[..j].iter_mut().zip(&right[..j]) {
+                *left -= factor * right;
+            }
+            row[j - 1] = row[j - 1] - factor * row[j];
+        }
+        for i in 0..size {
+            let column = &columns[i * size..];
+            let known: Complex<f64> = row[..i].iter().zip(column).map(|(r, entry)| r * entry).sum();
+            row[i] = (row[i] - known) / column[i];
+        }
+        core::array::from_fn(|m| {
+            row.iter().zip(&self.input.column(m)).fold(complex(self.direct[m]), |sum, (r, entry)| sum + r * entry)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

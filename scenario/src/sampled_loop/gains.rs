@@ -1,0 +1,48 @@
+//! The gains of a law near hover, as each axis has them.
+//!
+//! In [`super::slopes`] they are in SI units, in [`super::law`] in samples: times the powers of the period h that make them
+//! dimensionless, torques over the axis' inertia.
+
+/// Gains of the position law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PositionGains {
+    /// k_p h^2.
+    pub k_p: f64,
+    /// k_v h.
+    pub k_v: f64,
+    /// k_f h.
+    pub k_f: f64,
+    /// k_s h.
+    pub k_s: f64,
+}
+
+/// Gains of the attitude law about one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TorqueGains {
+    /// A = k_theta h^2 / (16 J) under the paper's law.
+    pub angle: f64,
+    /// B = k_omega h / J.
+    pub rate: f64,
+}
+
+/// Gains of the force estimate along one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ForceGains {
+    /// 1 - e^(-L h).
+    pub averaging: f64,
+    /// k_d h.
+    pub bandwidth: f64,
+    /// kappa h.
+    pub drag: f64,
+}
+
+/// What the law estimates along one axis; nothing by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct EstimateGains {
+    /// The force.
+    pub force: Option<ForceGains>,
+    /// The thrust scale: gamma h g^2 / (g^2 + c_0^2), the share of a difference that it takes up in a tick.
+    pub scale: Option<f64>,
+    /// The torque bias: 1 - e^(-L_tau h).
+    pub torque: Option<f64>,
+}
