@@ -45,7 +45,7 @@ fn a_rotor_may_lose_a_fifth_of_its_thrust_and_no_more_is_promised() {
         println!("{share:4.1}  {}  {}", row(&first), row(&second));
         if share >= 0.8 {
             assert!(first.excursion < 0.15 && first.end_error < 0.05, "{share}: {first:?}");
-            assert!(second.excursion < 1.0 && second.end_error < 0.05, "{share}: {second:?}");
+            assert!(second.excursion < 1.0 && second.end_error < 0.1, "{share}: {second:?}");
         }
         if share == 0.0 {
             assert!(first.settled.is_none() && second.settled.is_none(), "a quadrotor that flies on three rotors?");
