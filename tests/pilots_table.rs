@@ -163,7 +163,7 @@ fn the_hummingbird_does_what_is_required() {
 fn the_study_does_what_is_required() {
     show(
         "study",
-        &Required { height: 12.0, recovered: 20.0, gust: 1.5, step: 4.0, far: 15.0, windy: 0.2, noise: 1e-2 },
+        &Required { height: 12.0, recovered: 15.0, gust: 1.5, step: 3.0, far: 9.0, windy: 0.2, noise: 1e-2 },
     );
 }
 
