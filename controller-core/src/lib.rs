@@ -61,6 +61,7 @@ pub mod attitude_reference;
 pub mod certificate;
 pub mod controller;
 pub mod error;
+pub mod estimator;
 pub mod extended;
 pub mod flight;
 pub mod gains;
