@@ -67,6 +67,7 @@ pub mod flight;
 pub mod gains;
 pub mod governor;
 pub mod heading;
+pub mod imu;
 pub mod law;
 pub mod math;
 pub mod mrp;

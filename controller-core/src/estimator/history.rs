@@ -39,7 +39,7 @@ impl Increment {
     }
 
     /// Whether it can be used: finite, and no longer than a gap that is bridged.
-    pub(super) fn is_usable(&self, longest: u64) -> bool {
+    pub(crate) fn is_usable(&self, longest: u64) -> bool {
         let numbers = [&self.delta_angle, &self.delta_velocity, &self.angular_velocity];
         // Finite, and far from where a square would not be.
         let finite = numbers.iter().all(|vector| vector.iter().all(|component| component.abs() < 1e4));
