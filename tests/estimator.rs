@@ -109,21 +109,22 @@ fn position_and_attitude_are_known_in_hover_circle_and_recovery_and_coasting_las
         assert!(position < 2e-3 && attitude < 0.3, "{}: {position} m, {attitude} degrees", truth.name);
         assert!(short_worst < 0.1 && long_worst < 1.0, "{}: {short_worst} m, {long_worst} m", truth.name);
         assert!((NEES_BAND.0..=NEES_BAND.1).contains(&mean), "{}: NEES {mean}", truth.name);
-        // Of 40 independent means, 95 % of which are within, fewer than 34 are within once in 100 times.
+        // 95 % of the means are within; means of neighbouring instants are alike, so that fewer may be, or all.
         assert!(within as f64 >= 0.85 * nees.len() as f64, "{}: {within} of {}", truth.name, nees.len());
         assert!(f64::from(refused) < 1e-4 * f64::from(poses), "{}: {refused} of {poses}", truth.name);
     }
 }
 
 #[test]
-fn sensors_twice_as_noisy_as_they_are_said_to_be_leave_the_band() {
-    let half = EstimatorParameters {
-        position_noise: 0.5 * EXACT.position_noise,
-        attitude_noise: 0.5 * EXACT.attitude_noise,
+fn sensors_a_quarter_noisier_than_they_are_said_to_be_leave_the_band() {
+    let said = EstimatorParameters {
+        position_noise: 0.8 * EXACT.position_noise,
+        attitude_noise: 0.8 * EXACT.attitude_noise,
         ..EXACT
     };
-    let campaign = Campaign::fly(&Truth::hover(), &half);
+    let campaign = Campaign::fly(&Truth::hover(), &said);
     let nees = campaign.nees();
     let mean = nees.iter().sum::<f64>() / nees.len() as f64;
+    println!("mean NEES {mean:.2}");
     assert!(mean > NEES_BAND.1, "{mean}");
 }
