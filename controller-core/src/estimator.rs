@@ -153,7 +153,7 @@ impl Estimator {
         if let Some(leaving) = self.history.leaving() {
             let end = leaving.end;
             let candidate = self.candidate.as_mut().map(|candidate| &mut candidate.filter);
-            for filter in self.filter.as_mut().into_iter().chain(candidate) {
+            for filter in self.filter.as_mut().into_iter().chain(candidate).filter(|filter| filter.time < end) {
                 filter.advance(end, &self.history, &self.settings);
             }
             self.checkpoints.forget_before(end);

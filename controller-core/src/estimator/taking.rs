@@ -9,7 +9,7 @@
 //! ```
 
 use super::candidate::Candidate;
-use super::filter::{Biases, Filter};
+use super::filter::Filter;
 use super::measurement::PoseMeasurement as Pose;
 use super::verdict::{Rejected, Taken};
 use super::{EXTRAPOLATION_MAX, Estimator, Increment, REBASE_EVERY, TILT_COSINE, rotated};
