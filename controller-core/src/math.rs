@@ -14,7 +14,7 @@
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 
 use core::hint::cold_path;
-pub use libm::{exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64};
+pub use libm::{exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64, tan};
 use nalgebra::Vector3;
 
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the

@@ -51,7 +51,7 @@ impl PropagatedAttitude {
 }
 
 /// The unit quaternion (cos |x|, sin |x| x/|x|) of the half angle x, rad.
-fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
+pub(crate) fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
     /// Below this, |x|^2 and |x|^4 of the series suffice: the next term is under 2e-9.
     const SMALL: f32 = 0.01;
     let square = x.norm_squared();

@@ -1,0 +1,255 @@
+//! The estimator: a state to fly on, from an IMU and from poses that come late, noisy, in gaps and sometimes wrong.
+//!
+//! An error-state Kalman filter on position, velocity, attitude, gyro bias and accelerometer bias. It stands at the *horizon*, the
+//! time of the last pose: a pose is compared with where the vehicle was at the pose's own time, not with where it is. From
+//! there the nominal state is carried on through the IMU's increments, which are kept in a ring, to the present.
+//!
+//! ```text
+//!                       ring of IMU increments, 320 ms
+//!   ├──────┬──────┬──────┬──────┬──────┬──────┬──────┬──────┬──────┤ . . . . now
+//!                    ^ horizon: filter      ^ pose arrives for here          ^ state() extrapolates
+//!                    nominal, covariance -> advance, test, fuse -> nominal alone, to the end
+//! ```
+//!
+//! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
+//! - [`covariance`]: its error's, in blocks;
+//! - [`filter`]: both together: advance, weigh a pose, fuse it;
+//! - [`history`]: the ring; [`settings`]: what the sensors are like;
+//! - `checkpoints`: poses out of order; `stream`: time stamps, quality, frozen streams;
+//! - `candidate`: how an estimate begins, at rest or in motion, and how a lost body is found again;
+//! - `taking`: what becomes of a pose, step by step;
+//! - [`verdict`], [`health`]: what became of each pose, and what the estimate is worth, in words.
+//!
+//! # How a tick uses it
+//!
+//! The IMU task hands over [`Increment`]s, made by [`crate::imu`] from the samples since the last one; whoever receives poses
+//! hands them over with the time at which they were true, on the vehicle's clock. Once a control tick:
+//!
+//! ```text
+//! for increment in new increments { estimator.imu(&increment) }
+//! for pose in new poses { report(estimator.pose(&pose, now)) }
+//! let health = estimator.health(now);                   // arming, coasting and levelling are decided from this
+//! if let Some(estimated) = estimator.state(now) { law.step(&estimated.state, …) }
+//! ```
+//!
+//! Without poses the state goes on, by IMU alone, for as long as anybody asks; [`health`](Estimator::health) says for how long
+//! that has been so and how uncertain it has become. A pose stream that jumps, turns or drifts against the IMU is not followed.
+//! Its poses are refused, with the reason, until they are again where coasting may have led; [`Estimator::adopt`] follows it
+//! all the same: on the ground, say.
+//!
+//! Every step is bounded: an increment costs one step of the nominal state; a pose the increments since the last pose, with
+//! covariance, and those since its own time, without.
+
+pub mod covariance;
+pub mod filter;
+pub mod health;
+pub mod history;
+pub mod settings;
+pub mod verdict;
+
+mod candidate;
+mod checkpoints;
+mod measurement;
+mod nominal;
+mod stream;
+mod taking;
+
+pub use health::{Faults, Health};
+pub use history::Increment;
+pub use measurement::PoseMeasurement;
+pub use nominal::Nominal;
+pub use settings::{EstimatorParameters, Settings};
+pub use verdict::{Fault, Rejected, Taken};
+
+use crate::flight::Stamped;
+use crate::state::State;
+use candidate::Candidate;
+use checkpoints::Checkpoints;
+use filter::{Biases, Filter};
+use health::Statistics;
+use heapless::Vec;
+use history::History;
+use measurement::PoseMeasurement as Pose;
+use nalgebra::{Quaternion, Vector3};
+use stream::Stream;
+
+/// How far beyond the last increment a state is extrapolated, and the longest increment, us.
+pub const EXTRAPOLATION_MAX: u64 = 20_000;
+
+/// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150 ms late,
+/// and their jitter.
+pub const COASTING_AFTER: u64 = 300_000;
+
+/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves.
+pub const REBASE_EVERY: u64 = 1_000_000;
+
+/// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it moved:
+/// 10 degrees.
+const TILT_COSINE: f32 = 0.984_807_8;
+
+/// Poses that may wait for the IMU.
+const WAITING: usize = 4;
+
+/// The state at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EstimatedState {
+    /// For the law. The body rate is the low-passed one, less its bias.
+    pub state: State,
+    /// v', m/s^2, world: the mean over the last increment, by accelerometer.
+    pub acceleration: Vector3<f32>,
+    /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and [`Estimator::adopt`]. Who
+    /// differentiates the state, begins anew when it changes.
+    pub jumps: u32,
+}
+
+/// The estimator. Size: about 11 KB.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimator {
+    settings: Settings,
+    history: History,
+    filter: Option<Filter>,
+    /// The nominal state at the end of the history.
+    latest: Option<Nominal>,
+    /// What is known of the biases while there is no filter.
+    biases: Biases,
+    checkpoints: Checkpoints,
+    candidate: Option<Candidate>,
+    stream: Stream,
+    waiting: Vec<Stamped<Pose>, WAITING>,
+    /// The sender's reset counter when the filter last followed it, and when that was, us.
+    frame: Option<(u8, u64)>,
+    statistics: Statistics,
+}
+
+impl Estimator {
+    /// One that knows nothing yet.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            settings: *settings,
+            history: History::EMPTY,
+            filter: None,
+            latest: None,
+            biases: Biases::unknown(settings),
+            checkpoints: Checkpoints::EMPTY,
+            candidate: None,
+            stream: Stream::EMPTY,
+            waiting: Vec::new(),
+            frame: None,
+            statistics: Statistics::NONE,
+        }
+    }
+
+    /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an increment with numbers that cannot be,
+    /// everything begins anew, with the biases as they were: nothing carries a state over what nobody measured.
+    pub fn imu(&mut self, increment: &Increment) {
+        let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
+        if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {
+            self.restart();
+        }
+        if !increment.is_usable(EXTRAPOLATION_MAX) {
+            return;
+        }
+        if let Some(leaving) = self.history.leaving() {
+            let end = leaving.end;
+            let candidate = self.candidate.as_mut().map(|candidate| &mut candidate.filter);
+            for filter in self.filter.as_mut().into_iter().chain(candidate).filter(|filter| filter.time < end) {
+                filter.advance(end, &self.history, &self.settings);
+            }
+            self.checkpoints.forget_before(end);
+        }
+        self.history.push(increment);
+        self.stream.note(self.moves(increment));
+        if let Some(latest) = &mut self.latest {
+            latest.advance(increment, self.settings.parameters().gravity);
+        }
+        self.take_waiting(increment.end);
+    }
+
+    /// Takes a pose that was true at its time stamp and arrives at `now`, us.
+    ///
+    /// # Errors
+    /// Says why it is not believed; the state is as it was.
+    pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Taken, Rejected> {
+        let verdict = self.stream.admit(pose, now).and_then(|()| self.take_in_time(pose));
+        self.statistics.record(verdict, pose.time);
+        verdict
+    }
+
+    /// The state at `now`, us; none before the first, and beyond [`EXTRAPOLATION_MAX`] after the last increment.
+    #[must_use]
+    pub fn state(&self, now: u64) -> Option<EstimatedState> {
+        let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
+        let ahead = now.saturating_sub(last.end);
+        if ahead > EXTRAPOLATION_MAX {
+            return None;
+        }
+        let per_second = 1.0 / last.seconds();
+        let bent = last.delta_angle.cross(&last.delta_velocity) * 0.5;
+        let force = (last.delta_velocity - bent) * per_second;
+        let seconds = ahead as f32 * 1e-6;
+        let increment = Increment {
+            start: last.end,
+            end: last.end + ahead,
+            delta_angle: last.delta_angle * (per_second * seconds),
+            delta_velocity: force * seconds,
+            angular_velocity: last.angular_velocity,
+        };
+        let (mut nominal, gravity) = (*latest, self.settings.parameters().gravity);
+        let mut acceleration = rotated(&nominal.attitude, &(force - nominal.accelerometer_bias));
+        acceleration.z -= gravity;
+        nominal.advance(&increment, gravity);
+        let Nominal { position, velocity, attitude, gyro_bias, .. } = nominal;
+        let angular_velocity = last.angular_velocity - gyro_bias;
+        let state = State { position, velocity, attitude, angular_velocity };
+        Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps })
+    }
+
+    /// What the estimate is worth at `now`, us.
+    #[must_use]
+    pub fn health(&self, now: u64) -> Health {
+        let imu_age = self.history.newest().map_or(u64::MAX, |newest| now.saturating_sub(newest.end));
+        Health::new(self.filter.as_ref(), &self.statistics, &self.settings, imu_age, now)
+    }
+
+    /// The filter at its horizon, if there is one: nominal state, covariance and time.
+    #[must_use]
+    pub fn filter(&self) -> Option<&Filter> {
+        self.filter.as_ref()
+    }
+
+    /// Follows the poses to where they have jumped, turned or drifted, if they have proven to agree among themselves and with the
+    /// IMU; whether there was such a place. The estimate jumps.
+    pub fn adopt(&mut self) -> bool {
+        match self.candidate.take_if(|candidate| candidate.is_proven()) {
+            Some(candidate) if candidate.check_gravity(&self.settings).is_ok() => {
+                self.follow(&candidate.filter);
+                self.statistics.jumps += 1;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Begins anew, with the biases as they are if they are plausible.
+    fn restart(&mut self) {
+        let unknown = Biases::unknown(&self.settings);
+        self.biases = match &self.filter {
+            Some(filter) if filter.covariance.is_positive() => filter.biases(),
+            _ => unknown,
+        };
+        self.history.clear();
+        self.checkpoints.clear();
+        self.waiting.clear();
+        (self.filter, self.latest, self.candidate) = (None, None, None);
+        self.statistics = self.statistics.restarted();
+    }
+}
+
+/// R(q) x.
+fn rotated(q: &Quaternion<f32>, x: &Vector3<f32>) -> Vector3<f32> {
+    nalgebra::UnitQuaternion::new_unchecked(*q) * x
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,61 @@
+//! A pose as the estimator takes it: where the vehicle was, how sure the sender is, and what it says about its own stream.
+
+use crate::flight::Pose;
+use nalgebra::{Quaternion, Vector3};
+
+/// A checked pose with what its sender says about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseMeasurement {
+    /// p, m, world.
+    pub(super) position: Vector3<f32>,
+    /// q, body to world, unit.
+    pub(super) attitude: Quaternion<f32>,
+    /// v, m/s, world, if it is to be believed.
+    pub(super) velocity: Option<Vector3<f32>>,
+    /// Deviations of position (m) and attitude (rad) on each axis; those of the settings if none.
+    pub(super) deviations: Option<(f32, f32)>,
+    /// Whether the sender says that its tracking has failed.
+    pub(super) failed: bool,
+    /// Counts the times that the sender's frame has moved.
+    pub(super) resets: u8,
+}
+
+impl PoseMeasurement {
+    /// Position and attitude of `pose`, with deviations as in the settings, from a frame that never moved.
+    #[must_use]
+    pub fn new(pose: &Pose) -> Self {
+        let (position, attitude) = (pose.position(), pose.attitude());
+        Self { position, attitude, velocity: None, deviations: None, failed: false, resets: 0 }
+    }
+
+    /// The same with the velocity of `pose`: believed only where the settings give velocities a deviation.
+    #[must_use]
+    pub fn with_velocity(pose: &Pose) -> Self {
+        Self { velocity: Some(pose.velocity()), ..Self::new(pose) }
+    }
+
+    /// The same with the sender's deviations of position (m) and attitude (rad). Numbers that are not finite or negative say
+    /// nothing (MAVLink: NaN for unknown), and the settings' stay.
+    #[must_use]
+    pub fn deviations(self, position: f32, attitude: f32) -> Self {
+        let says = |deviation: f32| deviation.is_finite() && deviation >= 0.0;
+        Self { deviations: (says(position) && says(attitude)).then_some((position, attitude)), ..self }
+    }
+
+    /// The same with MAVLink's quality: negative for a failure of tracking, 0 for unknown, up to 100 %.
+    #[must_use]
+    pub fn quality(self, quality: i8) -> Self {
+        Self { failed: quality < 0, ..self }
+    }
+
+    /// The same with MAVLink's reset counter.
+    #[must_use]
+    pub fn reset_counter(self, resets: u8) -> Self {
+        Self { resets, ..self }
+    }
+
+    /// Whether it says the same of the vehicle as `other`, to the last bit.
+    pub(super) fn is_identical(&self, other: &Self) -> bool {
+        self.position == other.position && self.attitude == other.attitude
+    }
+}

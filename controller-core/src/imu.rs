@@ -1,0 +1,150 @@
+//! The inertial sensor's samples, made ready: integrated for the estimator, low-passed for the law, watched for faults.
+//!
+//! Two ways lead out of a sample, because two things are asked of it:
+//!
+//! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered: an integral
+//!   needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz stays what it is, a
+//!   motion to and fro.
+//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant rate. So the
+//!   gyro passes a second-order [low-pass](low_pass) first. Its delay is known, [`Conditioner::delay`], and must be counted in the
+//!   margins of the sampled loops.
+//!
+//! | sample at | low-pass of 60 Hz | mean over 5 ms |
+//! |---|---|---|
+//! | 70 Hz | 0.59 | 0.81 |
+//! | 100 Hz | 0.33 | 0.64 |
+//! | 130 Hz | 0.19 | 0.44 |
+//! | delay | 3.7 ms | none: integrals |
+//!
+//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. Up to [`BRIDGED_MAX`]
+//! without samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so
+//! does the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//!
+//! SI units, body frame (x forward, y left, z up), time in us.
+
+pub mod calibration;
+pub mod integrator;
+pub mod low_pass;
+pub mod six_point;
+pub mod standstill;
+pub mod watch;
+
+pub use calibration::Calibration;
+pub use watch::ImuFault;
+
+use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::estimator::Increment;
+use integrator::Integrator;
+use low_pass::LowPass;
+use nalgebra::Vector3;
+use watch::{Ranges, Watch};
+
+/// How long an increment lasts, us, where no sample is missing.
+pub const INCREMENT: u64 = 5_000;
+
+/// The longest time without samples that is bridged, us: an increment then stays below [`crate::estimator::EXTRAPOLATION_MAX`].
+pub const BRIDGED_MAX: u64 = 15_000;
+
+/// A sensor and how it is to be read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImuParameters {
+    /// Samples a second, Hz.
+    pub rate: f32,
+    /// Where the low-pass for the law's body rates has lost half the power, Hz.
+    pub cutoff: f32,
+    /// The gyro's full scale, rad/s.
+    pub gyro_range: f32,
+    /// The accelerometer's full scale, m/s^2.
+    pub accelerometer_range: f32,
+}
+
+impl ImuParameters {
+    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz.
+    pub const BMI088: Self = Self { rate: 1000.0, cutoff: 60.0, gyro_range: 34.906_586, accelerometer_range: 235.36 };
+}
+
+/// What a sample was good for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditioned {
+    /// An increment that it completes.
+    pub increment: Option<Increment>,
+    /// What is wrong with it, or with those before it.
+    pub fault: Option<ImuFault>,
+}
+
+/// From samples to increments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conditioner {
+    calibration: Calibration,
+    watch: Watch,
+    low_pass: LowPass,
+    integrator: Integrator,
+}
+
+impl Conditioner {
+    /// For a sensor with `parameters`, whose samples `calibration` corrects.
+    ///
+    /// # Errors
+    /// Names the parameter that is not positive, or a cutoff beyond a quarter of the rate.
+    pub fn new(parameters: &ImuParameters, calibration: &Calibration) -> Result<Self, ParameterError> {
+        let p = parameters;
+        for (value, field) in [
+            (p.rate, "imu.rate"),
+            (p.cutoff, "imu.cutoff"),
+            (p.gyro_range, "imu.gyro_range"),
+            (p.accelerometer_range, "imu.accelerometer_range"),
+        ] {
+            require_positive(value, field)?;
+        }
+        require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::NotBelow(0.25 * p.rate))?;
+        Ok(Self {
+            calibration: *calibration,
+            watch: Watch::new(Ranges { gyro: p.gyro_range, accelerometer: p.accelerometer_range }),
+            low_pass: LowPass::new(f64::from(p.cutoff), f64::from(p.rate)),
+            integrator: Integrator::EMPTY,
+        })
+    }
+
+    /// How far the body rate for the law lags behind, s, for slow changes.
+    #[must_use]
+    pub fn delay(&self) -> f32 {
+        self.low_pass.delay()
+    }
+
+    /// Corrects samples in another way from now on.
+    pub fn calibrate(&mut self, calibration: &Calibration) {
+        self.calibration = *calibration;
+    }
+
+    /// Takes the sample read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that one answered; the last
+    /// specific force counts on where it did not. A sample that is no number, or not later than the last, is left out.
+    pub fn sample(
+        &mut self,
+        time: u64,
+        angular_velocity: &Vector3<f32>,
+        specific_force: Option<&Vector3<f32>>,
+    ) -> Conditioned {
+        let fault = self.watch.see(angular_velocity, specific_force);
+        if fault == Some(ImuFault::NotFinite) {
+            return Conditioned { increment: None, fault };
+        }
+        let rate = self.calibration.rate(angular_velocity);
+        let force = specific_force.map(|force| self.calibration.force(force));
+        match self.integrator.age(time) {
+            Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
+            Some(age) if age <= BRIDGED_MAX => {
+                let smooth = self.low_pass.take(&rate);
+                let increment = self.integrator.take(time, &rate, force.as_ref(), &smooth, INCREMENT);
+                Conditioned { increment, fault }
+            }
+            before => {
+                self.low_pass.settle(&rate);
+                self.integrator.begin(time, &rate, force.as_ref());
+                Conditioned { increment: None, fault: fault.or(before.map(|_| ImuFault::Gap)) }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! Samples to increments: how the body turned, and what it felt, over a few milliseconds.
+//!
+//! Between two samples rate and force run straight (the trapezoid). With h the time between them, alpha = h (omega_0 + omega_1) / 2
+//! and f = (f_0 + f_1) / 2:
+//!
+//! ```text
+//! phi+ = phi + alpha + (phi x alpha) / 2          coning
+//! d+   = d + h f + (phi + alpha / 2) x h f        sculling: d in the body frame at the increment's start
+//! ```
+//!
+//! The products are what a sum of rates alone misses when the axis of rotation itself turns within an increment. For a cone of
+//! 3 degrees at 50 Hz, a violent vibration, that is 9.2 deg/s of false rate without them and 0.8 with (this module's tests). They cost 15 multiplications. Source: P. G. Savage, *Strapdown inertial navigation integration algorithm design*, AIAA
+//! J. Guidance 21, 1998, parts 1 and 2, to the order that samples at 1 kHz need.
+
+use crate::estimator::Increment;
+use nalgebra::Vector3;
+
+/// A sample that has been corrected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sample {
+    time: u64,
+    rate: Vector3<f32>,
+    force: Vector3<f32>,
+}
+
+/// An increment under way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Integrator {
+    last: Option<Sample>,
+    start: u64,
+    angle: Vector3<f32>,
+    velocity: Vector3<f32>,
+}
+
+impl Integrator {
+    /// Before the first sample.
+    pub const EMPTY: Self =
+        Self { last: None, start: 0, angle: Vector3::new(0.0, 0.0, 0.0), velocity: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// How long after the last sample `time` is, us: zero for one that is not later; none without a last one.
+    #[must_use]
+    pub fn age(&self, time: u64) -> Option<u64> {
+        self.last.map(|last| time.saturating_sub(last.time))
+    }
+
+    /// Begins anew with a sample of body rate (rad/s) and specific force (m/s^2), at `time`, us. Without a force it begins with
+    /// none: the vehicle might be in free fall.
+    pub fn begin(&mut self, time: u64, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) {
+        let force = force.copied().unwrap_or_default();
+        *self = Self { last: Some(Sample { time, rate: *rate, force }), start: time, ..Self::EMPTY };
+    }
+
+    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. `smooth` is the body rate for the law.
+    pub fn take(
+        &mut self,
+        time: u64,
+        rate: &Vector3<f32>,
+        force: Option<&Vector3<f32>>,
+        smooth: &Vector3<f32>,
+        least: u64,
+    ) -> Option<Increment> {
+        let last = self.last?;
+        let force = force.copied().unwrap_or(last.force);
+        let seconds = time.saturating_sub(last.time) as f32 * 1e-6;
+        let turn = (last.rate + rate) * (0.5 * seconds);
+        let push = (last.force + force) * (0.5 * seconds);
+        self.velocity += push + (self.angle + turn * 0.5).cross(&push);
+        self.angle += turn + self.angle.cross(&turn) * 0.5;
+        self.last = Some(Sample { time, rate: *rate, force });
+        if time.saturating_sub(self.start) < least {
+            return None;
+        }
+        let increment = Increment {
+            start: self.start,
+            end: time,
+            delta_angle: self.angle,
+            delta_velocity: self.velocity,
+            angular_velocity: *smooth,
+        };
+        *self = Self { last: self.last, start: time, ..Self::EMPTY };
+        Some(increment)
+    }
+}
+
+#[cfg(test)]
+mod tests;

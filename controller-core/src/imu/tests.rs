@@ -1,0 +1,101 @@
+extern crate std;
+use super::*;
+use std::vec::Vec;
+
+/// A sensor that jitters around these.
+fn at(n: u64) -> (Vector3<f32>, Vector3<f32>) {
+    let jitter = (n % 5) as f32 * 1e-4;
+    (Vector3::new(0.5, -1.0 + jitter, 2.0), Vector3::new(jitter, 1.0, 9.81))
+}
+
+fn conditioner() -> Conditioner {
+    Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).unwrap()
+}
+
+/// Increments and faults of the samples at these times, us.
+fn run(conditioner: &mut Conditioner, times: impl Iterator<Item = u64>) -> (Vec<Increment>, Vec<ImuFault>) {
+    let (mut increments, mut faults) = (Vec::new(), Vec::new());
+    for time in times {
+        let (rate, force) = at(time / 1_000);
+        let Conditioned { increment, fault } = conditioner.sample(time, &rate, Some(&force));
+        increments.extend(increment);
+        faults.extend(fault);
+    }
+    (increments, faults)
+}
+
+#[test]
+fn samples_at_1_khz_become_increments_of_5_ms_without_a_gap() {
+    let (increments, faults) = run(&mut conditioner(), (0..=1_000).map(|n| n * 1_000));
+    assert_eq!((increments.len(), faults.len()), (200, 0));
+    for (n, increment) in increments.iter().enumerate() {
+        assert_eq!((increment.start, increment.end), (n as u64 * 5_000, (n as u64 + 1) * 5_000));
+        assert!((increment.angular_velocity - at(0).0).norm() < 1e-3);
+    }
+}
+
+#[test]
+fn missing_samples_are_bridged_and_gaps_begin_anew() {
+    // Every third sample is missing, then 15 ms of them, then 16.
+    let kept = (0..200_u64).filter(|n| n % 3 != 1).map(|n| n * 1_000);
+    let later = [198_000 + 15_000, 214_000, 215_000, 231_001, 232_001, 237_001].into_iter();
+    let (increments, faults) = run(&mut conditioner(), kept.chain(later));
+    assert_eq!(faults, [ImuFault::Gap]);
+    let gaps = increments.windows(2).filter(|pair| pair[0].end != pair[1].start).count();
+    assert_eq!(gaps, 1);
+    assert!(increments.iter().all(|one| one.is_usable(crate::estimator::EXTRAPOLATION_MAX)));
+    assert_eq!(increments.last().unwrap().start, 231_001);
+    let turn: Vector3<f32> = increments.iter().map(|increment| increment.delta_angle).sum();
+    let covered: f32 = increments.iter().map(Increment::seconds).sum();
+    assert!((turn - at(0).0 * covered).norm() < 1e-3 * covered);
+}
+
+#[test]
+fn samples_that_run_back_or_are_no_numbers_are_left_out() {
+    let mut conditioner = conditioner();
+    let (_, faults) = run(&mut conditioner, [1_000, 2_000, 2_000, 1_500, 3_000].into_iter());
+    assert_eq!(faults, [ImuFault::Clock, ImuFault::Clock]);
+    let before = conditioner.clone();
+    let broken = conditioner.sample(4_000, &Vector3::repeat(f32::NAN), None);
+    assert_eq!(broken, Conditioned { increment: None, fault: Some(ImuFault::NotFinite) });
+    assert_eq!(conditioner, before);
+}
+
+#[test]
+fn the_gyro_goes_on_when_the_accelerometer_is_silent() {
+    let mut conditioner = conditioner();
+    run(&mut conditioner, (0..10).map(|n| n * 1_000));
+    let mut increments = 0;
+    for n in 10..30_u64 {
+        let said = conditioner.sample(n * 1_000, &at(n).0, None);
+        assert_eq!(said.fault, Some(ImuFault::AccelerometerSilent));
+        increments += u32::from(said.increment.is_some());
+    }
+    assert_eq!(increments, 4);
+}
+
+#[test]
+fn a_vibration_at_the_ticks_rate_reaches_the_law_at_a_third() {
+    // 100 Hz and 1 rad/s, taken at 100 Hz: unfiltered it would read as a constant rate of 1 rad/s.
+    let mut conditioner = conditioner();
+    let (mut worst, mut plain) = (0.0_f32, 0.0_f32);
+    for n in 0..2_000_u64 {
+        let rate = Vector3::new((n as f32 * 0.2 * core::f32::consts::PI).cos(), (n % 3) as f32 * 1e-4, 0.0);
+        let said = conditioner.sample(n * 1_000, &rate, Some(&at(n).1));
+        if let Some(increment) = said.increment.filter(|increment| increment.end % 10_000 == 0 && n > 100) {
+            worst = worst.max(increment.angular_velocity.x.abs());
+            plain = plain.max(rate.x.abs());
+        }
+    }
+    assert!(worst < 0.34 && plain > 0.99, "{worst}, unfiltered {plain}");
+}
+
+#[test]
+fn parameters_that_make_no_sense_are_refused_by_name() {
+    let refused = |parameters: &ImuParameters| Conditioner::new(parameters, &Calibration::NONE).err().unwrap();
+    let good = ImuParameters::BMI088;
+    assert_eq!(refused(&ImuParameters { rate: 0.0, ..good }).field, "imu.rate");
+    assert_eq!(refused(&ImuParameters { cutoff: 251.0, ..good }).reason, Reason::NotBelow(250.0));
+    assert_eq!(refused(&ImuParameters { gyro_range: f32::NAN, ..good }).reason, Reason::NotFinite);
+    assert!((conditioner().delay() - 3.7e-3).abs() < 1e-5);
+}

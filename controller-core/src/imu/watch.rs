@@ -1,0 +1,142 @@
+//! Samples that are none: what a sensor says that has failed.
+//!
+//! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two triples in a
+//! row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the truth is beyond.
+
+use core::fmt;
+use nalgebra::Vector3;
+
+/// Equal triples in a row after which a sensor is stuck: 20 ms at 1 kHz, as long as a silent one is flown.
+pub const STUCK_AFTER: u8 = 20;
+
+/// Samples at full scale in a row that are a fault: a shock is over sooner.
+pub const SATURATED_AFTER: u8 = 5;
+
+/// What of a range counts as its end.
+const FULL_SCALE: f32 = 0.999;
+
+/// What is wrong with the sensor, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ImuFault {
+    /// A sample that is no number: left out.
+    NotFinite,
+    /// The gyro says the same thing over and over.
+    GyroStuck,
+    /// The gyro has been at full scale.
+    GyroSaturated,
+    /// The accelerometer does not answer: its last word counts on.
+    AccelerometerSilent,
+    /// The accelerometer says the same thing over and over.
+    AccelerometerStuck,
+    /// The accelerometer has been at full scale.
+    AccelerometerSaturated,
+    /// A sample not later than the one before it: left out.
+    Clock,
+    /// More than [`super::BRIDGED_MAX`] without a sample: integration begins anew.
+    Gap,
+}
+
+impl ImuFault {
+    /// Every fault.
+    pub const ALL: [Self; 8] = [
+        Self::NotFinite,
+        Self::GyroStuck,
+        Self::GyroSaturated,
+        Self::AccelerometerSilent,
+        Self::AccelerometerStuck,
+        Self::AccelerometerSaturated,
+        Self::Clock,
+        Self::Gap,
+    ];
+
+    /// The fault in words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::NotFinite => "IMU: sample is not a number",
+            Self::GyroStuck => "IMU: gyro stuck",
+            Self::GyroSaturated => "IMU: gyro at full scale",
+            Self::AccelerometerSilent => "IMU: accelerometer does not answer",
+            Self::AccelerometerStuck => "IMU: accelerometer stuck",
+            Self::AccelerometerSaturated => "IMU: accelerometer at full scale",
+            Self::Clock => "IMU: samples out of order",
+            Self::Gap => "IMU: gap in the samples",
+        }
+    }
+}
+
+impl fmt::Display for ImuFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
+/// Full scales, rad/s and m/s^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranges {
+    /// The gyro's.
+    pub gyro: f32,
+    /// The accelerometer's.
+    pub accelerometer: f32,
+}
+
+/// One of the two sensors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Seen {
+    last: Vector3<f32>,
+    equal: u8,
+    saturated: u8,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { last: Vector3::new(0.0, 0.0, 0.0), equal: 0, saturated: 0 };
+
+    /// Whether it is stuck, and whether at full scale, with this triple.
+    fn see(&mut self, triple: &Vector3<f32>, range: f32) -> (bool, bool) {
+        let count = |count: u8, more: bool| if more { count.saturating_add(1) } else { 0 };
+        self.equal = count(self.equal, *triple == self.last);
+        self.saturated = count(self.saturated, triple.iter().any(|component| component.abs() >= FULL_SCALE * range));
+        self.last = *triple;
+        (self.equal >= STUCK_AFTER, self.saturated >= SATURATED_AFTER)
+    }
+}
+
+/// Both sensors, as they have been.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Watch {
+    ranges: Ranges,
+    gyro: Seen,
+    accelerometer: Seen,
+}
+
+impl Watch {
+    /// Nothing seen yet.
+    #[must_use]
+    pub fn new(ranges: Ranges) -> Self {
+        Self { ranges, gyro: Seen::NOTHING, accelerometer: Seen::NOTHING }
+    }
+
+    /// The worst that can be said of the sensors, given one more sample, before calibration.
+    pub fn see(&mut self, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) -> Option<ImuFault> {
+        let finite = rate.iter().chain(force.into_iter().flatten()).all(|component| component.is_finite());
+        if !finite {
+            return Some(ImuFault::NotFinite);
+        }
+        let (gyro_stuck, gyro_saturated) = self.gyro.see(rate, self.ranges.gyro);
+        let (stuck, saturated) =
+            force.map_or((false, false), |force| self.accelerometer.see(force, self.ranges.accelerometer));
+        [
+            (gyro_stuck, ImuFault::GyroStuck),
+            (gyro_saturated, ImuFault::GyroSaturated),
+            (force.is_none(), ImuFault::AccelerometerSilent),
+            (stuck, ImuFault::AccelerometerStuck),
+            (saturated, ImuFault::AccelerometerSaturated),
+        ]
+        .into_iter()
+        .find_map(|(holds, fault)| holds.then_some(fault))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,68 @@
+use super::*;
+
+const RANGES: Ranges = Ranges { gyro: 34.9, accelerometer: 235.0 };
+
+/// Samples that jitter, as a sensor that works does.
+fn noisy(n: u32) -> (Vector3<f32>, Vector3<f32>) {
+    let jitter = (n % 7) as f32 * 1e-3;
+    (Vector3::new(jitter, 0.1 - jitter, 0.2), Vector3::new(jitter, 0.0, 9.81 + jitter))
+}
+
+#[test]
+fn a_sensor_that_works_has_no_fault() {
+    let mut watch = Watch::new(RANGES);
+    for n in 0..1_000 {
+        let (rate, force) = noisy(n);
+        assert_eq!(watch.see(&rate, Some(&force)), None);
+    }
+}
+
+#[test]
+fn a_stuck_sensor_is_one_after_20_ms_and_works_again_at_once() {
+    for (gyro, fault) in [(true, ImuFault::GyroStuck), (false, ImuFault::AccelerometerStuck)] {
+        let mut watch = Watch::new(RANGES);
+        let stuck = noisy(3);
+        for n in 0..100 {
+            let (rate, force) = noisy(n);
+            let seen = if gyro { (stuck.0, force) } else { (rate, stuck.1) };
+            let expected = (n >= u32::from(STUCK_AFTER)).then_some(fault);
+            assert_eq!(watch.see(&seen.0, Some(&seen.1)), expected, "{n}");
+        }
+        let (rate, force) = noisy(4);
+        assert_eq!(watch.see(&rate, Some(&force)), None);
+    }
+}
+
+#[test]
+fn full_scale_is_a_fault_when_it_lasts() {
+    let mut watch = Watch::new(RANGES);
+    for n in 0..20 {
+        let (mut rate, mut force) = noisy(n);
+        rate.y = -34.9;
+        let expected = (n + 1 >= u32::from(SATURATED_AFTER)).then_some(ImuFault::GyroSaturated);
+        assert_eq!(watch.see(&rate, Some(&force)), expected, "{n}");
+        (rate.y, force.z) = (0.0, 0.0);
+    }
+    let mut watch = Watch::new(RANGES);
+    for n in 0..20 {
+        let (rate, mut force) = noisy(n);
+        force.z = 235.0;
+        let expected = (n + 1 >= u32::from(SATURATED_AFTER)).then_some(ImuFault::AccelerometerSaturated);
+        assert_eq!(watch.see(&rate, Some(&force)), expected, "{n}");
+    }
+}
+
+#[test]
+fn what_is_missing_or_no_number_is_said() {
+    let mut watch = Watch::new(RANGES);
+    let (rate, force) = noisy(1);
+    assert_eq!(watch.see(&rate, None), Some(ImuFault::AccelerometerSilent));
+    assert_eq!(watch.see(&rate.map(|_| f32::NAN), Some(&force)), Some(ImuFault::NotFinite));
+    assert_eq!(watch.see(&rate, Some(&(force * f32::INFINITY))), Some(ImuFault::NotFinite));
+    assert_eq!(watch.see(&rate, Some(&force)), None);
+}
+
+#[test]
+fn every_fault_fits_a_status_text() {
+    assert!(ImuFault::ALL.iter().all(|fault| fault.text().len() <= crate::flight::reason::TEXT_MAX));
+}
