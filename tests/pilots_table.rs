@@ -161,10 +161,7 @@ fn the_hummingbird_does_what_is_required() {
 
 #[test]
 fn the_study_does_what_is_required() {
-    show(
-        "study",
-        &Required { height: 12.0, recovered: 15.0, gust: 1.5, step: 3.0, far: 9.0, windy: 0.2, noise: 1e-2 },
-    );
+    show("study", &Required { height: 12.0, recovered: 15.0, gust: 1.5, step: 3.0, far: 9.0, windy: 0.2, noise: 1e-2 });
 }
 
 #[test]
