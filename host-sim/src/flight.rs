@@ -1,9 +1,10 @@
 //! A closed-loop flight: plant, reference and controller, one control tick at a time.
 //!
-//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors make of it, and the
+//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors or its estimator make of it, and the
 //! reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
 
 use crate::actuators::ActuationError;
+use crate::estimation::{Estimation, NoEstimate};
 use crate::reality::Surroundings;
 use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
@@ -26,6 +27,7 @@ use std::sync::Arc;
 pub struct Flight {
     vehicle: SimulatedVehicle,
     sensors: Option<Sensors>,
+    estimation: Option<Box<Estimation>>,
     law: Law,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
@@ -40,7 +42,7 @@ pub struct Tick {
     pub time_us: u64,
     /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
-    /// What the law was told of it, where there are sensors.
+    /// What the law was told of it, where there are sensors or an estimator.
     pub measured: Option<Box<State>>,
     /// What surrounded the vehicle at that moment.
     pub surroundings: Surroundings,
@@ -74,6 +76,8 @@ pub struct FlightError {
 pub enum Cause {
     /// The law refused its input.
     Law(InputError),
+    /// There is no state to fly on.
+    Estimate(NoEstimate),
     /// The wrench could not be applied, or the motion is no longer finite.
     Actuation(ActuationError),
 }
@@ -83,6 +87,7 @@ impl fmt::Display for FlightError {
         write!(f, "at {} s: ", self.time_us as f64 / 1e6)?;
         match &self.cause {
             Cause::Law(error) => write!(f, "the law refused its input: {error}"),
+            Cause::Estimate(error) => write!(f, "{error}"),
             Cause::Actuation(error) => write!(f, "{error}"),
         }
     }
@@ -142,6 +147,7 @@ impl Flight {
         Self {
             vehicle: SimulatedVehicle::new(scenario, configuration),
             sensors: Sensors::new(scenario),
+            estimation: Estimation::new(scenario).map(Box::new),
             law,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
@@ -161,13 +167,12 @@ impl Flight {
         let fail = |cause| FlightError { time_us, cause };
         let (state, rotors) = (*self.vehicle.state(), self.vehicle.thrusts());
         let surroundings = self.vehicle.surroundings();
-        let measured = self.sensors.as_mut().map(|sensors| Box::new(sensors.measure(&state)));
+        let measured = self.measure(&state).map_err(|error| fail(Cause::Estimate(error)))?;
         let told = measured.as_deref().copied().unwrap_or_else(|| state.measured());
         let reference = self.trajectory.at(time_us);
         let (wrench, diagnostics) = self.law.step(&told, &reference).map_err(|error| fail(Cause::Law(error)))?;
         let asked = wrench.scaled(1.0 / self.law.thrust_scale());
-        let (clipped, rotor_thrusts) =
-            self.vehicle.hold(&asked, self.steps_per_tick).map_err(|error| fail(Cause::Actuation(error)))?;
+        let (clipped, rotor_thrusts) = self.hold(&asked).map_err(|error| fail(Cause::Actuation(error)))?;
         if clipped || surroundings.standing {
             self.law.hold_estimates();
         }
@@ -186,6 +191,35 @@ impl Flight {
             rotors,
             rotor_thrusts,
         })
+    }
+
+    /// What the law is told, where it is told anything else than the state.
+    fn measure(&mut self, state: &BodyState) -> Result<Option<Box<State>>, NoEstimate> {
+        let Some(estimation) = &mut self.estimation else {
+            return Ok(self.sensors.as_mut().map(|sensors| Box::new(sensors.measure(state))));
+        };
+        let (told, jumped) = estimation.told()?;
+        if jumped {
+            self.law.hold_estimates();
+        }
+        Ok(Some(Box::new(told)))
+    }
+
+    /// The vehicle's motion until the next tick, under a wrench that is asked of the rotors.
+    fn hold(&mut self, asked: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
+        let Some(estimation) = &mut self.estimation else {
+            return self.vehicle.hold(asked, self.steps_per_tick);
+        };
+        let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
+        for _ in 0..samples {
+            let (cut, arrived) = self.vehicle.hold(asked, self.steps_per_tick / samples)?;
+            clipped |= cut;
+            if !arrived.is_empty() {
+                thrusts = arrived;
+            }
+            estimation.sample(self.vehicle.state());
+        }
+        Ok((clipped, thrusts))
     }
 }
 

@@ -20,6 +20,7 @@ pub mod campaign;
 pub mod certify;
 pub mod claims;
 pub mod course;
+pub mod estimation;
 pub mod flight;
 pub mod flown;
 pub mod fly;

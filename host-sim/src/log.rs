@@ -5,7 +5,7 @@
 //! the law was told of the state. Angles in rad, the rest in SI units; each number has the digits that give its bits back.
 //!
 //! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of the
-//! state that it was told, `measured_…`, where there are sensors.
+//! state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
 
 use crate::flight::Tick;
 use scenario::reality::Reality;
@@ -29,15 +29,22 @@ pub fn header(rotors: usize, estimates: bool) -> String {
 /// What the header row gains by what the scenario says of reality.
 #[must_use]
 pub fn reality_header(reality: &Reality) -> String {
-    [(reality.wind.is_some(), WIND), (reality.battery.is_some(), BATTERY), (reality.sensors.is_some(), MEASURED)]
-        .into_iter()
-        .fold(String::new(), |header, (there, columns)| if there { header + columns } else { header })
+    [
+        (reality.wind.is_some(), WIND),
+        (reality.battery.is_some(), BATTERY),
+        (reality.sensors.is_some(), MEASURED),
+        (reality.estimator.is_some(), ESTIMATED),
+    ]
+    .into_iter()
+    .fold(String::new(), |header, (there, columns)| if there { header + columns } else { header })
 }
 
 const WIND: &str = ",wind_x,wind_y,wind_z";
 const BATTERY: &str = ",voltage,current";
 const MEASURED: &str = ",measured_px,measured_py,measured_pz,measured_vx,measured_vy,measured_vz,\
 measured_qw,measured_qx,measured_qy,measured_qz,measured_wx,measured_wy,measured_wz";
+
+const ESTIMATED: &str = ",est_px,est_py,est_pz,est_vx,est_vy,est_vz,est_qw,est_qx,est_qy,est_qz,est_wx,est_wy,est_wz";
 
 /// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further column.
 #[must_use]

@@ -1,7 +1,7 @@
 //! A whole scenario file: its sections, read into one flight that can be flown.
 
 use crate::body::BodyState;
-use crate::reality::{self, Reality, sensors};
+use crate::reality::{self, Reality, estimator, sensors};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
@@ -102,6 +102,7 @@ impl Scenario {
         let rotor_lag = actuation::read_lag(root)?;
         let delay = delay_steps as f64 * timing.step();
         let sensors = sensors::read(root, &timing, delay / timing.period())?;
+        let estimator = estimator::read(root, &timing)?;
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
@@ -109,7 +110,7 @@ impl Scenario {
         let configuration = actuation::read_rotors(root, configuration)?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
-        let reality = Reality::read(root, &configuration, sensors, &initial)?;
+        let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;
         Ok(Self { name, timing, configuration, rotor_lag, delay_steps, reality, initial, reference, trajectory })
     }
 
@@ -119,10 +120,11 @@ impl Scenario {
         self.delay_steps as f64 * self.timing.step()
     }
 
-    /// By how much what is measured is late, s.
+    /// By how much what is measured is late, s: with an estimator, the body rates by their low-pass.
     #[must_use]
     pub fn input_delay(&self) -> f64 {
-        self.reality.sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * self.timing.period())
+        let sensors = self.reality.sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * self.timing.period());
+        sensors + self.reality.estimator.map_or(0.0, |_| estimator::low_pass_delay())
     }
 
     /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together.

@@ -10,13 +10,15 @@
 //! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
 //! | [`[ground]`](ground) | something to stand on | |
 //! | [`[sensors]`](sensors) | what the controller is told of the state | |
+//! | [`[estimator]`](estimator) | an IMU and late poses, from which the core's estimator makes the state | no `[sensors]` |
 //!
 //! All may be left out. The certificate, the controller and the boards know nothing of them: they are what a flight is
-//! flown *in*. `[sensors] delay` alone is part of the sampled loops.
+//! flown *in*. `[sensors] delay` and the delay of the estimator's low-pass alone are part of the sampled loops.
 
 pub mod battery;
 pub mod disturbance;
 pub mod drag;
+pub mod estimator;
 pub mod failure;
 pub mod ground;
 pub mod numbers;
@@ -30,6 +32,7 @@ use battery::Battery;
 use controller_core::certificate::configuration::Configuration;
 use disturbance::Disturbance;
 use drag::Drag;
+use estimator::Estimator;
 use failure::Failure;
 use ground::Ground;
 use sensors::Sensors;
@@ -37,7 +40,8 @@ use truth::Truth;
 use wind::Wind;
 
 /// The names of the sections.
-pub const SECTIONS: [&str; 8] = ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors"];
+pub const SECTIONS: [&str; 9] =
+    ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors", "estimator"];
 
 /// What the file says beyond the model. By default nothing: the vehicle is the model, in still vacuum, its state known.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -58,17 +62,19 @@ pub struct Reality {
     pub ground: Option<Ground>,
     /// `[sensors]`.
     pub sensors: Option<Sensors>,
+    /// `[estimator]`.
+    pub estimator: Option<Estimator>,
 }
 
 impl Reality {
-    /// Reads all sections but `[sensors]`, which are given, for a flight of `configuration` from `initial`.
+    /// Reads all sections but those of `measured`, `[sensors]` and `[estimator]`, for a flight of `configuration` from `initial`.
     ///
     /// # Errors
     /// Names the field that is refused, or the section that lacks another.
     pub fn read(
         root: &Section,
         configuration: &Configuration,
-        sensors: Option<Sensors>,
+        measured: (Option<Sensors>, Option<Estimator>),
         initial: &BodyState,
     ) -> Result<Self, FieldError> {
         let rotors = configuration.rotors().map(|rotors| rotors.len());
@@ -87,7 +93,8 @@ impl Reality {
             battery: battery::read(root)?,
             failure: failure::read(root, rotors.unwrap_or(0))?,
             ground: ground::read(root, initial)?,
-            sensors,
+            sensors: measured.0,
+            estimator: measured.1,
         })
     }
 
@@ -103,6 +110,7 @@ impl Reality {
             self.failure.is_some(),
             self.ground.is_some(),
             self.sensors.is_some(),
+            self.estimator.is_some(),
         ];
         SECTIONS.into_iter().zip(there).filter_map(|(section, there)| there.then_some(section)).collect()
     }
@@ -110,7 +118,7 @@ impl Reality {
     /// Whether the vehicle and the air are the model's, whatever the sensors say of them.
     #[must_use]
     pub fn is_model(&self) -> bool {
-        Self { sensors: None, ..self.clone() } == Self::default()
+        Self { sensors: None, estimator: None, ..self.clone() } == Self::default()
     }
 }
 

@@ -183,6 +183,8 @@ fn really(scenario: &Scenario, model: &Model) -> Scenario {
         real.delay_steps += (model.delay / scenario.timing.step()).round() as u64;
     }
     real.reality.wind = None;
+    // What a state that is estimated costs, every candidate pays alike.
+    real.reality.estimator = None;
     real
 }
 
