@@ -7,10 +7,11 @@ mod sensors;
 mod truth;
 
 use crate::support::random;
-use controller_core::estimator::EstimatorParameters;
+use controller_core::estimator::{EstimatorParameters, Rejected};
+use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
-use run::Shown;
-use truth::Truth;
+use run::{Meddle, Shown};
+use truth::{Moment, Truth};
 
 /// Flights of each kind.
 const RUNS: u64 = 100;
@@ -31,7 +32,11 @@ struct Campaign {
 
 impl Campaign {
     fn fly(truth: &Truth, parameters: &EstimatorParameters) -> Self {
-        let fly = |seed| run::fly(truth, parameters, &mut random::generator(seed));
+        Self::lied_to(truth, parameters, &|_, moment| moment)
+    }
+
+    fn lied_to(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle) -> Self {
+        let fly = |seed| run::fly(truth, parameters, meddle, &mut random::generator(seed));
         Self { shown: (0..RUNS).into_par_iter().map(fly).collect() }
     }
 
@@ -127,4 +132,52 @@ fn sensors_a_quarter_noisier_than_they_are_said_to_be_leave_the_band() {
     let mean = nees.iter().sum::<f64>() / nees.len() as f64;
     println!("mean NEES {mean:.2}");
     assert!(mean > NEES_BAND.1, "{mean}");
+}
+
+#[test]
+fn a_vehicle_that_shakes_is_known_as_well() {
+    let campaign = Campaign::fly(&Truth::circle().shaken(), &EstimatorParameters::BMI088);
+    let ((position, attitude), [(short, _), (long, _)]) = (campaign.errors(), campaign.drift());
+    let (refused, poses) = campaign.refused();
+    println!("shaken: {:.3} mm, {attitude:.4} deg; {short:.4} m, {long:.3} m; {refused} of {poses}", position * 1e3);
+    assert!(position < 2e-3 && attitude < 0.3, "{position} m, {attitude} degrees");
+    assert!(short < 0.1 && long < 1.0, "{short} m, {long} m");
+}
+
+#[test]
+fn poses_that_lie_for_their_last_half_second_move_the_estimate_by_millimetres() {
+    let truth = Truth::circle();
+    // The lie begins half a second before the poses end, and errors count until then.
+    let began = truth.milliseconds() - 2_000 - 520;
+    let frozen = truth.moments[began];
+    type Lie = Box<dyn Fn(usize, Moment) -> Moment + Sync>;
+    let displaced = |by: f64| -> Lie {
+        Box::new(move |_, moment| Moment { position: moment.position + Vector3::x() * by, ..moment })
+    };
+    let turned = |axis: Vector3<f64>| -> Lie {
+        let turn = UnitQuaternion::from_scaled_axis(axis * std::f64::consts::PI);
+        Box::new(move |_, moment| Moment { attitude: turn * moment.attitude, ..moment })
+    };
+    let drifting: Lie = Box::new(move |n, moment| {
+        let seconds = (n - began) as f64 * 1e-3;
+        Moment { position: moment.position + Vector3::new(0.3, 0.4, 0.0) * seconds, ..moment }
+    });
+    for (what, lie, most) in [
+        ("0.3 m off", displaced(0.3), 0.01),
+        ("5 m off", displaced(5.0), 0.01),
+        ("100 m off", displaced(100.0), 0.01),
+        ("half a turn about the vertical", turned(Vector3::z()), 0.01),
+        ("half a turn about x", turned(Vector3::x()), 0.01),
+        ("drifting at 0.5 m/s", drifting, 0.01),
+        ("where it was", Box::new(move |_, _| frozen), 0.01),
+    ] {
+        let meddle = |n: usize, moment: Moment| if n < began { moment } else { lie(n, moment) };
+        let campaign = Campaign::lied_to(&truth, &EstimatorParameters::BMI088, &meddle);
+        let (worst, _) = campaign.worst();
+        println!("{what:<32} worst {:.2} mm", worst * 1e3);
+        assert!(worst < most, "{what}: {worst} m");
+        for shown in &campaign.shown {
+            assert!(matches!(shown.last, Some(Err(why)) if why != Rejected::Repeated), "{what}: {:?}", shown.last);
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::sensors::{Imu, pose};
 use super::truth::{Moment, Truth};
 use controller_core::estimator::covariance::Covariance;
 use controller_core::estimator::filter::Filter;
-use controller_core::estimator::{Estimator, EstimatorParameters, Settings};
+use controller_core::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
 use controller_core::flight::Stamped;
 use controller_core::imu::{Calibration, Conditioner, ImuParameters};
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
@@ -24,6 +24,9 @@ pub struct TickError {
     pub attitude: f64,
 }
 
+/// What the pose source takes for the moment at a time, ms, that was this.
+pub type Meddle<'a> = &'a (dyn Fn(usize, Moment) -> Moment + Sync);
+
 /// What a flight showed.
 pub struct Shown {
     /// One a tick of 10 ms, from where they count to the last pose.
@@ -34,15 +37,17 @@ pub struct Shown {
     pub drift: [f64; 2],
     /// Poses taken and refused.
     pub counts: (u32, u32),
+    /// What became of the last pose.
+    pub last: Option<Result<Taken, Rejected>>,
 }
 
-/// Flies `truth`.
-pub fn fly(truth: &Truth, parameters: &EstimatorParameters, random: &mut impl Rng) -> Shown {
+/// Flies `truth`, with poses of moments that `meddle` may have changed.
+pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, random: &mut impl Rng) -> Shown {
     let mut conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).unwrap();
     let mut estimator = Box::new(Estimator::new(&Settings::new(parameters).unwrap()));
     let mut imu = Imu::new(random);
     let mut biases = VecDeque::new();
-    let mut shown = Shown { ticks: Vec::new(), nees: Vec::new(), drift: [0.0; 2], counts: (0, 0) };
+    let mut shown = Shown { ticks: Vec::new(), nees: Vec::new(), drift: [0.0; 2], counts: (0, 0), last: None };
     let silent_from = truth.milliseconds() - COASTING;
     for (n, moment) in truth.moments.iter().enumerate() {
         let now = n as u64 * 1_000;
@@ -59,7 +64,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, random: &mut impl Rn
         }
         let then = &truth.moments[n - LATE];
         if n <= silent_from {
-            let stamped = Stamped { value: pose(then, random), time: now - LATE as u64 * 1_000 };
+            let stamped = Stamped { value: pose(&meddle(n - LATE, *then), random), time: now - LATE as u64 * 1_000 };
             let _ = estimator.pose(&stamped, now);
         }
         if n < truth.counts_from {
@@ -77,7 +82,8 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, random: &mut impl Rn
             shown.drift[1] = error.position.sqrt();
         }
     }
-    shown.counts = estimator.health(0).counts;
+    let health = estimator.health(0);
+    (shown.counts, shown.last) = (health.counts, health.last);
     shown
 }
 

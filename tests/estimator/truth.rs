@@ -101,6 +101,19 @@ impl Truth {
         Self { name: "recovery", moments, counts_from: 2_500 }
     }
 
+    /// The same on a vehicle whose rotors shake the sensor: a gyro by 0.5 rad/s and an accelerometer by 5 m/s^2 on each axis, at
+    /// 97 Hz, which the law's ticks fold to 3 Hz.
+    pub fn shaken(self) -> Self {
+        let mut moments = self.moments;
+        for (n, moment) in moments.iter_mut().enumerate() {
+            let phase = std::f64::consts::TAU * 97.0 * n as f64 * 1e-3;
+            let shake = Vector3::new(phase.sin(), (phase + 2.0).sin(), (phase + 4.0).sin());
+            moment.rate += shake * 0.5;
+            moment.force += Vector3::new(shake.z, shake.x, shake.y) * 5.0;
+        }
+        Self { name: "shaken", moments, ..self }
+    }
+
     /// How long it lasts, ms.
     pub fn milliseconds(&self) -> usize {
         self.moments.len() - 1

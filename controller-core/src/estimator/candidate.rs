@@ -54,7 +54,7 @@ impl Candidate {
     /// Takes one more pose, later than the last.
     ///
     /// # Errors
-    /// If the pose does not go with those before it; see [`Self::is_lost`].
+    /// If the pose does not go with those before it; see `Self::is_lost`.
     pub fn take(
         &mut self,
         time: u64,

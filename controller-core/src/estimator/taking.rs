@@ -32,13 +32,13 @@ impl Estimator {
 
     /// Takes the poses that have waited for the IMU to get to `end`, us.
     pub(super) fn take_waiting(&mut self, end: u64) {
-        for pose in core::mem::take(&mut self.waiting) {
+        for pose in core::mem::take(&mut self.waiting).iter() {
             if pose.time <= end {
-                let verdict = self.take(&pose);
+                let verdict = self.take(pose);
                 self.statistics.record(verdict, pose.time);
             } else {
                 // It was there before: it fits.
-                let _ = self.waiting.push(pose);
+                let _ = self.waiting.push(*pose);
             }
         }
     }
