@@ -83,7 +83,8 @@ fn with(line: &str, nth: usize, replacement: &str) -> String {
 
 #[test]
 fn every_key_becomes_what_the_file_says() {
-    let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors } = read(REALITY).unwrap().reality;
+    let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors, .. } =
+        read(REALITY).unwrap().reality;
     let truth = truth.unwrap();
     assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve, truth.lag), (0.55, 0.8, 0.3, Some(0.015)));
     assert_eq!(truth.inertia, Vector3::new(3.9e-3, 3.9e-3, 7.5e-3));
@@ -122,7 +123,7 @@ fn every_key_becomes_what_the_file_says() {
 fn a_file_without_them_is_the_model_and_a_section_without_keys_changes_little() {
     let model = read("").unwrap();
     assert_eq!(model.reality, Reality::default());
-    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTIONS);
+    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTIONS[..8]);
     assert!(model.reality.is_model());
     let empty = read("[truth]\n[drag]\n[wind]\n[sensors]\n").unwrap().reality;
     assert_eq!(empty.truth.as_ref().unwrap().mass, f64::from(0.5_f32));
@@ -252,4 +253,39 @@ fn a_section_that_needs_another_says_which() {
     }
     paper("[drag]\nlinear = [0.1, 0.1, 0.1]\n[wind]\nsteady = [1, 0, 0]\n[truth]\nthrust_scale = 0.9\n[ground]")
         .unwrap();
+}
+
+#[test]
+fn an_estimator_has_defaults_and_its_low_pass_counts_in_the_loops() {
+    let with = |text: &str| read(text).unwrap();
+    let plain = with("[estimator]\n");
+    let estimator = plain.reality.estimator.unwrap();
+    assert_eq!((estimator.imu_noise, estimator.pose_every, estimator.pose_delay), (1.0, 10, 20));
+    assert_eq!((estimator.position_noise, estimator.attitude_noise), (1e-3, 0.3_f64.to_radians()));
+    assert_eq!((estimator.dropout, estimator.outage, estimator.seed), (0.0, None, 0));
+    assert!(plain.reality.is_model() && plain.reality.sections() == ["estimator"]);
+    assert!((3e-3..4e-3).contains(&plain.input_delay()), "{}", plain.input_delay());
+    let roll = |scenario: &Scenario| scenario.loops().unwrap().reports()[0].margins.unwrap().delay;
+    let lost = roll(&with("")) - roll(&plain);
+    assert!((lost - plain.input_delay()).abs() < 1e-4, "{lost}");
+    let outage =
+        with("[estimator]\noutage = { start = 2.0, duration = 0.5 }").reality.estimator.unwrap().outage.unwrap();
+    assert_eq!((outage.start, outage.duration), (2.0, 0.5));
+}
+
+#[test]
+fn an_estimator_that_cannot_be_is_refused_by_name() {
+    for (text, field, problem) in [
+        ("[sensors]\n[estimator]", "estimator", "leave [sensors] or [estimator] out"),
+        ("[estimator]\npose_rate = 70.0", "estimator.pose_rate", "whole milliseconds"),
+        ("[estimator]\npose_rate = 500.0", "estimator.pose_rate", "from 10 to 200 Hz"),
+        ("[estimator]\npose_delay = 0.0205", "estimator.pose_delay", "whole milliseconds"),
+        ("[estimator]\npose_delay = 0.2", "estimator.pose_delay", "from 0 to 0.15 s"),
+        ("[estimator]\nimu_noise = -1.0", "estimator.imu_noise", "from 0 to 100"),
+        ("[estimator]\noutage = { start = 1.0 }", "estimator.outage.duration", "missing"),
+        ("[estimator]\npose_noise = 1.0", "estimator.pose_noise", "unknown"),
+    ] {
+        let error = read(text).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(field) && error.contains(problem), "{text}: {error}");
+    }
 }
