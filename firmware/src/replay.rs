@@ -10,6 +10,7 @@
 //!
 //! Table I flies here and nowhere else in this crate: it does not survive a late sample.
 
+pub mod estimate;
 pub mod recovery;
 
 use controller_core::certificate::certified::Certified;

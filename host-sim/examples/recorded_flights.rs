@@ -1,7 +1,8 @@
 //! Records the states of the paper's flight and of the embedded scenario's recovery for `firmware::replay`, as `states.f32` and
-//! `recovery.f32`, and prints the recovery's number on this machine:
+//! `recovery.f32`, and prints the numbers of the recovery and of the estimate of it on this machine, a line each:
 //! `cargo run -p host-sim --example recorded_flights -- FOLDER`.
 
+use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};
 use firmware::replay::{TICKS, record};
 use host_sim::flight::Flight;
@@ -25,10 +26,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let recovered = states(&mut Flight::new(&recovered)?, recovery::TICKS)?;
     std::fs::write(folder.join("recovery.f32"), recovered.concat())?;
     let mut replay = Recovery::new().ok_or("the embedded scenario is not certified")?;
+    let mut estimate = Estimate::new().ok_or("the estimator's figures are refused")?;
     for state in &recovered {
         replay.tick(state)?;
+        estimate.tick(state);
     }
     println!("{}", replay.digest());
+    println!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
     Ok(())
 }
 

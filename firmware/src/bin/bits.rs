@@ -1,4 +1,4 @@
-//! The paper's flight and a recovery replayed on an emulated board, from the states in the files `states.f32` and
+//! The paper's flight, a recovery and the estimate of it replayed on an emulated board, from the states in the files `states.f32` and
 //! `recovery.f32` of the emulator's working directory; prints the numbers that [`firmware::replay`] makes of them, a line
 //! each. Run by `.ci/emulated bits`.
 
@@ -8,6 +8,7 @@
 mod target {
     use cortex_m_semihosting::hprintln;
     use firmware::boards::mps2::exit;
+    use firmware::replay::estimate::Estimate;
     use firmware::replay::recovery::{self, Recovery};
     use firmware::replay::{RECORD, Replay, TICKS};
     use semihosting::fs::File;
@@ -16,16 +17,13 @@ mod target {
     #[cortex_m_rt::entry]
     fn main() -> ! {
         match replay() {
-            Ok([paper, recovery]) => {
-                hprintln!("{}", paper);
-                hprintln!("{}", recovery);
-            }
+            Ok(numbers) => numbers.iter().for_each(|number| hprintln!("{}", number)),
             Err(problem) => exit::fail(problem),
         }
         exit::end(true)
     }
 
-    fn replay() -> Result<[heapless::String<64>; 2], &'static str> {
+    fn replay() -> Result<[heapless::String<64>; 3], &'static str> {
         let mut file = File::open(c"states.f32").map_err(|_| "states.f32: cannot be opened")?;
         let mut replay = Replay::new().ok_or("Table I is not certified on this machine")?;
         let mut record = [0; RECORD];
@@ -35,11 +33,14 @@ mod target {
         }
         let mut file = File::open(c"recovery.f32").map_err(|_| "recovery.f32: cannot be opened")?;
         let mut recovery = Recovery::new().ok_or("the embedded scenario is not certified on this machine")?;
+        let mut estimate = Estimate::new().ok_or("the estimator's figures are refused on this machine")?;
         for _ in 0..recovery::TICKS {
             file.read_exact(&mut record).map_err(|_| "recovery.f32: too short")?;
+            estimate.tick(&record);
             recovery.tick(&record).map_err(|_| "the law refuses a recorded state of the recovery")?;
         }
-        Ok([replay.digest(), recovery.digest()])
+        let estimate = estimate.digest().ok_or("no estimate at the end of the recovery")?;
+        Ok([replay.digest(), recovery.digest(), estimate])
     }
 }
 

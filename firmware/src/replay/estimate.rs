@@ -1,0 +1,101 @@
+//! The recovery's states once more, as an IMU and a late camera see them: the same samples, hence the same bits, of the estimate.
+//!
+//! Between two recorded states, a control period apart, lie ten samples: the body rate goes straight from one to the other, the
+//! force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
+
+use super::{PERIOD_US, RECORD, digest, state};
+use controller_core::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings};
+use controller_core::flight::{Pose, Stamped, Velocity};
+use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use controller_core::state::State;
+use heapless::Deque;
+use nalgebra::{UnitQuaternion, Vector3};
+use sha2::{Digest, Sha256};
+
+/// Ticks from the moment that a pose is true to its arrival.
+pub const LATE: usize = 3;
+
+/// Samples of the IMU in a control period.
+const SAMPLES: u64 = 10;
+
+/// The estimate, as far as it has been replayed.
+pub struct Estimate {
+    conditioner: Conditioner,
+    estimator: Estimator,
+    gravity: f32,
+    last: Option<State>,
+    now: u64,
+    poses: Deque<Stamped<PoseMeasurement>, { LATE + 1 }>,
+    hash: Sha256,
+}
+
+impl Estimate {
+    /// At the start. None where the sensors' figures are refused, which no machine that computes right sees.
+    #[must_use]
+    pub fn new() -> Option<Self> {
+        let parameters = EstimatorParameters::BMI088;
+        Some(Self {
+            conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).ok()?,
+            estimator: Estimator::new(&Settings::new(&parameters).ok()?),
+            gravity: parameters.gravity,
+            last: None,
+            now: 0,
+            poses: Deque::new(),
+            hash: Sha256::new(),
+        })
+    }
+
+    /// One tick at a recorded state.
+    pub fn tick(&mut self, record: &[u8; RECORD]) {
+        let state = state(record);
+        if let Some(last) = self.last.replace(state) {
+            self.move_on(&last, &state);
+        }
+        let still = Velocity::World(Vector3::zeros());
+        if let Ok(pose) = Pose::new(state.position, still, state.attitude) {
+            // There is room: one leaves for each that comes.
+            let _ = self.poses.push_back(Stamped { value: PoseMeasurement::new(&pose), time: self.now });
+        }
+        if self.poses.is_full()
+            && let Some(pose) = self.poses.pop_front()
+        {
+            let taken = self.estimator.pose(&pose, self.now).is_ok();
+            self.hash.update([u8::from(taken)]);
+        }
+        if let Some(estimated) = self.estimator.state(self.now) {
+            let State { position, velocity, attitude, angular_velocity } = estimated.state;
+            self.add(position.as_slice());
+            self.add(velocity.as_slice());
+            self.add(attitude.coords.as_slice());
+            self.add(angular_velocity.as_slice());
+        }
+        let (position, velocity, attitude) = self.estimator.health(self.now).deviations;
+        self.add(&[position, velocity, attitude]);
+    }
+
+    /// The samples between two states.
+    fn move_on(&mut self, last: &State, state: &State) {
+        let per_period = 1e6 / PERIOD_US as f32;
+        let mut force = (state.velocity - last.velocity) * per_period;
+        force.z += self.gravity;
+        let force = UnitQuaternion::new_unchecked(last.attitude).inverse_transform_vector(&force);
+        let step = (state.angular_velocity - last.angular_velocity) / SAMPLES as f32;
+        for sample in 1..=SAMPLES {
+            self.now += PERIOD_US / SAMPLES;
+            let rate = last.angular_velocity + step * sample as f32;
+            if let Some(increment) = self.conditioner.sample(self.now, &rate, Some(&force)).increment {
+                self.estimator.imu(&increment);
+            }
+        }
+    }
+
+    fn add(&mut self, numbers: &[f32]) {
+        numbers.iter().for_each(|number| self.hash.update(number.to_le_bytes()));
+    }
+
+    /// The number, as 64 hexadecimal digits; none if there has been no estimate at the end.
+    #[must_use]
+    pub fn digest(self) -> Option<heapless::String<64>> {
+        self.estimator.state(self.now).map(|_| digest(self.hash))
+    }
+}
