@@ -147,7 +147,7 @@ fn what_goes_wrong_is_answered_in_words_and_changes_nothing() {
             if now == 1_500_000 {
                 shared.calibrations.put(Some(procedure)).unwrap();
             }
-            if now == 1_900_000 {
+            if now == 1_501_000 {
                 disturb(&body, &shared, now);
             }
         });

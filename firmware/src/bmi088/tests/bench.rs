@@ -65,6 +65,8 @@ impl Part {
     pub fn new(clock: &Jumping, dummy: usize, reset: u8, id: u8) -> Self {
         let mut values = [0; 128];
         values[usize::from(CHIP_ID)] = id;
+        // The accelerometer is suspended until it is told otherwise.
+        values[0x7C] = 0x03;
         let clock = clock.clone();
         let asleep = dummy > 0;
         let registers = Registers {
