@@ -29,7 +29,7 @@ use embedded_hal_async::spi::SpiBus;
 mod tests;
 
 /// What the device runs: Bosch Sensortec's own, its smallest ("maximum FIFO"), which measures and recognises no gestures. Under
-/// the BSD-3-Clause licence, copyright (c) 2023 Bosch Sensortec GmbH: `licences/BMI270_SensorAPI.txt`.
+/// the BSD-3-Clause licence, copyright (c) 2023 Bosch Sensortec GmbH: `firmware/licences/BMI270_SensorAPI.txt`.
 pub const CONFIGURATION: &[u8; 328] = include_bytes!("bmi270/configuration.bin");
 
 /// rad/s in one count: 2000 deg/s in 2^15 counts.
