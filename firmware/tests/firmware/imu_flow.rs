@@ -14,6 +14,7 @@ use firmware::hardware::Imu;
 use firmware::redundant::Redundant;
 use firmware::shared::INCREMENTS;
 use firmware::{hil, imu};
+use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -168,17 +169,19 @@ fn a_second_sensor_that_does_not_answer_on_the_ground_is_said_once_and_never_flo
 #[test]
 fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise() {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
+    // The same for half a second, then something else at each answer, which is true a period later.
+    let rate = |time: u64| if time < 500_000 { 0.5 } else { (time / PERIOD % 3) as f32 };
     let mut increments = Vec::new();
     clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, &shared), |now| {
         if now % PERIOD == 0 && now > 0 {
             command(&hil, now);
-            line.0.borrow_mut().extend(v2(1, &sensor(now)));
+            line.0.borrow_mut().extend(v2(1, &HIL_SENSOR_DATA { xgyro: rate(now + PERIOD), ..sensor(now) }));
         }
         increments.extend(drain(&shared));
     });
     // One for each answer but the first: they last a period, and the law's rate is not late.
     assert_eq!((increments.len(), gaps(&increments)), (98, 0));
-    let rate = Vector3::new(0.5, -0.25, -0.125);
-    assert!(increments.iter().all(|one| one.end - one.start == PERIOD && one.angular_velocity == rate));
+    assert!(increments.iter().all(|one| one.end - one.start == PERIOD && one.angular_velocity.x == rate(one.end)));
+    assert_eq!(shared.imu.get().unwrap().value.angular_velocity.x, rate(990_000 + PERIOD));
     assert_eq!(texts(&shared), [""; 0]);
 }
