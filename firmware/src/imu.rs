@@ -13,6 +13,7 @@
 
 mod calibrator;
 mod flow;
+mod solution;
 
 pub use flow::Flow;
 

@@ -15,29 +15,22 @@
 //! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. What nobody asked
 //! for is done in silence, again and again until it stood still for once.
 
+use super::solution::{GRAVITY, solve};
 use crate::hardware::{Fault, RawImu, Unit};
 use crate::parameters::calibration;
 use crate::shared::{Event, Procedure, Reply, Severity, Shared};
 use controller_core::imu::Calibration;
-use controller_core::imu::calibration::NotLevel;
 use controller_core::imu::six_point::{SixPoint, SixPointError};
 use controller_core::imu::standstill::{Moved, Rest, Standstill};
-use core::fmt::{self, Display};
+use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{MavCmd, MavResult};
-use nalgebra::Vector3;
 
 /// How long a sensor may need for a second's samples, us.
 const STANDSTILL_WITHIN: u64 = 5_000_000;
 
 /// How long the next side may take, us.
 const SIDE_WITHIN: u64 = 60_000_000;
-
-/// m/s^2.
-const GRAVITY: f32 = 9.806_65;
-
-/// The greatest offset that one side alone may find, m/s^2: the data sheet's four times, or 4.7 degrees of tilt.
-const OFFSET_MAX: f32 = 0.8;
 
 /// What is found out about one sensor.
 #[derive(Default)]
@@ -269,46 +262,5 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     fn answer(&self, result: MavResult) {
         self.shared.reply(Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result });
-    }
-}
-
-/// Why there is no calibration.
-enum Problem {
-    NotLevel(NotLevel),
-    Sides(SixPointError),
-    Offset,
-}
-
-impl Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotLevel(error) => error.fmt(f),
-            Self::Sides(error) => error.fmt(f),
-            Self::Offset => f.write_str("Calibration: tilted, or offset over 0.8 m/s^2"),
-        }
-    }
-}
-
-/// What corrects a sensor that stood still so.
-fn solve(
-    procedure: Procedure,
-    before: &Calibration,
-    rest: &Rest,
-    sides: Option<SixPoint>,
-) -> Result<Calibration, Problem> {
-    let level = Calibration::NONE.level;
-    match procedure {
-        Procedure::Gyro => Ok(before.with_gyro_bias(rest)),
-        Procedure::Level => before.levelled(rest).map_err(Problem::NotLevel),
-        Procedure::OneSide => {
-            let offset = rest.specific_force - Vector3::z().component_div(&before.scale) * GRAVITY;
-            let plausible = offset.iter().all(|component| component.abs() <= OFFSET_MAX);
-            if plausible { Ok(Calibration { offset, level, ..*before }) } else { Err(Problem::Offset) }
-        }
-        Procedure::SixSides => {
-            let sides = sides.ok_or(Problem::Sides(SixPointError::FaceMissing))?;
-            let (offset, scale) = sides.solve(GRAVITY).map_err(Problem::Sides)?;
-            Ok(Calibration { offset, scale, level, ..*before })
-        }
     }
 }
