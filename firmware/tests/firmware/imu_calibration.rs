@@ -289,8 +289,8 @@ fn stored_rows_and_calibration_are_the_same_thing() {
     // Rows that nobody found that way: no level at all beats a wrong one.
     shared.parameters.set(Name::Imu2LevelX, 0.09).unwrap();
     shared.parameters.set(Name::Imu2LevelY, 0.09).unwrap();
-    let level = calibration::load(&shared.parameters, Unit::Second).level;
-    assert_eq!(level, controller_core::imu::Calibration::NONE.level);
+    let loaded = calibration::load(&shared.parameters, Unit::Second);
+    assert_eq!((loaded.level, loaded.offset.z), (controller_core::imu::Calibration::NONE.level, -0.5));
 }
 
 fn preflight(gyro: f32, accelerometer: f32) -> COMMAND_LONG_DATA {
