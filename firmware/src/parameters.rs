@@ -49,7 +49,7 @@ pub struct OutOfRange(
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Row { name, least, most, unit, .. } = self.0.row();
-        write!(f, "{name}: allowed are {least:?} to {most:?} {unit}")
+        write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")
     }
 }
 
