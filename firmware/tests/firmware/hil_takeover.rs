@@ -4,9 +4,10 @@ use crate::support::receiver::{Fed, Local, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
 use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
+use controller_core::imu::ImuParameters;
 use firmware::boot;
 use firmware::control::Control;
-use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, Watchdog};
+use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::hil::SelectedMotors;
 use firmware::imu;
 use firmware::shared::{Asked, Flag, Reply};
@@ -17,9 +18,17 @@ use nalgebra::Vector3;
 struct Steady<'a>(&'a Simulated);
 
 impl Imu for Steady<'_> {
-    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
         self.0.until(self.0.now() + 1_000).await;
-        Ok(ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() })
+        Ok(RawImu { time: self.0.now(), angular_velocity: Vector3::zeros(), specific_force: Some(Vector3::z()) })
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        ImuParameters::BMI088
+    }
+
+    fn is_polled(&self) -> bool {
+        false
     }
 }
 

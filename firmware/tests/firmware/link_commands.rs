@@ -256,7 +256,7 @@ fn a_value_that_is_not_allowed_changes_nothing_and_is_told_in_words() {
         let shared = Local::new();
         Fed::new(&shared).message(&set("TLM_RATE", value), 0);
         assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0, "{value}");
-        assert_eq!(texts(&shared), ["TLM_RATE: allowed are 10.0 to 50.0 Hz"]);
+        assert_eq!(texts(&shared), ["TLM_RATE: allowed are 10.00 to 50.00 Hz"]);
         assert_eq!(replies(&shared), [Reply::Parameter(Name::TelemetryRate)]);
     }
     let shared = Local::new();

@@ -8,6 +8,8 @@ mod hil_answers;
 mod hil_lines;
 mod hil_takeover;
 mod imu;
+mod imu_calibration;
+mod imu_flow;
 mod journal;
 mod link_commands;
 mod link_frames;

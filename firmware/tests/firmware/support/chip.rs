@@ -4,7 +4,7 @@ use firmware::hardware::{Fault, Flash, Record};
 use std::cell::RefCell;
 
 /// Records in a sector of the test's flash, and its bytes.
-pub const RECORDS: usize = 16;
+pub const RECORDS: usize = 6;
 pub const SECTOR: usize = RECORDS * RECORD;
 const RECORD: usize = size_of::<Record>();
 

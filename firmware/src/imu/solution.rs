@@ -1,0 +1,62 @@
+//! From a sensor at rest to what corrects it, for each procedure.
+
+use crate::shared::Procedure;
+use controller_core::imu::Calibration;
+use controller_core::imu::calibration::NotLevel;
+use controller_core::imu::six_point::{SixPoint, SixPointError};
+use controller_core::imu::standstill::Rest;
+use core::fmt::{self, Display};
+use nalgebra::Vector3;
+
+/// What a sensor at rest feels, m/s^2.
+pub const GRAVITY: f32 = 9.806_65;
+
+/// The greatest offset that one side alone may find, m/s^2: the data sheet's four times, or 4.7 degrees of tilt.
+const OFFSET_MAX: f32 = 0.8;
+
+/// Why there is no calibration.
+pub enum Problem {
+    /// Tilted.
+    NotLevel(NotLevel),
+    /// The six sides do not make one.
+    Sides(SixPointError),
+    /// One side says more than an offset can be.
+    Offset,
+}
+
+impl Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotLevel(error) => error.fmt(f),
+            Self::Sides(error) => error.fmt(f),
+            Self::Offset => f.write_str("Calibration: tilted, or offset over 0.8 m/s^2"),
+        }
+    }
+}
+
+/// What corrects a sensor that stood still so, `sides` being the six it has stood on.
+///
+/// # Errors
+/// Says what is implausible.
+pub fn solve(
+    procedure: Procedure,
+    before: &Calibration,
+    rest: &Rest,
+    sides: Option<SixPoint>,
+) -> Result<Calibration, Problem> {
+    let level = Calibration::NONE.level;
+    match procedure {
+        Procedure::Gyro => Ok(before.with_gyro_bias(rest)),
+        Procedure::Level => before.levelled(rest).map_err(Problem::NotLevel),
+        Procedure::OneSide => {
+            let offset = rest.specific_force - Vector3::z().component_div(&before.scale) * GRAVITY;
+            let plausible = offset.iter().all(|component| component.abs() <= OFFSET_MAX);
+            if plausible { Ok(Calibration { offset, level, ..*before }) } else { Err(Problem::Offset) }
+        }
+        Procedure::SixSides => {
+            let sides = sides.ok_or(Problem::Sides(SixPointError::FaceMissing))?;
+            let (offset, scale) = sides.solve(GRAVITY).map_err(Problem::Sides)?;
+            Ok(Calibration { offset, scale, level, ..*before })
+        }
+    }
+}
