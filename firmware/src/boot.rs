@@ -42,7 +42,8 @@ pub fn start<M: RawMutex>(
     parameters: &Parameters<M>,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
     let configuration = configuration::embedded()?;
-    let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?)?;
+    let curve = parameters.get(Name::ThrustCurve);
+    let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
     let limits = GovernorLimits {
         horizontal_speed: parameters.get(Name::HorizontalSpeed),
         vertical_speed: parameters.get(Name::VerticalSpeed),

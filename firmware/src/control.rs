@@ -12,7 +12,8 @@
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, voltage_ratio};
+use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::Increment;
@@ -89,7 +90,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
         self.report(&inputs, &outcome);
-        self.outputs.command(&outcome.output)
+        let ratio =
+            voltage_ratio(self.shared.parameters.get(Name::BatteryNominal), self.shared.voltage.get(), inputs.now);
+        self.outputs.command(&outcome.output, ratio)
     }
 
     /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.

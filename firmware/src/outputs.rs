@@ -1,27 +1,26 @@
 //! From what a tick decided to what the motors are told.
 //!
-//! A rotor's thrust follows the square of its speed, and an electronic speed controller's command sets the speed:
-//! command = sqrt(f / f_max) (`controller_core::allocation::curve` with a = 0), 1 at the thrust the scenario calls greatest.
+//! A rotor's thrust follows the square of its speed. A speed controller that holds its command's speed makes it a square of the
+//! command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and `docs/thrust-stand.md` says how
+//! a is measured. A full command is the thrust that the scenario calls greatest, at the voltage where it was measured.
 
 use crate::hardware::{MOTORS, MotorCommand};
+use controller_core::allocation::curve::Battery;
 use controller_core::allocation::{Rotor, Rotors, ThrustCurve};
 use controller_core::error::{ParameterError, Reason};
-use controller_core::flight::Output;
-
-/// V_0 / V of the battery: nothing is compensated for. The scenario's greatest thrust is that of the battery as it is.
-const RATIO: f32 = 1.0;
+use controller_core::flight::{Output, Stamped};
 
 /// The thrust curves of a vehicle's motors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs([ThrustCurve; MOTORS]);
 
 impl Outputs {
-    /// For `rotors`, one to each motor.
+    /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command itself.
     ///
     /// # Errors
-    /// Names `rotors` if there are not [`MOTORS`] of them.
-    pub fn new(rotors: &Rotors) -> Result<Self, ParameterError> {
-        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+    /// Names `rotors` if there are not [`MOTORS`] of them, `rotors.curve` if there is no such curve.
+    pub fn new(rotors: &Rotors, linear: f32) -> Result<Self, ParameterError> {
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, linear);
         match &rotors[..] {
             [a, b, c, d] => Ok(Self([curve(a)?, curve(b)?, curve(c)?, curve(d)?])),
             fewer if fewer.len() < MOTORS => Err(ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) }),
@@ -29,20 +28,29 @@ impl Outputs {
         }
     }
 
-    /// What the motors are told for `output`.
+    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`].
     #[must_use]
-    pub fn command(&self, output: &Output) -> MotorCommand {
+    pub fn command(&self, output: &Output, ratio: f32) -> MotorCommand {
         match output {
             Output::Stop => MotorCommand::Stop,
             Output::Test { rotor, level } => MotorCommand::One { motor: *rotor, level: *level },
             Output::Thrusts(thrusts) => {
                 let mut commands = [0.0; MOTORS];
                 for ((command, curve), thrust) in commands.iter_mut().zip(&self.0).zip(thrusts) {
-                    *command = curve.command(*thrust, RATIO);
+                    *command = curve.command(*thrust, ratio);
                 }
                 MotorCommand::Run(commands)
             }
         }
+    }
+}
+
+/// V_0 / V for the curves, at `now`, us: one where no `nominal` voltage is set (0), and without a recent, plausible reading.
+#[must_use]
+pub fn voltage_ratio(nominal: f32, voltage: Option<Stamped<f32>>, now: u64) -> f32 {
+    match (Battery::new(nominal), voltage) {
+        (Ok(battery), Some(voltage)) => battery.ratio(voltage.value, voltage.age(now)),
+        _ => 1.0,
     }
 }
 
@@ -55,20 +63,41 @@ mod tests {
     fn outputs() -> Outputs {
         let (thrust_coefficient, drag_coefficient) = (5.57e-6, 1.36e-7);
         let quad = QuadX { arm: 0.17, thrust_coefficient, drag_coefficient, speed_min: 100.0, speed_max: 800.0 };
-        Outputs::new(&Rotors::quad_x(quad).unwrap()).unwrap()
+        Outputs::new(&Rotors::quad_x(quad).unwrap(), 0.0).unwrap()
     }
 
     #[test]
     fn half_the_greatest_speed_is_half_a_command() {
         let thrusts = Thrusts::from_slice(&[5.57e-6 * 400.0 * 400.0; 4]).unwrap();
-        let MotorCommand::Run(commands) = outputs().command(&Output::Thrusts(thrusts)) else { panic!() };
+        let MotorCommand::Run(commands) = outputs().command(&Output::Thrusts(thrusts), 1.0) else { panic!() };
         assert!(commands.iter().all(|command| (command - 0.5).abs() < 1e-6), "{commands:?}");
     }
 
     #[test]
     fn a_motor_test_turns_one_motor_and_a_stop_none() {
         let test = Output::Test { rotor: 2, level: 0.1 };
-        assert_eq!(outputs().command(&test), MotorCommand::One { motor: 2, level: 0.1 });
-        assert_eq!(outputs().command(&Output::Stop), MotorCommand::Stop);
+        assert_eq!(outputs().command(&test, 1.0), MotorCommand::One { motor: 2, level: 0.1 });
+        assert_eq!(outputs().command(&Output::Stop, 1.0), MotorCommand::Stop);
+    }
+
+    #[test]
+    fn a_battery_that_sags_is_made_up_for_while_its_reading_is_recent_and_plausible() {
+        let reading = |value, time| Some(Stamped { value, time });
+        assert!((voltage_ratio(12.6, reading(10.5, 5), 100) - 1.2).abs() < 1e-6);
+        for (nominal, voltage, now) in [
+            (0.0, reading(10.5, 5), 100),
+            (12.6, None, 100),
+            (12.6, reading(10.5, 5), 2_000_000),
+            (12.6, reading(f32::NAN, 5), 100),
+            (12.6, reading(1.0, 5), 100),
+        ] {
+            assert_eq!(voltage_ratio(nominal, voltage, now), 1.0, "{nominal} {voltage:?}");
+        }
+        let thrusts = Thrusts::from_slice(&[1.0; 4]).unwrap();
+        let at = |ratio| match outputs().command(&Output::Thrusts(thrusts.clone()), ratio) {
+            MotorCommand::Run(commands) => commands[0],
+            _ => panic!(),
+        };
+        assert!((at(1.2) / at(1.0) - 1.2).abs() < 1e-6);
     }
 }

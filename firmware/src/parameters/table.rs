@@ -59,6 +59,11 @@ pub enum Name {
     Imu2LevelX,
     /// Along y: how much of gravity the second IMU feels there in the level vehicle, by that along z.
     Imu2LevelY,
+    /// a of the motors' thrust curve a u + (1 - a) u^2 over the command u. Taken over at the next boot.
+    ThrustCurve,
+    /// The voltage at which the rotors' greatest thrust was measured; commands are corrected by the voltage there is. 0 for never.
+    /// Taken over at once.
+    BatteryNominal,
 }
 
 /// One row.
@@ -93,7 +98,7 @@ const fn row(
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 27] = [
+pub const PARAMETERS: [Row; 29] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    true),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  true),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", false),
@@ -121,6 +126,8 @@ pub const PARAMETERS: [Row; 27] = [
     row(Name::Imu2ScaleZ,      "IMU2_SCALE_Z", [0.95, 1.05],  1.0,  "",      false),
     row(Name::Imu2LevelX,      "IMU2_LEVEL_X", [-0.09, 0.09], 0.0,  "",      false),
     row(Name::Imu2LevelY,      "IMU2_LEVEL_Y", [-0.09, 0.09], 0.0,  "",      false),
+    row(Name::ThrustCurve,     "THR_CURVE",    [0.0, 1.0],    0.0,  "",      false),
+    row(Name::BatteryNominal,  "BAT_NOMINAL",  [0.0, 60.0],   0.0,  "V",     false),
 ];
 
 impl Name {
