@@ -145,6 +145,7 @@ fn unusable_requirements_exit_with_2_and_name_the_argument() {
         ("--recovery", "0"),
         ("--recovery", "inf"),
         ("--generations", "0"),
+        ("--population", "3"),
     ] {
         let output = host_sim(&directory, &["tune", "start.toml", name, value]);
         let message = stderr(&output);

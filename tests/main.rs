@@ -5,7 +5,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`pilots_table`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
@@ -14,6 +14,7 @@
 mod adversary;
 mod attitude_sign;
 mod bad_inputs;
+mod beyond_the_model;
 mod bounds;
 mod certified_flights;
 mod cli;

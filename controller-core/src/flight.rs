@@ -6,6 +6,7 @@
 //! - `permission`: what arming and a motor test need;
 //! - `measurement`: IMU samples and poses, and which of them are flown; [`Pose::new`] checks a pose;
 //! - [`propagation`]: the attitude between poses, by gyro;
+//! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
 //! From the first armed tick on thrust is the law's T = m |u|, hover thrust for a vehicle at rest: there is no mode for
@@ -20,6 +21,7 @@
 mod chain;
 #[cfg(test)]
 mod example;
+mod lift_off;
 mod measurement;
 mod permission;
 pub mod pilot;

@@ -13,6 +13,7 @@
 
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 
+use core::hint::cold_path;
 pub use libm::{exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64, tan};
 use nalgebra::Vector3;
 
@@ -27,13 +28,18 @@ pub fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
-/// `x` cut to ± `level`; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
+/// `x` cut to ± `level`; a NaN stays one. One comparison where nothing is cut, which is nearly always.
 #[must_use]
 pub fn within(x: f32, level: f32) -> f32 {
-    between(x, -level, level)
+    if x.abs() > level {
+        cold_path();
+        level.copysign(x)
+    } else {
+        x
+    }
 }
 
-/// `x` cut to an interval; a NaN stays one.
+/// `x` cut to an interval; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
 #[must_use]
 pub fn between(x: f32, least: f32, greatest: f32) -> f32 {
     let x = if x > greatest { greatest } else { x };

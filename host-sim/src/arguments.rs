@@ -143,9 +143,12 @@ pub struct TuneArguments {
     /// Keep the paper's thrust T = m |u|: no thrust projection
     #[arg(long)]
     no_projection: bool,
-    /// Generations of each of the two stages; 48 candidates each
+    /// Generations of each of the two stages
     #[arg(long, default_value_t = 150)]
     pub generations: u32,
+    /// Candidates of each generation, 4 to 1000
+    #[arg(long, default_value_t = 48)]
+    pub population: usize,
     /// Seed of the search
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -254,6 +257,9 @@ impl TuneArguments {
         }
         if self.generations == 0 {
             return Err("--generations: must be at least 1, found 0".to_owned());
+        }
+        if !(4..=1000).contains(&self.population) {
+            return Err(format!("--population: must be from 4 to 1000, found {}", self.population));
         }
         Ok(Requirements {
             margin: self.margin,

@@ -154,6 +154,8 @@ impl Flight {
     ///
     /// # Errors
     /// [`FlightError`] with the time; the flight cannot go on after it.
+    // Inlined: the whole tick would be copied twice on its way out, 7 % of the throughput (`cargo bench -p host-sim`).
+    #[inline]
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let time_us = self.tick * self.period_us;
         let fail = |cause| FlightError { time_us, cause };
@@ -166,7 +168,7 @@ impl Flight {
         let asked = wrench.scaled(1.0 / self.law.thrust_scale());
         let (clipped, rotor_thrusts) =
             self.vehicle.hold(&asked, self.steps_per_tick).map_err(|error| fail(Cause::Actuation(error)))?;
-        if clipped {
+        if clipped || surroundings.standing {
             self.law.hold_estimates();
         }
         self.tick += 1;

@@ -163,9 +163,6 @@ fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
     Ok(status(certified, None))
 }
 
-/// Members of a search's population.
-const POPULATION: usize = 48;
-
 fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
     let mut scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
@@ -174,7 +171,7 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let (name, path) = destination(arguments, &scenario)?;
     scenario.name = name;
     let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
-    let effort = Effort { generations: arguments.generations, population: POPULATION, seed: arguments.seed };
+    let effort = Effort { generations: arguments.generations, population: arguments.population, seed: arguments.seed };
     let interrupt = watch()?;
     let tuned = match tune(&scenario, requirements, effort, &interrupt) {
         Ok(tuned) => tuned,

@@ -23,7 +23,7 @@ const REQUIREMENTS: [&str; 11] = [
 
 /// The arguments of a search by them, so many generations long.
 pub fn search<'a>(file: &'a str, out: &'a str, generations: &'a str) -> Vec<&'a str> {
-    [&["tune", file, "--out", out, "--generations", generations][..], &REQUIREMENTS].concat()
+    [&["tune", file, "--out", out, "--generations", generations, "--population", "8"][..], &REQUIREMENTS].concat()
 }
 
 /// A directory of its own for each test, empty at the start.

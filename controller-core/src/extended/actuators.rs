@@ -59,23 +59,30 @@ pub struct ActuatorModel {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorState {
     acting: Vector4<f32>,
-    /// The newest first.
+    /// A ring, with the place of the newest.
     commanded: [Vector4<f32>; DELAY_MAX + 1],
+    newest: usize,
 }
 
 impl ActuatorState {
     /// A wrench that has been commanded for ever.
     #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
-        Self { acting: wrench, commanded: [wrench; DELAY_MAX + 1] }
+        Self { acting: wrench, commanded: [wrench; DELAY_MAX + 1], newest: 0 }
     }
 
     /// Takes up what is commanded now.
     pub fn command(&mut self, wrench: Vector4<f32>) {
-        let mut next = wrench;
-        for slot in &mut self.commanded {
-            core::mem::swap(slot, &mut next);
+        self.newest = if self.newest < DELAY_MAX { self.newest + 1 } else { 0 };
+        if let Some(slot) = self.commanded.get_mut(self.newest) {
+            *slot = wrench;
         }
+    }
+
+    /// The command of `age` ticks before the newest, at most [`DELAY_MAX`].
+    fn command_before(&self, age: usize) -> Vector4<f32> {
+        let place = if age <= self.newest { self.newest - age } else { self.newest + self.commanded.len() - age };
+        self.commanded.get(place).copied().unwrap_or_default()
     }
 }
 
@@ -115,8 +122,7 @@ impl ActuatorModel {
 
     /// Lets one period pass; returns the mean wrench over it.
     pub fn advance(&self, state: &mut ActuatorState) -> Vector4<f32> {
-        let command = |age: usize| state.commanded.get(age).copied().unwrap_or_default();
-        let (newer, older) = (command(self.whole_delay), command(self.whole_delay + 1));
+        let (newer, older) = (state.command_before(self.whole_delay), state.command_before(self.whole_delay + 1));
         let mean = self.mean.of(&state.acting, &older, &newer);
         state.acting = self.end.of(&state.acting, &older, &newer);
         mean

@@ -11,6 +11,7 @@
 //! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
 //! to fade out, so no bridge is needed, and such a start fits in a tick.
 
+use super::lift_off::LiftOff;
 use super::measurement::Pose;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
@@ -68,6 +69,7 @@ pub(super) struct Chain<'m> {
     thrusts: Option<Thrusts>,
     /// Ticks in a row without new thrusts.
     refusals: u32,
+    lift_off: LiftOff,
 }
 
 /// What `make` makes, moved in one piece: inlined, each of its fields would be moved for itself.
@@ -110,6 +112,7 @@ impl<'m> Chain<'m> {
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
             refusals: 0,
+            lift_off: LiftOff::DONE,
         })
     }
 
@@ -118,7 +121,7 @@ impl<'m> Chain<'m> {
         self.rotors
     }
 
-    /// Starts a flight: the reference at `position`, at rest; the law reset.
+    /// Starts a flight where the vehicle stands: the reference at `position`, at rest; the law reset.
     ///
     /// # Errors
     /// The governor's; it goes on as before then.
@@ -128,6 +131,7 @@ impl<'m> Chain<'m> {
         self.reference = resting(position, heading);
         self.thrusts = None;
         self.refusals = 0;
+        self.lift_off = LiftOff::from(position);
         Ok(())
     }
 
@@ -171,6 +175,9 @@ impl<'m> Chain<'m> {
     /// What the law or the allocation cannot use.
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         self.reference = self.governor.tick();
+        if self.lift_off.stands(state) {
+            self.law.hold_estimates();
+        }
         self.step(state)
     }
 

@@ -1,0 +1,64 @@
+//! Whether a vehicle that was armed where it stands has left the ground.
+//!
+//! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are held until
+//! the vehicle is [`CLEAR`] above where it was armed or faster than [`MOVING`] in any direction. A vehicle armed in the air
+//! falls faster than that within a few ticks if anything is left to be learnt. A later landing is not noticed here.
+
+use crate::state::State;
+use nalgebra::Vector3;
+
+/// How far above the place of arming the vehicle is off the ground, m.
+const CLEAR: f32 = 0.05;
+
+/// The speed beyond which it does not stand, m/s.
+const MOVING: f32 = 0.2;
+
+/// Where a vehicle was armed, until it has left that place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LiftOff {
+    standing_at: Option<f32>,
+}
+
+impl LiftOff {
+    /// Off the ground.
+    pub const DONE: Self = Self { standing_at: None };
+
+    /// Standing at `position`, m, world.
+    pub fn from(position: &Vector3<f32>) -> Self {
+        Self { standing_at: Some(position.z) }
+    }
+
+    /// Whether the vehicle still stands in `state`; once it has left the ground it stands no more.
+    pub fn stands(&mut self, state: &State) -> bool {
+        self.standing_at = self
+            .standing_at
+            .filter(|height| state.position.z - height < CLEAR && state.velocity.norm_squared() < MOVING * MOVING);
+        self.standing_at.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Quaternion;
+
+    fn at(height: f32, speed: f32) -> State {
+        State {
+            position: Vector3::new(3.0, 0.0, height),
+            velocity: Vector3::new(speed, 0.0, 0.0),
+            attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0),
+            angular_velocity: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn it_stands_until_it_has_risen_or_moves_and_then_no_more() {
+        for leaves in [at(7.06, 0.0), at(7.0, 0.25)] {
+            let mut lift_off = LiftOff::from(&Vector3::new(0.0, 0.0, 7.0));
+            assert!(lift_off.stands(&at(7.0, 0.0)) && lift_off.stands(&at(7.04, 0.1)));
+            assert!(!lift_off.stands(&leaves));
+            assert!(!lift_off.stands(&at(7.0, 0.0)), "back on the ground");
+        }
+        assert!(!LiftOff::DONE.clone().stands(&at(0.0, 0.0)));
+    }
+}
