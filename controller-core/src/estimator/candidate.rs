@@ -37,14 +37,16 @@ pub const PROVEN_AFTER: u64 = 500_000;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
     pub filter: Filter,
+    /// When its first pose was true, and its last, us: the filter's own time may be later.
     since: u64,
+    until: u64,
     poses: u16,
 }
 
 impl Candidate {
     /// Begins at a pose.
     pub fn new(time: u64, pose: &PoseMeasurement, biases: &Biases, settings: &Settings) -> Self {
-        Self { filter: Filter::start(time, pose, biases, settings), since: time, poses: 1 }
+        Self { filter: Filter::start(time, pose, biases, settings), since: time, until: time, poses: 1 }
     }
 
     /// Takes one more pose, later than the last.
@@ -63,12 +65,13 @@ impl Candidate {
         tested.gate()?;
         self.filter.fuse(pose, &tested)?;
         self.poses = self.poses.saturating_add(1);
+        self.until = time;
         Ok(())
     }
 
     /// Whether it has proven itself.
     pub fn is_proven(&self) -> bool {
-        self.poses >= POSES_MIN && self.filter.time.saturating_sub(self.since) >= PROVEN_AFTER
+        self.poses >= POSES_MIN && self.until.saturating_sub(self.since) >= PROVEN_AFTER
     }
 
     /// Whether up is where the accelerometer says.
