@@ -4,6 +4,7 @@
 //! | what is tested | suites |
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | the state it is told | [`estimator`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
@@ -23,6 +24,7 @@ mod cli_output;
 mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
+mod estimator;
 mod extended_adversary;
 mod extended_flows;
 mod extended_independent;

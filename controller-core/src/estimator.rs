@@ -17,6 +17,7 @@
 //! - [`history`]: the ring; [`settings`]: what the sensors are like;
 //! - `checkpoints`: poses out of order; `stream`: time stamps, quality, frozen streams;
 //! - `candidate`: how an estimate begins, at rest or in motion, and how a lost body is found again;
+//! - `taking`: what becomes of a pose, step by step;
 //! - [`verdict`], [`health`]: what became of each pose, and what the estimate is worth, in words.
 //!
 //! # How a tick uses it
@@ -51,6 +52,7 @@ mod checkpoints;
 mod measurement;
 mod nominal;
 mod stream;
+mod taking;
 
 pub use health::{Faults, Health};
 pub use history::Increment;
@@ -151,7 +153,7 @@ impl Estimator {
         if let Some(leaving) = self.history.leaving() {
             let end = leaving.end;
             let candidate = self.candidate.as_mut().map(|candidate| &mut candidate.filter);
-            for filter in self.filter.as_mut().into_iter().chain(candidate) {
+            for filter in self.filter.as_mut().into_iter().chain(candidate).filter(|filter| filter.time < end) {
                 filter.advance(end, &self.history, &self.settings);
             }
             self.checkpoints.forget_before(end);
@@ -232,164 +234,6 @@ impl Estimator {
         (end <= now.saturating_add(STAMP_LEAD_MAX)).then(|| now.saturating_sub(end))
     }
 
-    /// Takes a pose if the IMU has got that far, or keeps it.
-    fn take_in_time(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
-        let (start, end) = self.history.span().ok_or(Rejected::NoImu)?;
-        if pose.time < start {
-            Err(Rejected::TooOld)
-        } else if pose.time <= end {
-            self.take(pose)
-        } else if pose.time - end > EXTRAPOLATION_MAX {
-            Err(Rejected::NoImu)
-        } else {
-            self.waiting.push(*pose).map_or(Err(Rejected::NoImu), |()| Ok(Taken::Waiting))
-        }
-    }
-
-    /// Takes the poses that have waited for the IMU to get to `end`, us.
-    fn take_waiting(&mut self, end: u64) {
-        for pose in core::mem::take(&mut self.waiting) {
-            if pose.time <= end {
-                let verdict = self.take(&pose);
-                self.statistics.record(verdict, pose.time);
-            } else {
-                // It was there before: it fits.
-                let _ = self.waiting.push(pose);
-            }
-        }
-    }
-
-    fn take(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
-        let Some(filter) = self.filter else {
-            return self.seek(pose, None);
-        };
-        let verdict = if pose.time < filter.time { self.fuse_late(pose) } else { self.fuse_next(&filter, pose) };
-        match verdict {
-            Err(Rejected::NotFinite) => self.restart(),
-            Ok(_) => self.carry_on(),
-            Err(_) => {}
-        }
-        verdict
-    }
-
-    /// A pose later than the horizon.
-    fn fuse_next(&mut self, before: &Filter, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
-        let mut filter = *before;
-        filter.advance(pose.time, &self.history, &self.settings);
-        self.filter = Some(filter);
-        if self.is_moved_frame(pose) {
-            return self.rebase(filter, pose);
-        }
-        match self.fuse(&mut filter, pose) {
-            Ok(()) => {
-                self.checkpoints.push(before, pose);
-                self.filter = Some(filter);
-                self.candidate = None;
-                Ok(Taken::Fused)
-            }
-            Err(Rejected::NotFinite) => Err(Rejected::NotFinite),
-            Err(why) => self.seek(pose, Some(why)),
-        }
-    }
-
-    /// A pose that belongs before the horizon: the poses after its time are taken back, and fused again after it.
-    fn fuse_late(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
-        let (mut filter, later) = self.checkpoints.rewind(pose.time).ok_or(Rejected::TooOld)?;
-        let mut verdict = Err(Rejected::TooOld);
-        for (number, next) in core::iter::once(pose).chain(later.iter().rev()).enumerate() {
-            let before = filter;
-            filter.advance(next.time, &self.history, &self.settings);
-            let fused = self.fuse(&mut filter, next);
-            if fused.is_ok() {
-                self.checkpoints.push(&before, next);
-            }
-            if number == 0 || fused == Err(Rejected::NotFinite) {
-                verdict = fused.map(|()| Taken::Fused);
-            }
-        }
-        self.filter = Some(filter);
-        // Where the poses after it no longer count, the state has changed all the same.
-        self.carry_on();
-        verdict
-    }
-
-    /// Weighs a pose, and takes it into account if it is within its gates.
-    fn fuse(&mut self, filter: &mut Filter, pose: &Stamped<Pose>) -> Result<(), Rejected> {
-        let tested = filter.test(&pose.value, &self.settings)?;
-        self.statistics.weigh(tested.nis());
-        tested.gate()?;
-        filter.fuse(&pose.value, &tested)
-    }
-
-    /// Whether the sender says that its frame has moved, and can be believed.
-    fn is_moved_frame(&mut self, pose: &Stamped<Pose>) -> bool {
-        let (resets, since) = *self.frame.get_or_insert((pose.value.resets, 0));
-        resets != pose.value.resets && pose.time.saturating_sub(since) >= REBASE_EVERY
-    }
-
-    fn rebase(&mut self, mut filter: Filter, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
-        let moved = pose.value.attitude * filter.nominal.attitude.conjugate();
-        if 1.0 - 2.0 * (moved.i * moved.i + moved.j * moved.j) < TILT_COSINE {
-            return Err(Rejected::Gravity);
-        }
-        filter.rebase(&pose.value, &self.settings);
-        self.follow(&filter);
-        self.frame = Some((pose.value.resets, pose.time));
-        self.statistics.jumps += 1;
-        Ok(Taken::Rebased)
-    }
-
-    /// Tries a pose on the candidate: without a filter, or where the filter does not believe the pose for the reason given.
-    fn seek(&mut self, pose: &Stamped<Pose>, why: Option<Rejected>) -> Result<Taken, Rejected> {
-        let unproven = why.map_or(Ok(Taken::Aligning), Err);
-        self.check_up(&pose.value)?;
-        let biases = self.filter.as_ref().map_or(self.biases, Filter::biases);
-        let fresh = Candidate::new(pose.time, &pose.value, &biases, &self.settings);
-        let candidate = self.candidate.get_or_insert_with(|| fresh.clone());
-        if pose.time < candidate.filter.time {
-            return Err(Rejected::TooOld);
-        }
-        if pose.time > candidate.filter.time {
-            let taken = candidate.take(pose.time, &pose.value, &self.history, &self.settings);
-            if let Err(error) = candidate.check_gravity(&self.settings).and(taken) {
-                *candidate = fresh;
-                return Err(why.unwrap_or(error));
-            }
-        }
-        if !candidate.is_proven() {
-            return unproven;
-        }
-        let found = candidate.filter;
-        if let Some(filter) = &self.filter {
-            candidate.compare(filter, pose.time.saturating_sub(self.statistics.fused_at))?;
-        }
-        let taken = if self.filter.is_some() { Taken::Refound } else { Taken::Started };
-        self.statistics.jumps += u32::from(taken == Taken::Refound);
-        self.frame = Some((pose.value.resets, self.frame.map_or(0, |(_, since)| since)));
-        self.follow(&found);
-        Ok(taken)
-    }
-
-    /// Makes `filter` the one, whose past does not matter.
-    fn follow(&mut self, filter: &Filter) {
-        self.filter = Some(*filter);
-        self.candidate = None;
-        self.checkpoints.clear();
-        self.statistics.forget_nis();
-        self.carry_on();
-    }
-
-    /// Carries the nominal state from the horizon to the end of the history.
-    fn carry_on(&mut self) {
-        self.latest = self.filter.as_ref().map(|filter| {
-            let (mut nominal, gravity) = (filter.nominal, self.settings.parameters().gravity);
-            for increment in self.history.between(filter.time, u64::MAX) {
-                nominal.advance(&increment, gravity);
-            }
-            nominal
-        });
-    }
-
     /// Begins anew, with the biases as they are if they are plausible.
     fn restart(&mut self) {
         let unknown = Biases::unknown(&self.settings);
@@ -402,28 +246,6 @@ impl Estimator {
         self.waiting.clear();
         (self.filter, self.latest, self.candidate) = (None, None, None);
         self.statistics = self.statistics.restarted();
-    }
-
-    /// Whether up is where the accelerometer says, as far as one increment can tell: of a vehicle at rest.
-    fn check_up(&self, pose: &Pose) -> Result<(), Rejected> {
-        let Some(newest) = self.history.newest().filter(|newest| !self.moves(newest)) else { return Ok(()) };
-        let force = rotated(&pose.attitude, &newest.delta_velocity);
-        let cosine = force.z / crate::math::sqrt(force.norm_squared());
-        if cosine < TILT_COSINE { Err(Rejected::Gravity) } else { Ok(()) }
-    }
-
-    /// Whether an increment is of a vehicle that moves, beyond any noise at rest.
-    fn moves(&self, increment: &Increment) -> bool {
-        /// rad/s: six times a BMI088's noise over 5 ms.
-        const RATE: f32 = 0.02;
-        /// m/s^2: a plausible bias, and noise.
-        const ACCELERATION: f32 = 0.5;
-        let biases = self.filter.as_ref().map_or(self.biases, Filter::biases);
-        let per_second = 1.0 / increment.seconds();
-        let rate = increment.delta_angle * per_second - biases.gyro;
-        let force = increment.delta_velocity * per_second - biases.accelerometer;
-        let weight = crate::math::sqrt(force.norm_squared()) - self.settings.parameters().gravity;
-        rate.norm_squared() > RATE * RATE || weight.abs() > ACCELERATION
     }
 }
 

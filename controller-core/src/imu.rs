@@ -131,7 +131,7 @@ impl Conditioner {
         let rate = self.calibration.rate(angular_velocity);
         let force = specific_force.map(|force| self.calibration.force(force));
         match self.integrator.age(time) {
-            Some(0) => return Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
+            Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
             Some(age) if age <= BRIDGED_MAX => {
                 let smooth = self.low_pass.take(&rate);
                 let increment = self.integrator.take(time, &rate, force.as_ref(), &smooth, INCREMENT);

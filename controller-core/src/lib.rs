@@ -22,6 +22,8 @@
 //! Vehicle, Limits, Gains, ReferenceBounds (, Rotors, thrust floor) ─> Configuration ─> Certificate ─> Certified ─> Controller
 //! ```
 //!
+//! [`estimator`] makes the state out of poses and of what [`imu`] makes of the IMU's samples; no pilot flies on it yet.
+//!
 //! [`flight`] decides which of this reaches the motors: [`flight::Pilot`] takes measurements and requests, and gives thrusts or
 //! a stop, by a table of [rules](flight::rules). [`controller`] composes the four steps of the law, with an example. A
 //! [`Controller`](controller::Controller) for flight is made from a [`Certified`](certificate::certified::Certified)

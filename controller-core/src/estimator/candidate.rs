@@ -1,7 +1,7 @@
 //! Where an estimate begins: a candidate, at first, that must prove itself; at rest or in motion, for the first time or again.
 //!
 //! A candidate is a filter that starts at a pose and knows no velocity. It fuses the poses that come, through the same gates as
-//! any filter; one that it cannot believe is the start of a new candidate. After [`POSES_MIN`] poses over [`PROVEN_AFTER`] they agree
+//! any filter, and may pass over [`MISSES_MAX`] in a row; one more is the start of a new candidate. After [`POSES_MIN`] poses over [`PROVEN_AFTER`] they agree
 //! among themselves and with the gyro, about every turn, and with the accelerometer, about every change of velocity. Where up
 //! is comes out of that too, at rest as in motion: with an attitude that is off by an angle e, gravity is an acceleration of
 //! g sin(e) that the poses do not show. The filter has nowhere to put it but the accelerometer's bias, which is then not
@@ -33,6 +33,9 @@ pub const POSES_MIN: u16 = 5;
 /// The least time from its first pose to its last, us.
 pub const PROVEN_AFTER: u64 = 500_000;
 
+/// Poses in a row that a candidate may not believe: an outlier is no reason to begin anew.
+pub const MISSES_MAX: u8 = 2;
+
 /// A filter on trial.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
@@ -41,18 +44,20 @@ pub(super) struct Candidate {
     since: u64,
     until: u64,
     poses: u16,
+    misses: u8,
 }
 
 impl Candidate {
     /// Begins at a pose.
     pub fn new(time: u64, pose: &PoseMeasurement, biases: &Biases, settings: &Settings) -> Self {
-        Self { filter: Filter::start(time, pose, biases, settings), since: time, until: time, poses: 1 }
+        let filter = Filter::start(time, pose, biases, settings);
+        Self { filter, since: time, until: time, poses: 1, misses: 0 }
     }
 
     /// Takes one more pose, later than the last.
     ///
     /// # Errors
-    /// If the pose does not go with those before it: then there is no use for the candidate any more.
+    /// If the pose does not go with those before it; see [`Self::is_lost`].
     pub fn take(
         &mut self,
         time: u64,
@@ -61,12 +66,19 @@ impl Candidate {
         settings: &Settings,
     ) -> Result<(), Rejected> {
         self.filter.advance(time, history, settings);
+        self.misses = self.misses.saturating_add(1);
         let tested = self.filter.test(pose, settings)?;
         tested.gate()?;
         self.filter.fuse(pose, &tested)?;
         self.poses = self.poses.saturating_add(1);
         self.until = time;
+        self.misses = 0;
         Ok(())
+    }
+
+    /// Whether there is no use for it any more: it believes no pose, or has found up where the accelerometer has it not.
+    pub fn is_lost(&self, settings: &Settings) -> bool {
+        self.misses > MISSES_MAX || !self.filter.covariance.is_positive() || self.check_gravity(settings).is_err()
     }
 
     /// Whether it has proven itself.

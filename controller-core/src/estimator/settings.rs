@@ -57,7 +57,7 @@ impl EstimatorParameters {
         gyro_bias: 5e-3,
         accelerometer_bias: 0.2,
         gyro_bias_max: 0.014,
-        accelerometer_bias_max: 0.8,
+        accelerometer_bias_max: 1.0,
         position_noise: 1e-3,
         attitude_noise: 5.2e-3,
         time_noise: 1e-3,

@@ -77,7 +77,9 @@ impl Calibration {
     pub fn levelled(&self, rest: &Rest) -> Result<Self, NotLevel> {
         let force = (rest.specific_force - self.offset).component_mul(&self.scale);
         let up = force / math::sqrt(force.norm_squared());
-        if !(up.z >= LEVEL_COSINE) {
+        // Without gravity there is no direction up: not a number, and not level.
+        let level = up.z >= LEVEL_COSINE;
+        if !level {
             return Err(NotLevel);
         }
         let axis = up.cross(&Vector3::z()).cross_matrix();

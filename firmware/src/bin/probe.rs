@@ -1,5 +1,5 @@
-//! An image to be looked at, not run: one step of the law, the runtime's reset and a panic handler. `.ci/budgets` finds
-//! none of the panic machinery in it: the step cannot panic.
+//! An image to be looked at, not run: one step of the law, all that the estimator does in a tick, the runtime's reset and a panic
+//! handler. `.ci/budgets` finds none of the panic machinery in it: none of these can panic.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -7,17 +7,32 @@
 mod target {
     use controller_core::controller::{Command, Controller};
     use controller_core::error::InputError;
+    use controller_core::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
+    use controller_core::flight::Stamped;
+    use controller_core::imu::{Conditioned, Conditioner};
     use controller_core::reference::Reference;
     use controller_core::state::State;
     use core::hint::black_box;
     use core::panic::PanicInfo;
+    use nalgebra::Vector3;
 
     type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
+    type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
+    type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
+    type Estimation = (
+        Sample,
+        fn(&mut Estimator, &Increment),
+        Fuse,
+        fn(&Estimator, u64) -> Option<EstimatedState>,
+        fn(&Estimator, u64) -> Health,
+    );
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
         let step: Step = Controller::command;
-        black_box(step);
+        let estimation: Estimation =
+            (Conditioner::sample, Estimator::imu, Estimator::pose, Estimator::state, Estimator::health);
+        black_box((step, estimation));
         loop {
             cortex_m::asm::wfi();
         }

@@ -101,6 +101,20 @@ fn a_resent_frame_is_as_good_as_silence() {
 }
 
 #[test]
+fn however_uncertain_the_estimate_a_pose_metres_away_is_never_just_fused() {
+    let mut rig = Rig::new(tumble);
+    rig.fly(3_000_000, 20_000);
+    (0..8_000).for_each(|_| rig.step());
+    let before = rig.estimator.state(rig.now).unwrap().state.position;
+    // Five metres would be within the gate now.
+    assert!(rig.estimator.health(rig.now).deviations.0 > 1.0);
+    let away = before.cast::<f64>() - rig.truth(rig.now).position + Vector3::new(5.0, 0.0, 0.0);
+    let pose = Stamped { value: motion::pose(&rig.truth(rig.now), &away, &STRAIGHT), time: rig.now };
+    assert_eq!(rig.estimator.pose(&pose, rig.now), Err(Rejected::Position));
+    assert_eq!(rig.estimator.state(rig.now).unwrap().state.position, before);
+}
+
+#[test]
 fn single_outliers_cost_nothing() {
     let mut rig = Rig::new(tumble);
     rig.fly(3_000_000, 20_000);

@@ -27,6 +27,12 @@ pub fn rest(_: f64) -> Truth {
     Truth { position, velocity: zero, attitude: UnitQuaternion::identity(), rate: zero, force }
 }
 
+/// Hovering level, turning about the vertical: in motion for a gyro, and nothing else.
+pub fn spin(t: f64) -> Truth {
+    let rate = Vector3::z() * 0.3;
+    Truth { attitude: UnitQuaternion::from_scaled_axis(rate * t), rate, ..rest(t) }
+}
+
 /// Back and forth on all axes, turning over and over: upside down every second.
 pub fn tumble(t: f64) -> Truth {
     let (a, w) = (Vector3::new(1.0, 0.7, 0.5), Vector3::new(1.5, 2.0, 2.5));

@@ -1,6 +1,6 @@
 //! How an estimate begins, and when it does not.
 
-use super::motion::{self, Rig, rest, tumble};
+use super::motion::{self, Rig, rest, spin, tumble};
 use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
 use crate::flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -45,6 +45,22 @@ fn it_does_not_begin_where_accelerometer_and_poses_disagree_on_up() {
     rig.biases.1 = Vector3::new(0.0, 0.0, -9.81);
     rig.fly(5_000_000, 20_000);
     assert_eq!(rig.estimator.state(rig.now), None);
+}
+
+#[test]
+fn a_candidate_in_motion_finds_up_by_its_accelerometers_bias() {
+    for angle in [7.0_f64, 8.5, 10.0, 12.0] {
+        let mut rig = Rig::new(spin);
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::x() * angle.to_radians());
+        let mut gravity = 0;
+        for _ in 0..300 {
+            let last =
+                rig.fly_with(10_000, 20_000, |rig, time| motion::pose(&rig.truth(time), &Vector3::zeros(), &turn));
+            gravity += u32::from(last == Some(Err(Rejected::Gravity)));
+            assert_eq!(rig.estimator.state(rig.now), None, "{angle} degrees");
+        }
+        assert!(gravity > 0, "{angle} degrees");
+    }
 }
 
 #[test]

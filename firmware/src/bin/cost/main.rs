@@ -14,6 +14,8 @@ mod body;
 #[cfg(target_os = "none")]
 mod counter;
 #[cfg(target_os = "none")]
+mod estimation;
+#[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
 mod target;

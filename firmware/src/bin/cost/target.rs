@@ -2,6 +2,7 @@
 
 use crate::body;
 use crate::counter::Counter;
+use crate::estimation;
 use crate::stack;
 use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::certified::{Certified, Refused};
@@ -31,20 +32,22 @@ const CLOCKS: [f64; 2] = [168.0, 400.0];
 
 /// Mean and worst of one kind of call.
 #[derive(Default)]
-struct Cost {
+pub struct Cost {
     sum: f64,
     count: u32,
     worst: f64,
 }
 
 impl Cost {
-    fn add(&mut self, instructions: f64) {
+    /// Counts one more.
+    pub fn add(&mut self, instructions: f64) {
         self.sum += instructions;
         self.count += 1;
         self.worst = self.worst.max(instructions);
     }
 
-    fn print(&self, what: &str) {
+    /// As a line of the table.
+    pub fn print(&self, what: &str) {
         let mean = self.sum / f64::from(self.count);
         let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
         hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
@@ -103,6 +106,10 @@ fn measure() -> bool {
         return false;
     }
     governing.print("governor tick");
+    if !estimation::measure(&counter) {
+        hprintln!("the estimator does not believe an exact pose");
+        return false;
+    }
     hprintln!("times: at one instruction a cycle, which no processor promises");
     hprintln!("one instruction is {} ticks of SysTick", counter.ticks_per_instruction());
     true

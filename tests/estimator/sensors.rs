@@ -1,0 +1,55 @@
+//! What a BMI088 and a camera system make of a moment: white noise, biases that walk, poses with noise.
+
+use super::truth::Moment;
+use controller_core::estimator::{EstimatorParameters, PoseMeasurement};
+use controller_core::flight::{Pose, Velocity};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// What the sensors really are.
+pub const REAL: EstimatorParameters = EstimatorParameters::BMI088;
+
+/// One over the time between two samples, Hz.
+const RATE: f64 = 1e3;
+
+/// Normal noise on three axes.
+pub fn noise(random: &mut impl Rng, deviation: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| StandardNormal.sample(random)) * deviation
+}
+
+/// The biases of one IMU: drawn at first, walking from then on.
+pub struct Imu {
+    pub gyro_bias: Vector3<f64>,
+    pub accelerometer_bias: Vector3<f64>,
+}
+
+impl Imu {
+    pub fn new(random: &mut impl Rng) -> Self {
+        Self {
+            gyro_bias: noise(random, f64::from(REAL.gyro_bias)),
+            accelerometer_bias: noise(random, f64::from(REAL.accelerometer_bias)),
+        }
+    }
+
+    /// Rate and force, as the sensor says. A density n sampled at f is noise of deviation n sqrt(f); a walk of density w moves by
+    /// w / sqrt(f) between samples.
+    pub fn sample(&mut self, moment: &Moment, random: &mut impl Rng) -> (Vector3<f32>, Vector3<f32>) {
+        self.gyro_bias += noise(random, f64::from(REAL.gyro_walk) / RATE.sqrt());
+        self.accelerometer_bias += noise(random, f64::from(REAL.accelerometer_walk) / RATE.sqrt());
+        let rate = moment.rate + self.gyro_bias + noise(random, f64::from(REAL.gyro_noise) * RATE.sqrt());
+        let force =
+            moment.force + self.accelerometer_bias + noise(random, f64::from(REAL.accelerometer_noise) * RATE.sqrt());
+        (rate.map(|x| x as f32), force.map(|x| x as f32))
+    }
+}
+
+/// The pose of a moment.
+pub fn pose(moment: &Moment, random: &mut impl Rng) -> PoseMeasurement {
+    let position = moment.position + noise(random, f64::from(REAL.position_noise));
+    let turned = UnitQuaternion::from_scaled_axis(noise(random, f64::from(REAL.attitude_noise)));
+    let attitude = (turned * moment.attitude).into_inner();
+    let single = Quaternion::from(attitude.coords.map(|x| x as f32));
+    let nothing = Velocity::World(Vector3::zeros());
+    PoseMeasurement::new(&Pose::new(position.map(|x| x as f32), nothing, single).unwrap())
+}
