@@ -34,6 +34,7 @@ pub use watch::ImuFault;
 
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::estimator::Increment;
+use crate::flight::{ImuSample, Stamped};
 use integrator::Integrator;
 use low_pass::LowPass;
 use nalgebra::Vector3;
@@ -79,6 +80,7 @@ pub struct Conditioner {
     watch: Watch,
     low_pass: LowPass,
     integrator: Integrator,
+    newest: Option<Stamped<ImuSample>>,
 }
 
 impl Conditioner {
@@ -102,7 +104,27 @@ impl Conditioner {
             watch: Watch::new(Ranges { gyro: p.gyro_range, accelerometer: p.accelerometer_range }),
             low_pass: LowPass::new(f64::from(p.cutoff), f64::from(p.rate)),
             integrator: Integrator::EMPTY,
+            newest: None,
         })
+    }
+
+    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the last.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; nothing has changed then.
+    pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
+        let mut other = Self::new(parameters, calibration)?;
+        if let Some(newest) = &self.newest {
+            other.low_pass.settle(&newest.value.angular_velocity);
+        }
+        *self = Self { integrator: self.integrator.clone(), newest: self.newest, ..other };
+        Ok(())
+    }
+
+    /// The newest sample as the law takes it: corrected, the body rate low-passed.
+    #[must_use]
+    pub fn newest(&self) -> Option<Stamped<ImuSample>> {
+        self.newest
     }
 
     /// How far the body rate for the law lags behind, s, for slow changes.
@@ -135,14 +157,22 @@ impl Conditioner {
             Some(age) if age <= BRIDGED_MAX => {
                 let smooth = self.low_pass.take(&rate);
                 let increment = self.integrator.take(time, &rate, force.as_ref(), &smooth, INCREMENT);
+                self.keep(time, &smooth, force);
                 Conditioned { increment, fault }
             }
             before => {
                 self.low_pass.settle(&rate);
                 self.integrator.begin(time, &rate, force.as_ref());
+                self.keep(time, &rate, force);
                 Conditioned { increment: None, fault: fault.or(before.map(|_| ImuFault::Gap)) }
             }
         }
+    }
+
+    fn keep(&mut self, time: u64, rate: &Vector3<f32>, force: Option<Vector3<f32>>) {
+        let before = || self.newest.map(|newest| newest.value.specific_force);
+        let specific_force = force.or_else(before).unwrap_or_default();
+        self.newest = Some(Stamped { value: ImuSample { angular_velocity: *rate, specific_force }, time });
     }
 }
 

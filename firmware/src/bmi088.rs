@@ -2,7 +2,8 @@
 //!
 //! The package holds two devices that share a bus and little else: a gyroscope and an accelerometer, each with a chip
 //! select of its own. The gyroscope sets the pace: its data-ready pin INT3 rises 1000 times a second, and each rise is one
-//! sample of both. Registers, waits and scales are those of the BMI088 data sheet.
+//! sample of both; `crate::pace` reads by the clock where it does not. Registers, waits and scales are those of the BMI088
+//! data sheet.
 //!
 //! | what | setting |
 //! |---|---|
@@ -11,12 +12,16 @@
 //! | bus | SPI mode 0 or 3, at most 10 MHz |
 //!
 //! Every sample asks both devices who they are before it believes their numbers: a bus stuck high or low would otherwise
-//! read as a vehicle that does not turn. Every wait is bounded; what does not come in time is a [`Fault`]. After
-//! [`RESTART_AFTER`] faults in a row the next call powers the sensor up anew, which takes a tenth of a second.
+//! read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a [`Fault`]; an
+//! accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a device is powered up anew. The
+//! gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a step between two samples, they do not.
 
-use crate::deadline::within;
-use crate::hardware::{Clock, Fault, Imu};
-use controller_core::flight::ImuSample;
+use crate::hardware::{Clock, Fault, Imu, RawImu};
+use crate::mounting::Mounting;
+use crate::pace::Pace;
+use crate::registers::Action::{Expect, Set, Wake, Write};
+use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
+use controller_core::imu::ImuParameters;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiBus;
@@ -31,101 +36,138 @@ pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0
 /// m/s^2 in one count: 24 standard gravities in 2^15 counts.
 pub const ACCELERATION_PER_COUNT: f32 = 24.0 / 32768.0 * 9.806_65;
 
-/// Faults in a row after which the sensor is powered up anew.
+/// Faults in a row after which a device is powered up anew.
 pub const RESTART_AFTER: u8 = 5;
 
-/// The longest wait for data-ready, us: two and a half periods, so that one missed edge is no fault.
-const DATA_READY_WITHIN: u64 = 2_500;
+/// Time between samples, us.
+const PERIOD: u64 = 1_000;
 
 /// The longest a register access or the reading of a sample may take, us; 11 bytes at 5 MHz take 18 us.
 const ACCESS_WITHIN: u64 = 500;
 
-/// The bit of the address that makes an access a read.
-const READ: u8 = 0x80;
+/// The longest a power-up may take, us: 75 ms if every setting sticks at once.
+const POWER_UP_WITHIN: u64 = 150_000;
+
+/// How long an accelerometer that did not power up is left alone, us: on a bus that hangs, asking costs the gyroscope time.
+const LEFT_ALONE: u64 = 100_000;
 
 /// Both devices hold their identity here.
 const CHIP_ID: u8 = 0x00;
 
 /// One of the two devices.
 struct Device {
-    /// Which chip select is its own.
-    select: usize,
     /// What it calls itself.
     id: u8,
     /// Where its data start (x, y, z, low byte first).
     data: u8,
     /// Bytes of a read before the answer: the address, and for the accelerometer one that means nothing.
     lead: usize,
+    /// From power to measuring.
+    power_up: &'static [Step],
 }
-
-const ACCELEROMETER: Device = Device { select: 0, id: 0x1E, data: 0x12, lead: 2 };
-const GYROSCOPE: Device = Device { select: 1, id: 0x0F, data: 0x02, lead: 1 };
 
 /// Written to a device's reset register, it restarts the device.
 const SOFT_RESET: u8 = 0xB6;
 const ACCELEROMETER_RESET: u8 = 0x7E;
 const GYROSCOPE_RESET: u8 = 0x14;
 
-/// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
-const POWER_TAKES: u64 = 1_000;
+/// The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A
+/// reset takes it 1 ms and is given 2. Settings: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it measures), ACC_CONF,
+/// ACC_RANGE.
+const ACCELEROMETER: Device = Device {
+    id: 0x1E,
+    data: 0x12,
+    lead: 2,
+    power_up: &[
+        (CHIP_ID, 0, Wake),
+        (ACCELEROMETER_RESET, SOFT_RESET, Write(2_000)),
+        (CHIP_ID, 0, Wake),
+        (CHIP_ID, 0x1E, Expect(0xFF)),
+        (0x7C, 0x00, Set(5_000)),
+        (0x7D, 0x04, Set(50_000)),
+        (0x40, 0x8C, Set(0)),
+        (0x41, 0x03, Set(0)),
+    ],
+};
 
-/// What a step of the power-up does with its register and value.
-#[derive(Clone, Copy, PartialEq)]
-enum Action {
-    /// Reads what means nothing.
-    Wake,
-    /// Reads, and expects the value.
-    Expect,
-    /// Writes, and waits for as many microseconds.
-    Write(u16),
-    /// Writes, waits, reads back.
-    Set(u16),
+/// A reset takes the gyroscope 30 ms, and is given 35. Settings: GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and active high (INT4
+/// left as it was), data-ready to INT3, data-ready on. The top bit of GYRO_BANDWIDTH always reads as one, so it is written
+/// as one.
+const GYROSCOPE: Device = Device {
+    id: 0x0F,
+    data: 0x02,
+    lead: 1,
+    power_up: &[
+        (CHIP_ID, 0x0F, Expect(0xFF)),
+        (GYROSCOPE_RESET, SOFT_RESET, Write(35_000)),
+        (0x0F, 0x00, Set(0)),
+        (0x10, 0x82, Set(0)),
+        (0x16, 0x0D, Set(0)),
+        (0x18, 0x01, Set(0)),
+        (0x15, 0x80, Set(0)),
+    ],
+};
+
+/// A device, how far its power-up is, and its faults in a row.
+struct Part {
+    device: &'static Device,
+    power_up: PowerUp,
+    faults: u8,
 }
 
-use Action::{Expect, Set, Wake, Write};
+impl Part {
+    fn new(device: &'static Device, time: u64) -> Self {
+        Self { device, power_up: PowerUp::new(device.power_up, time), faults: 0 }
+    }
 
-/// From power to measuring. The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its
-/// chip select turns it to SPI. A reset takes it 1 ms and the gyroscope 30 ms, and is given a little more.
-///
-/// Settings of the accelerometer: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it measures), ACC_CONF, ACC_RANGE. Of the
-/// gyroscope: GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and active high (INT4 left as it was), data-ready to INT3,
-/// data-ready on. The top bit of GYRO_BANDWIDTH always reads as one, so it is written as one.
-#[rustfmt::skip]
-const POWER_UP: [(&Device, u8, u8, Action); 15] = [
-    (&ACCELEROMETER, CHIP_ID,             0,                Wake),
-    (&ACCELEROMETER, ACCELEROMETER_RESET, SOFT_RESET,       Write(2_000)),
-    (&ACCELEROMETER, CHIP_ID,             0,                Wake),
-    (&ACCELEROMETER, CHIP_ID,             ACCELEROMETER.id, Expect),
-    (&ACCELEROMETER, 0x7C,                0x00,             Set(5_000)),
-    (&ACCELEROMETER, 0x7D,                0x04,             Set(50_000)),
-    (&ACCELEROMETER, 0x40,                0x8C,             Set(1_000)),
-    (&ACCELEROMETER, 0x41,                0x03,             Set(1_000)),
-    (&GYROSCOPE,     CHIP_ID,             GYROSCOPE.id,     Expect),
-    (&GYROSCOPE,     GYROSCOPE_RESET,     SOFT_RESET,       Write(35_000)),
-    (&GYROSCOPE,     0x0F,                0x00,             Set(1_000)),
-    (&GYROSCOPE,     0x10,                0x82,             Set(1_000)),
-    (&GYROSCOPE,     0x16,                0x0D,             Set(1_000)),
-    (&GYROSCOPE,     0x18,                0x01,             Set(1_000)),
-    (&GYROSCOPE,     0x15,                0x80,             Set(1_000)),
-];
-
-/// How the sensor sits in the vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mounting {
-    /// The sensor's axes are the body's: x forward, y left, z up.
-    Aligned,
-    /// The sensor's x points left, its y back, its z up.
-    XLeft,
-}
-
-impl Mounting {
-    /// From the sensor's axes to the body's.
-    #[must_use]
-    pub fn to_body(self, sensor: Vector3<f32>) -> Vector3<f32> {
-        match self {
-            Self::Aligned => sensor,
-            Self::XLeft => Vector3::new(-sensor.y, sensor.x, sensor.z),
+    /// Counts a measurement, and begins anew at `time` after too many faults.
+    fn judge<T>(&mut self, measured: Result<T, Fault>, time: u64) -> Result<T, Fault> {
+        self.faults = if measured.is_ok() { 0 } else { self.faults + 1 };
+        if self.faults >= RESTART_AFTER {
+            *self = Self::new(self.device, time);
         }
+        measured
+    }
+}
+
+/// One device on the bus.
+struct Port<'a, B, S, C> {
+    bus: &'a mut B,
+    select: &'a mut S,
+    clock: &'a C,
+    device: &'static Device,
+}
+
+impl<B: SpiBus, S: OutputPin, C: Clock> Port<'_, B, S, C> {
+    /// Reads `count` registers, at most six, from `register` on.
+    async fn read_many(&mut self, register: u8, count: usize) -> Result<[u8; 6], Fault> {
+        let mut bytes = [READ | register, 0, 0, 0, 0, 0, 0, 0];
+        let used = bytes.get_mut(..self.device.lead + count).ok_or(Fault)?;
+        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, used).await?;
+        let [_, early @ .., _] = bytes;
+        let [_, _, late @ ..] = bytes;
+        Ok(if self.device.lead == 1 { early } else { late })
+    }
+
+    /// What it measures, in counts, if it is itself.
+    async fn measure(&mut self) -> Result<Vector3<f32>, Fault> {
+        let id = self.read(CHIP_ID).await?;
+        if id != self.device.id {
+            return Err(Fault);
+        }
+        Ok(counts(self.read_many(self.device.data, 6).await?))
+    }
+}
+
+impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
+    async fn read(&mut self, register: u8) -> Result<u8, Fault> {
+        let [value, ..] = self.read_many(register, 1).await?;
+        Ok(value)
+    }
+
+    async fn write(&mut self, register: u8, bytes: &[u8]) -> Result<(), Fault> {
+        let &[value] = bytes else { return Err(Fault) };
+        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, &mut [register, value]).await
     }
 }
 
@@ -134,109 +176,102 @@ pub struct Bmi088<B, S, P, C> {
     bus: B,
     /// Chip selects of accelerometer and gyroscope.
     selects: [S; 2],
-    data_ready: P,
+    pace: Pace<P>,
     clock: C,
     mounting: Mounting,
-    /// Faults in a row; at [`RESTART_AFTER`] the sensor counts as not powered up.
-    faults: u8,
+    accelerometer: Part,
+    gyroscope: Part,
 }
 
 impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope, high.
     pub fn new(bus: B, selects: [S; 2], data_ready: P, clock: C, mounting: Mounting) -> Self {
-        Self { bus, selects, data_ready, clock, mounting, faults: RESTART_AFTER }
+        let time = clock.now() + POWER_TAKES;
+        let (accelerometer, gyroscope) = (Part::new(&ACCELEROMETER, time), Part::new(&GYROSCOPE, time));
+        Self { bus, selects, pace: Pace::new(data_ready, PERIOD), clock, mounting, accelerometer, gyroscope }
     }
 
+    /// Both devices at once, because most of it is waiting; the gyroscope's faults end it, and the accelerometer's only its own.
+    /// An accelerometer that is being left alone is not waited for.
     async fn power_up(&mut self) -> Result<(), Fault> {
-        self.clock.until(self.clock.now() + POWER_TAKES).await;
-        for (device, register, value, action) in POWER_UP {
-            if let Write(settles) | Set(settles) = action {
-                self.access(device, &mut [register, value]).await?;
-                self.clock.until(self.clock.now() + u64::from(settles)).await;
+        let now = self.clock.now();
+        let end = now + POWER_UP_WITHIN;
+        let mut with_accelerometer = self.accelerometer.power_up.due() <= now + POWER_TAKES;
+        loop {
+            let (now, fast, slow) = (self.clock.now(), &self.gyroscope.power_up, &self.accelerometer.power_up);
+            let waiting = with_accelerometer && !slow.is_done(now);
+            if fast.is_done(now) && !waiting {
+                return Ok(());
             }
-            if let Wake | Expect | Set(_) = action {
-                let [found, ..] = self.read(device, register, 1).await?;
-                if found != value && action != Wake {
-                    return Err(Fault);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    async fn measure(&mut self) -> Result<ImuSample, Fault> {
-        let rising = within(&self.clock, DATA_READY_WITHIN, self.data_ready.wait_for_rising_edge());
-        rising.await?.map_err(|_| Fault)?;
-        let mut counted = [Vector3::zeros(); 2];
-        for (device, counted) in [GYROSCOPE, ACCELEROMETER].iter().zip(&mut counted) {
-            let [id, ..] = self.read(device, CHIP_ID, 1).await?;
-            if id != device.id {
+            let due = match (fast.is_done(now), waiting) {
+                (false, true) => fast.due().min(slow.due()),
+                (false, false) => fast.due(),
+                (true, _) => slow.due(),
+            };
+            if due > end {
                 return Err(Fault);
             }
-            *counted = self.mounting.to_body(counts(self.read(device, device.data, 6).await?));
-        }
-        let [rates, accelerations] = counted;
-        Ok(ImuSample {
-            angular_velocity: rates * RATE_PER_COUNT,
-            specific_force: accelerations * ACCELERATION_PER_COUNT,
-        })
-    }
-
-    /// Reads `count` registers, at most six, from `register` on.
-    async fn read(&mut self, device: &Device, register: u8, count: usize) -> Result<[u8; 6], Fault> {
-        let mut bytes = [READ | register, 0, 0, 0, 0, 0, 0, 0];
-        self.access(device, bytes.get_mut(..device.lead + count).ok_or(Fault)?).await?;
-        let [_, early @ .., _] = bytes;
-        let [_, _, late @ ..] = bytes;
-        Ok(if device.lead == 1 { early } else { late })
-    }
-
-    /// Exchanges `bytes` with a device, the first of them being an address.
-    async fn access(&mut self, device: &Device, bytes: &mut [u8]) -> Result<(), Fault> {
-        let [accelerometer, gyroscope] = &mut self.selects;
-        let select = if device.select == 0 { accelerometer } else { gyroscope };
-        let _selected = Selected::new(select)?;
-        let exchange = async {
-            self.bus.transfer_in_place(bytes).await?;
-            self.bus.flush().await
-        };
-        within(&self.clock, ACCESS_WITHIN, exchange).await?.map_err(|_| Fault)
-    }
-}
-
-/// A device's chip select, low until this goes, however an access ends.
-struct Selected<'a, S: OutputPin>(&'a mut S);
-
-impl<'a, S: OutputPin> Selected<'a, S> {
-    fn new(select: &'a mut S) -> Result<Self, Fault> {
-        match select.set_low() {
-            Ok(()) => Ok(Self(select)),
-            Err(_) => Err(Fault),
+            self.clock.until(due).await;
+            self.advance_gyroscope().await?;
+            if with_accelerometer {
+                with_accelerometer = self.advance_accelerometer().await.is_ok();
+            }
         }
     }
-}
 
-impl<S: OutputPin> Drop for Selected<'_, S> {
-    fn drop(&mut self) {
-        // A pin that cannot rise shows at the next access: its device does not say who it is.
-        let _ = self.0.set_high();
+    async fn advance_gyroscope(&mut self) -> Result<(), Fault> {
+        let Self { bus, selects: [_, select], clock, gyroscope, .. } = self;
+        let mut port = Port { bus, select, clock, device: gyroscope.device };
+        gyroscope.power_up.advance(&mut port, clock).await
+    }
+
+    async fn advance_accelerometer(&mut self) -> Result<(), Fault> {
+        let Self { bus, selects: [select, _], clock, accelerometer, .. } = self;
+        let mut port = Port { bus, select, clock, device: accelerometer.device };
+        let advanced = accelerometer.power_up.advance(&mut port, clock).await;
+        if advanced.is_err() {
+            accelerometer.power_up.restart(clock.now() + LEFT_ALONE);
+        }
+        advanced
+    }
+
+    /// The rates, in counts.
+    async fn rates(&mut self) -> Result<Vector3<f32>, Fault> {
+        let Self { bus, selects: [_, select], clock, gyroscope, .. } = self;
+        let measured = Port { bus, select, clock, device: gyroscope.device }.measure().await;
+        gyroscope.judge(measured, clock.now() + POWER_TAKES)
+    }
+
+    /// The accelerations, in counts; none from an accelerometer that does not answer, which is powered up by a step instead.
+    async fn accelerations(&mut self) -> Option<Vector3<f32>> {
+        if !self.accelerometer.power_up.is_done(self.clock.now()) {
+            // It says by itself when to go on.
+            let _ = self.advance_accelerometer().await;
+            return None;
+        }
+        let Self { bus, selects: [select, _], clock, accelerometer, .. } = self;
+        let measured = Port { bus, select, clock, device: accelerometer.device }.measure().await;
+        accelerometer.judge(measured, clock.now() + LEFT_ALONE).ok()
     }
 }
 
 impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Imu for Bmi088<B, S, P, C> {
-    async fn sample(&mut self) -> Result<ImuSample, Fault> {
-        if self.faults >= RESTART_AFTER {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
+        if !self.gyroscope.power_up.is_done(self.clock.now()) {
             self.power_up().await?;
-            self.faults = 0;
         }
-        let sample = self.measure().await;
-        self.faults = if sample.is_ok() { 0 } else { self.faults + 1 };
-        sample
+        let time = self.pace.next(&self.clock).await;
+        let angular_velocity = self.mounting.to_body(self.rates().await?) * RATE_PER_COUNT;
+        let accelerations = self.accelerations().await;
+        let specific_force = accelerations.map(|counted| self.mounting.to_body(counted) * ACCELERATION_PER_COUNT);
+        Ok(RawImu { time, angular_velocity, specific_force })
     }
-}
 
-/// Three signed 16-bit numbers, low byte first.
-fn counts([xl, xh, yl, yh, zl, zh]: [u8; 6]) -> Vector3<f32> {
-    let [x, y, z] = [[xl, xh], [yl, yh], [zl, zh]].map(|bytes| f32::from(i16::from_le_bytes(bytes)));
-    Vector3::new(x, y, z)
+    fn parameters(&self) -> ImuParameters {
+        ImuParameters::BMI088
+    }
+
+    fn is_polled(&self) -> bool {
+        self.pace.is_polled()
+    }
 }

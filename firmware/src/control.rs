@@ -15,6 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::Outputs;
 use crate::shared::{Asked, Event, Report, Shared, Timing};
 use controller_core::error::InputError;
+use controller_core::estimator::Increment;
 use controller_core::flight::rules::{IMU_AGE_MAX, POSE_AGE_MAX};
 use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Refusal};
 use controller_core::state::State;
@@ -32,6 +33,8 @@ pub struct Control<'a, M: RawMutex> {
     timing: Timing,
     /// Whether sensors and motors are a simulator's, as the last tick found it.
     simulated: bool,
+    /// When the last IMU increment ended, us.
+    integrated: Option<u64>,
     /// What the last tick had to complain about: said when it changes, not a hundred times a second.
     complaint: Complaint,
 }
@@ -47,7 +50,15 @@ struct Complaint {
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
     pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
-        Self { shared, pilot, outputs, timing: Timing::default(), simulated: false, complaint: Complaint::default() }
+        Self {
+            shared,
+            pilot,
+            outputs,
+            timing: Timing::default(),
+            simulated: false,
+            integrated: None,
+            complaint: Complaint::default(),
+        }
     }
 
     /// Runs for ever.
@@ -70,12 +81,22 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// One tick, from what the other tasks have put down to what the motors are told.
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
+        while let Some(increment) = self.shared.increments.take() {
+            self.integrate(&increment);
+        }
         let asked = self.shared.requests.take();
         let inputs = self.inputs(now, asked);
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
         self.report(&inputs, &outcome);
         self.outputs.command(&outcome.output)
+    }
+
+    /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.
+    fn integrate(&mut self, increment: &Increment) {
+        let follows = self.integrated.is_none_or(|end| end == increment.start);
+        self.timing.gaps = self.timing.gaps.saturating_add(u32::from(!follows));
+        self.integrated = Some(increment.end);
     }
 
     fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs {
@@ -169,7 +190,7 @@ mod tests {
     fn a_tick_in_time_is_followed_a_period_later() {
         let mut timing = Timing::default();
         assert!(timing.record(20_000, 20_030, 20_400));
-        assert_eq!(timing, Timing { worst_duration: 370, worst_jitter: 30, missed: 0 });
+        assert_eq!(timing, Timing { worst_duration: 370, worst_jitter: 30, missed: 0, gaps: 0 });
         assert_eq!(next_due(20_000, 20_400), 30_000);
     }
 

@@ -3,8 +3,9 @@
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
 
-use controller_core::flight::ImuSample;
-use core::future::Future;
+use controller_core::imu::ImuParameters;
+use core::future::{Future, ready};
+use nalgebra::Vector3;
 
 /// Rotors that a board drives.
 pub const MOTORS: usize = 4;
@@ -23,13 +24,49 @@ pub trait Clock {
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Fault;
 
-/// An inertial measurement unit.
+/// One reading of an inertial measurement unit, in body axes (x forward, y left, z up), before calibration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RawImu {
+    /// When it was taken, us: when the sensor said that it was ready.
+    pub time: u64,
+    /// omega, rad/s.
+    pub angular_velocity: Vector3<f32>,
+    /// Specific force, m/s^2; none where the accelerometer does not answer.
+    pub specific_force: Option<Vector3<f32>>,
+}
+
+/// Which of a board's sensors: each has a calibration of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// The one that flies.
+    First,
+    /// The one that stands by.
+    Second,
+}
+
+/// An inertial measurement unit. Where a board has two, this is both of them: see [`crate::redundant`].
 pub trait Imu {
-    /// Waits for the next sample (1 kHz) and reads it, turned into the body frame (x forward, y left, z up).
+    /// Waits for the next sample (about 1 kHz) and reads it.
     ///
     /// # Errors
-    /// [`Fault`] if the sensor does not answer as it should; the next call tries again.
-    fn sample(&mut self) -> impl Future<Output = Result<ImuSample, Fault>>;
+    /// [`Fault`] if the gyro does not answer as it should; the next call tries again.
+    fn sample(&mut self) -> impl Future<Output = Result<RawImu, Fault>>;
+
+    /// What the samples are like.
+    fn parameters(&self) -> ImuParameters;
+
+    /// Whether samples are read by the clock because the sensor's data-ready edges stay away.
+    fn is_polled(&self) -> bool;
+
+    /// Whose samples these are. Once it is the second's, it stays so.
+    fn unit(&self) -> Unit {
+        Unit::First
+    }
+
+    /// The next sample of the sensor that stands by, if there is one. For a vehicle on the ground: it delays the other's.
+    fn standby(&mut self) -> impl Future<Output = Option<Result<RawImu, Fault>>> {
+        ready(None)
+    }
 }
 
 /// What the motors are told, once per control tick.
@@ -75,8 +112,8 @@ pub trait Light {
     fn set(&mut self, on: bool);
 }
 
-/// What flash is read and written by: 64 bytes, whole words of any flash there is.
-pub type Record = [u32; 16];
+/// What flash is read and written by: 256 bytes, whole words of any flash there is.
+pub type Record = [u32; 64];
 
 /// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done, and
 /// never without end: while it programs or erases itself, the code in it may not run anyway.

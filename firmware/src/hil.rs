@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | HIL_ACTUATOR_CONTROLS | out, one a tick | its time; commands 0 to 1 in the rotors' order; armed unless told to stop |
 //! | ODOMETRY | in | where the vehicle is a tick later, as from any source of poses; may be left out |
-//! | HIL_SENSOR | in | gyro and accelerometer then, with the time of the command that it answers |
+//! | HIL_SENSOR | in | gyro and accelerometer then, with the time of the command that it answers; taken as a sensor's: [`Flow`] |
 //!
 //! HIL_SENSOR comes last and ends the exchange; the simulator then stands still until the next command. So the two run in
 //! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in between: an
@@ -18,13 +18,14 @@
 
 use crate::deadline::{send, within};
 use crate::frames;
-use crate::hardware::{Clock, Fault, MOTORS, MotorCommand, Motors};
+use crate::hardware::{Clock, Fault, MOTORS, MotorCommand, Motors, RawImu};
+use crate::imu::{self, Flow};
 use crate::link::frame::{Frame, Parser};
 use crate::link::pose::odometry;
 use crate::link::writer::Writer;
 use crate::parameters::table::Name;
 use crate::shared::{Flag, Latest, Shared};
-use controller_core::flight::{ImuSample, PERIOD, Stamped};
+use controller_core::flight::{PERIOD, Stamped};
 use core::array;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
@@ -158,6 +159,10 @@ pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &i
 
 /// Takes the simulator's answers for IMU and pose, for ever.
 pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    let mut flow = match Flow::simulated(shared) {
+        Ok(flow) => flow,
+        Err(error) => imu::refuse(shared, clock, &error).await,
+    };
     let mut parser = Parser::new();
     let mut chunk = [0; CHUNK];
     loop {
@@ -166,17 +171,18 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
             continue;
         };
         let now = clock.now();
-        parser.feed(chunk.get(..count).unwrap_or(&chunk), now, &mut |frame| take(hil, frame, shared));
+        parser.feed(chunk.get(..count).unwrap_or(&chunk), now, &mut |frame| take(hil, frame, &mut flow, shared));
     }
 }
 
 /// Acts on one frame, if it is one of the two and answers a command.
-fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, shared: &Shared<M>) {
+fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, shared: &Shared<M>) {
     match frame.message {
         HIL_SENSOR_DATA::ID => {
             let Some(message) = frame.decode::<HIL_SENSOR_DATA>() else { return };
-            if let (Some(time), Some(sample)) = (hil.stamp(message.time_usec), sample(&message)) {
-                shared.imu.put(sample, time);
+            let stamped = hil.stamp(message.time_usec).and_then(|time| sample(&message, time));
+            if let Some(sample) = stamped {
+                flow.take(&sample);
                 hil.answered(message.time_usec);
             }
         }
@@ -207,11 +213,12 @@ fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     HIL_ACTUATOR_CONTROLS_DATA { time_usec: command.time, flags, controls, mode }
 }
 
-/// What the sensors say, if the simulator knows all of it.
-fn sample(message: &HIL_SENSOR_DATA) -> Option<ImuSample> {
+/// What the sensors say at `time`, us, if the simulator knows all of it.
+fn sample(message: &HIL_SENSOR_DATA, time: u64) -> Option<RawImu> {
     let &HIL_SENSOR_DATA { xacc, yacc, zacc, xgyro, ygyro, zgyro, fields_updated: known, .. } = message;
     let (force, rates) = (Vector3::new(xacc, yacc, zacc), Vector3::new(xgyro, ygyro, zgyro));
     let finite = force.iter().chain(&rates).all(|component| component.is_finite());
     let whole = known.contains(INERTIAL) && finite;
-    whole.then(|| ImuSample { angular_velocity: frames::body(&rates), specific_force: frames::body(&force) })
+    let (angular_velocity, specific_force) = (frames::body(&rates), Some(frames::body(&force)));
+    whole.then_some(RawImu { time, angular_velocity, specific_force })
 }

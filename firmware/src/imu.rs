@@ -1,13 +1,26 @@
-//! The IMU task: each sample as it comes, at 1 kHz, stamped with the time it was read.
+//! The IMU task: each sample as it comes, at 1 kHz, through the conditioner to control; calibration while the vehicle stands.
+//!
+//! ```text
+//! sensor -> RawImu -> Conditioner -> Shared::increments (each of them)
+//!                  |             '-> Shared::imu        (the newest sample, low-passed)
+//!                  '-> Calibrator -> parameters, Conditioner
+//! ```
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! While a simulator stands in for the sensors, what this one says counts for nothing. The first fault after good samples,
-//! and the first good sample after faults, are events.
+//! While a simulator stands in for the sensors, what these say counts for nothing. The first fault after good samples, and the
+//! first good sample after faults, are events; so is a second sensor that takes over, and one that does not answer on
+//! the ground.
+
+mod calibrator;
+mod flow;
+
+pub use flow::Flow;
 
 use crate::deadline::within;
-use crate::hardware::{Clock, Fault, Imu};
+use crate::hardware::{Clock, Fault, Imu, RawImu};
 use crate::shared::{Event, Severity, Shared};
-use controller_core::flight::ImuSample;
+use calibrator::Calibrator;
+use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it, and is
@@ -17,18 +30,50 @@ pub const PATIENCE: u64 = 200_000;
 /// How long to leave a faulty sensor alone, us.
 const RETRY: u64 = 1_000;
 
+/// How often a task that cannot work looks whether there is anything to do, us: there never is.
+const IDLE: u64 = 1_000_000;
+
 /// Runs for ever.
 pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut impl Imu) -> ! {
-    let mut healthy = true;
+    let mut calibrator = Calibrator::new(shared, clock.now());
+    let mut flow = match Flow::new(shared, &imu.parameters(), calibrator.calibration(imu.unit())) {
+        Ok(flow) => flow,
+        Err(error) => refuse(shared, clock, &error).await,
+    };
+    if ask_standby(clock, imu).await == Some(Err(Fault)) {
+        shared.announce(Event::new(Severity::Warning, "Second IMU does not answer"));
+    }
+    let (mut unit, mut is_healthy, mut is_polled) = (imu.unit(), true, false);
     loop {
+        calibrator.listen(clock.now());
+        let standby = if calibrator.wants_standby() { ask_standby(clock, imu).await } else { None };
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
-        match sample {
-            Ok(_) if shared.hil.is_raised() => {}
-            Ok(sample) => shared.imu.put(sample, clock.now()),
+        if imu.unit() != unit {
+            unit = imu.unit();
+            shared.announce(Event::new(Severity::Critical, "IMU: the second takes over"));
+            if let Err(error) = flow.take_over(&imu.parameters(), calibrator.calibration(unit)) {
+                refuse(shared, clock, &error).await;
+            }
+        }
+        match &sample {
+            Ok(sample) => {
+                if calibrator.take(unit, sample, standby) {
+                    flow.calibrate(calibrator.calibration(unit));
+                }
+                if !shared.hil.is_raised() {
+                    flow.take(sample);
+                }
+                if imu.is_polled() != is_polled {
+                    is_polled = imu.is_polled();
+                    let words =
+                        if is_polled { "IMU: no data-ready edges, polled" } else { "IMU: data-ready edges again" };
+                    shared.announce(Event::new(Severity::Warning, words));
+                }
+            }
             Err(Fault) => clock.until(clock.now() + RETRY).await,
         }
-        if sample.is_ok() != healthy {
-            healthy = sample.is_ok();
+        if sample.is_ok() != is_healthy {
+            is_healthy = sample.is_ok();
             match sample {
                 Ok(_) => shared.announce(Event::new(Severity::Information, "IMU answers again")),
                 Err(Fault) => shared.announce(Event::new(Severity::Critical, "IMU does not answer")),
@@ -37,8 +82,23 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
     }
 }
 
+/// A sample of the sensor that stands by.
+async fn ask_standby(clock: &impl Clock, imu: &mut impl Imu) -> Option<Result<RawImu, Fault>> {
+    let answer = within(clock, PATIENCE, imu.standby()).await.unwrap_or(Some(Err(Fault)))?;
+    Some(answer.and_then(finite))
+}
+
 /// Refuses a sample that is not made of numbers.
-fn finite(sample: ImuSample) -> Result<ImuSample, Fault> {
-    let numbers = sample.angular_velocity.iter().chain(&sample.specific_force).all(|component| component.is_finite());
+fn finite(sample: RawImu) -> Result<RawImu, Fault> {
+    let RawImu { angular_velocity, specific_force, .. } = &sample;
+    let numbers = angular_velocity.iter().chain(specific_force.iter().flatten()).all(|component| component.is_finite());
     if numbers { Ok(sample) } else { Err(Fault) }
+}
+
+/// What a task does whose sensor's parameters make no sense: it says so, and delivers nothing. Nothing arms without samples.
+pub async fn refuse<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, error: &ParameterError) -> ! {
+    shared.announce(Event::new(Severity::Critical, error));
+    loop {
+        clock.until(clock.now() + IDLE).await;
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`bmi088`] | the boards' inertial measurement unit, over any SPI |
+//! | [`bmi088`], [`bmi270`] | the boards' inertial measurement units, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
 //! | [`configuration`] | the scenario this build embeds |
 //! | [`control`] | the control task: pilot in, motors out, on time |
@@ -12,10 +12,14 @@
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
-//! | [`imu`] | the IMU task |
+//! | [`imu`] | the IMU task: samples to increments, faults in words, calibration |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
+//! | [`mounting`] | how a sensor sits in the vehicle |
 //! | [`outputs`] | thrusts to motor commands |
+//! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
+//! | [`redundant`] | two inertial sensors as one |
+//! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
@@ -26,6 +30,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 pub mod bmi088;
+pub mod bmi270;
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod boot;
@@ -39,8 +44,12 @@ pub mod hardware;
 pub mod hil;
 pub mod imu;
 pub mod link;
+pub mod mounting;
 pub mod outputs;
+mod pace;
 pub mod parameters;
+pub mod redundant;
+mod registers;
 pub mod replay;
 pub mod shared;
 pub mod status;

@@ -3,8 +3,10 @@
 //! Nothing the certificate depends on is here: vehicle, gains, rotors and reference bounds are built in and certified at
 //! boot. A parameter can make the vehicle slower or quieter, never less safe, and changes only while disarmed.
 //!
-//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`].
+//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`] is what the rows of the
+//! inertial sensors mean together.
 
+pub mod calibration;
 pub mod journal;
 pub mod storage;
 pub mod table;
@@ -47,7 +49,7 @@ pub struct OutOfRange(
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Row { name, least, most, unit, .. } = self.0.row();
-        write!(f, "{name}: allowed are {least:.1} to {most:.1} {unit}")
+        write!(f, "{name}: allowed are {least:?} to {most:?} {unit}")
     }
 }
 

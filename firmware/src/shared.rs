@@ -3,6 +3,7 @@
 //! | from | what | to | at most this old |
 //! |---|---|---|---|
 //! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
+//! | IMU | [`Shared::increments`] | control | a tick: each taken once |
 //! | link | [`Shared::pose`] | control | [`controller_core::flight`] decides |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
@@ -11,6 +12,7 @@
 //! | status | [`Shared::voltage`] | control, link | 1 s |
 //! | control | [`Shared::report`] | link, status | one report a tick |
 //! | control, link, status | [`Shared::announce`] | link (STATUSTEXT), status (log) | until sent |
+//! | link | [`Shared::calibrations`] | IMU | until taken |
 //! | link | [`Shared::hil`] | motors, sensors | until reboot |
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
@@ -30,10 +32,11 @@ pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use queue::{Full, Queue};
-pub use reply::{Asked, Ping, Reply};
+pub use reply::{Asked, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
 use crate::parameters::Parameters;
+use controller_core::estimator::Increment;
 use controller_core::flight::{ImuSample, Pose, Refusal};
 use controller_core::governor::Setpoint;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -44,6 +47,12 @@ use mavlink::dialects::common::{MavCmd, MavResult};
 /// Requests that wait for control, which takes one a tick.
 pub const REQUESTS: usize = 4;
 
+/// IMU increments that wait for control, which takes all of them: 40 ms.
+pub const INCREMENTS: usize = 8;
+
+/// Calibrations that wait to be begun.
+pub const CALIBRATIONS: usize = 2;
+
 /// Events that wait to be sent or logged.
 pub const EVENTS: usize = 8;
 
@@ -52,8 +61,12 @@ pub const REPLIES: usize = 8;
 
 /// Everything that passes between tasks.
 pub struct Shared<M: RawMutex> {
-    /// The newest inertial sample, with its data-ready time.
+    /// The newest inertial sample, calibrated and low-passed, with its data-ready time.
     pub imu: Latest<M, ImuSample>,
+    /// What the inertial samples add up to, in order. Put them in with [`Self::increment`].
+    pub increments: Queue<M, Increment, INCREMENTS>,
+    /// Calibrations that somebody asked for; none ends what is under way.
+    pub calibrations: Queue<M, Option<Procedure>, CALIBRATIONS>,
     /// The newest pose, with its time of arrival.
     pub pose: Latest<M, Pose>,
     /// Its time says when a ground station was last heard.
@@ -86,6 +99,7 @@ pub struct Shared<M: RawMutex> {
     pub parameters: Parameters<M>,
     /// Events that found one of the queues full.
     lost: AtomicU32,
+    lost_increments: AtomicU32,
 }
 
 impl<M: RawMutex> Shared<M> {
@@ -94,6 +108,8 @@ impl<M: RawMutex> Shared<M> {
     pub const fn new() -> Self {
         Self {
             imu: Latest::new(),
+            increments: Queue::new(),
+            calibrations: Queue::new(),
             pose: Latest::new(),
             ground_station: Latest::new(),
             setpoint: Latest::new(),
@@ -110,7 +126,22 @@ impl<M: RawMutex> Shared<M> {
             outgoing: Signal::new(),
             parameters: Parameters::new(),
             lost: AtomicU32::new(0),
+            lost_increments: AtomicU32::new(0),
         }
+    }
+
+    /// Hands control what the IMU did. Without room it is dropped and counted: the next one does not begin where the last one in
+    /// the queue ended, which is how control knows.
+    pub fn increment(&self, increment: Increment) {
+        if self.increments.put(increment).is_err() {
+            self.lost_increments.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Increments that were dropped for want of room.
+    #[must_use]
+    pub fn lost_increments(&self) -> u32 {
+        self.lost_increments.load(Ordering::Relaxed)
     }
 
     /// Asks control for something.

@@ -3,9 +3,9 @@
 use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::flight::ImuSample;
+use controller_core::imu::ImuParameters;
 use controller_core::state::State;
-use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, Watchdog};
+use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
 use host_sim::plant::Plant;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -174,16 +174,26 @@ impl Body {
     }
 }
 
-/// The board's IMU: a sample at each step.
+/// The board's IMU: a sample at each step, with as much noise as tells a sensor from one that is stuck.
 pub struct SimImu(pub World);
 
 impl Imu for SimImu {
-    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
         let clock = &self.0.0.clock;
-        clock.until((clock.now() / STEP + 1) * STEP).await;
+        let time = (clock.now() / STEP + 1) * STEP;
+        clock.until(time).await;
         self.0.0.sensor.get().answer().await?;
-        let angular_velocity = self.0.0.body.borrow().plant.state().measured().angular_velocity;
-        Ok(ImuSample { angular_velocity, specific_force: Vector3::new(0.0, 0.0, 9.81) })
+        let jitter = (time / STEP % 7) as f32 * 1e-5 - 3e-5;
+        let angular_velocity = self.0.0.body.borrow().plant.state().measured().angular_velocity.add_scalar(jitter);
+        Ok(RawImu { time, angular_velocity, specific_force: Some(Vector3::new(jitter, 0.0, 9.81)) })
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        ImuParameters::BMI088
+    }
+
+    fn is_polled(&self) -> bool {
+        false
     }
 }
 

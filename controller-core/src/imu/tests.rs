@@ -99,3 +99,39 @@ fn parameters_that_make_no_sense_are_refused_by_name() {
     assert_eq!(refused(&ImuParameters { gyro_range: f32::NAN, ..good }).reason, Reason::NotFinite);
     assert!((conditioner().delay() - 3.7e-3).abs() < 1e-5);
 }
+
+#[test]
+fn the_newest_sample_is_low_passed_and_keeps_its_force_through_silence() {
+    let mut conditioner = conditioner();
+    assert_eq!(conditioner.newest(), None);
+    run(&mut conditioner, (0..100).map(|n| n * 1_000));
+    let force = conditioner.newest().unwrap().value.specific_force;
+    let jump = Vector3::new(5.0, 0.0, 0.0);
+    let Conditioned { increment, .. } = conditioner.sample(100_000, &(at(100).0 + jump), None);
+    let newest = conditioner.newest().unwrap();
+    assert_eq!((newest.time, newest.value.specific_force), (100_000, force));
+    assert_eq!(newest.value.angular_velocity, increment.unwrap().angular_velocity);
+    assert!((0.4..0.8).contains(&newest.value.angular_velocity.x), "{}", newest.value.angular_velocity);
+}
+
+#[test]
+fn another_sensor_takes_over_within_15_ms_without_a_gap_and_is_judged_by_its_own_range() {
+    let mut conditioner = conditioner();
+    run(&mut conditioner, (0..=42).map(|n| n * 1_000));
+    let small = ImuParameters { accelerometer_range: 100.0, rate: 800.0, ..ImuParameters::BMI088 };
+    let turned = Calibration { gyro_bias: Vector3::new(0.0, 0.0, 0.1), ..Calibration::NONE };
+    conditioner.take_over(&small, &turned).unwrap();
+    let mut increments = Vec::new();
+    for n in 0..20_u64 {
+        let (rate, force) = at(n);
+        let said = conditioner.sample(52_000 + n * 1_250, &(rate + turned.gyro_bias), Some(&force));
+        assert_eq!(said.fault, None);
+        increments.extend(said.increment);
+    }
+    // The one under way goes on, and the law's rate does not jump.
+    assert_eq!(increments[0].start, 40_000);
+    assert!(increments.iter().all(|one| (one.angular_velocity - at(0).0).norm() < 2e-3));
+    let shocked = (0..5).map(|n| conditioner.sample(80_000 + n, &at(n).0, Some(&Vector3::repeat(101.0 + n as f32))));
+    assert_eq!(shocked.last().unwrap().fault, Some(ImuFault::AccelerometerSaturated));
+    assert!(conditioner.take_over(&ImuParameters { rate: 0.0, ..small }, &turned).is_err());
+}

@@ -8,15 +8,16 @@
 use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
 use super::stm32::executors;
-use super::stm32::imu;
+use super::stm32::imu::{self, BoardBmi088};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::watchdog::ChipWatchdog;
-use crate::bmi088::{Bmi088, Mounting};
+use crate::bmi088::Bmi088;
 use crate::hardware::Battery;
+use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
@@ -50,6 +51,9 @@ const MOTOR_CHANNELS: [usize; 4] = [1, 3, 0, 2];
 /// As Bitcraze's own firmware takes it: the sensor's axes are the body's.
 const MOUNTING: Mounting = Mounting::Aligned;
 
+/// The inertial sensor.
+pub type BoardImu = BoardBmi088;
+
 /// The motors.
 pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
 
@@ -72,7 +76,7 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
 /// # Panics
 /// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board<BoardMotors, BoardWatchdog, BoardBattery> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
     let p = embassy_stm32::init(clocks());
     pac::FLASH.acr().modify(|w| {

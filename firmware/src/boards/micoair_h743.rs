@@ -1,4 +1,4 @@
-//! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088, TIM1 for the motors, USART1 for the link.
+//! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link.
 //!
 //! Clocks: a crystal of 8 MHz, times 100, halved: 400 MHz for the core, half for the buses, a quarter for their
 //! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would need
@@ -8,21 +8,24 @@
 use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
 use super::stm32::executors;
-use super::stm32::imu;
+use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::watchdog::ChipWatchdog;
-use crate::bmi088::{Bmi088, Mounting};
+use crate::bmi088::Bmi088;
+use crate::bmi270::Bmi270;
 use crate::hardware::Battery;
+use crate::mounting::Mounting;
+use crate::redundant::Redundant;
 use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, IWDG1, PC0, TIM1, USART1, USART2,
+    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, TIM1, USART1, USART2,
 };
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
 use embassy_stm32::spi::Spi;
@@ -40,6 +43,9 @@ bind_interrupts!(
         DMA1_STREAM2 => dma::InterruptHandler<DMA1_CH2>;
         DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
         DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
+        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
+        EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         USART1 => usart::InterruptHandler<USART1>;
         USART2 => usart::BufferedInterruptHandler<USART2>;
@@ -49,8 +55,14 @@ bind_interrupts!(
 /// Motors 1 to 4 are on PE14, PE13, PE11, PE9: channels 4, 3, 2, 1 of TIM1.
 const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
 
-/// As ArduPilot's definition of this board mounts it (roll 180 degrees, then yaw 270, in its axes forward, right, down).
+/// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward, right, down).
 const MOUNTING: Mounting = Mounting::XLeft;
+
+/// As it mounts the BMI270 (roll 180 degrees).
+const SECOND_MOUNTING: Mounting = Mounting::Aligned;
+
+/// The inertial sensors: the BMI088 flies, the BMI270 stands by.
+pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
 
 /// The motors.
 pub type BoardMotors = Dshot<TIM1, DMA1_CH2, Interrupts>;
@@ -74,7 +86,7 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 /// # Panics
 /// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board<BoardMotors, BoardWatchdog, BoardBattery> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
     let p = embassy_stm32::init(clocks());
     if let Some(mut core) = cortex_m::Peripherals::take() {
@@ -94,7 +106,11 @@ pub fn take() -> Board<BoardMotors, BoardWatchdog, BoardBattery> {
     let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
     let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
-    let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+    let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+    let bus = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
+    let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
+    let data_ready = ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts);
+    let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
     let uart = uart.expect("USART1's clock makes no 921,600 baud");
@@ -129,7 +145,7 @@ fn clocks() -> embassy_stm32::Config {
         mul: PllMul::MUL100,
         fracn: None,
         divp: Some(PllDiv::DIV2), // core: 400 MHz
-        divq: Some(PllDiv::DIV8), // SPI2: 100 MHz
+        divq: Some(PllDiv::DIV8), // SPI2 and SPI3: 100 MHz
         divr: None,
     });
     rcc.sys = rcc::Sysclk::PLL1_P;

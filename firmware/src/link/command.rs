@@ -5,10 +5,12 @@
 //! | 400 COMPONENT_ARM_DISARM | 1 asks the flight rules to arm, 0 disarms at once; forcing (parameter 2) is not listened to |
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 176 DO_SET_MODE | guided flight is the only mode there is; with the HIL flag, while disarmed: sensors from a simulator |
+//! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | any other of the dialect | is answered as unsupported |
 
 use super::frame::{Frame, Header};
 use crate::hardware::MOTORS;
+use crate::shared::Procedure;
 use controller_core::flight::{MotorTest, Request};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavModeFlag, MavResult, MotorTestThrottleType};
 
@@ -27,6 +29,8 @@ pub enum Action {
     Disarm,
     /// Take sensors from a simulator from now on, and say so.
     EnterHil,
+    /// Calibrate, or end a calibration; the IMU task answers.
+    Calibrate(Option<Procedure>),
     /// Only answer.
     Answer(MavResult),
 }
@@ -42,6 +46,7 @@ pub fn action(command: &COMMAND_LONG_DATA, armed: bool) -> Action {
             motor_test(command).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test)))
         }
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(command.param1, command.param2, armed),
+        MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(command),
         _ => Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
     }
 }
@@ -58,6 +63,24 @@ fn motor_test(command: &COMMAND_LONG_DATA) -> Option<MotorTest> {
     let is_one = count == 0.0 || count == 1.0;
     let usable = in_percent && is_one && throttle.is_finite() && seconds.is_finite();
     usable.then(|| MotorTest { rotor, level: throttle / 100.0, duration: (seconds * 1e6) as u64 })
+}
+
+/// One calibration at a time, of what there is. Magnetometer, barometer, radio and temperature are not.
+fn calibration(command: &COMMAND_LONG_DATA) -> Action {
+    let COMMAND_LONG_DATA { param1: gyro, param2, param3, param4, param5: accelerometer, param6, param7, .. } =
+        *command;
+    if [param2, param3, param4, param6, param7].iter().any(|other| *other != 0.0) {
+        return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
+    }
+    let procedure = match (gyro, accelerometer) {
+        (0.0, 0.0) => None,
+        (1.0, 0.0) => Some(Procedure::Gyro),
+        (0.0, 1.0) => Some(Procedure::SixSides),
+        (0.0, 2.0) => Some(Procedure::Level),
+        (0.0, 4.0) => Some(Procedure::OneSide),
+        _ => return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
+    };
+    Action::Calibrate(procedure)
 }
 
 fn set_mode(base: f32, custom: f32, armed: bool) -> Action {

@@ -9,7 +9,7 @@ use super::pose::Poses;
 use super::setpoint::setpoint;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, Ping, Reply, Severity, Shared, Traffic};
+use crate::shared::{Asked, Event, Ping, Procedure, Reply, Severity, Shared, Traffic};
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -194,9 +194,26 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 self.shared.hil.raise();
                 MavResult::MAV_RESULT_ACCEPTED
             }
+            Action::Calibrate(procedure) => match self.calibrate(procedure) {
+                Ok(()) => return,
+                Err(result) => result,
+            },
             Action::Answer(result) => result,
         };
         self.shared.reply(Reply::Command { command, result });
+    }
+
+    /// Hands it to the IMU task, which answers.
+    fn calibrate(&mut self, procedure: Option<Procedure>) -> Result<(), MavResult> {
+        let refused = if self.shared.is_armed() {
+            "Calibration: only while disarmed"
+        } else if self.shared.hil.is_raised() {
+            "Calibration: a simulator has the sensors"
+        } else {
+            return self.shared.calibrations.put(procedure).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+        };
+        self.shared.announce(Event::new(Severity::Warning, refused));
+        Err(MavResult::MAV_RESULT_DENIED)
     }
 
     /// Back to its sender. One that is addressed to somebody is itself an answer.

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | 0 | its number, one more than that of the record before it |
 //! | 1 | how many values it holds |
-//! | 2 to 14 | values, the rest of them blank |
-//! | 15 | CRC-32 of the others |
+//! | 2 to 62 | values, the rest of them blank |
+//! | 63 | CRC-32 of the others |
 //!
 //! Records fill one sector; then the other is erased and takes the next ones. Power may fail at any point. The sector of the
 //! newest record is never erased, so that record is lost by nothing. One that was cut short fails its checksum and is left

@@ -15,6 +15,50 @@ pub enum Name {
     VerticalSpeed,
     /// Below this voltage the vehicle warns; 0 never does. Taken over at once.
     BatteryLow,
+    /// Along x: gyro bias of the first IMU. Rows of an IMU are taken over at the next boot.
+    Imu1GyroX,
+    /// Along y: gyro bias of the first IMU.
+    Imu1GyroY,
+    /// Along z: gyro bias of the first IMU.
+    Imu1GyroZ,
+    /// Along x: accelerometer offset of the first IMU.
+    Imu1OffsetX,
+    /// Along y: accelerometer offset of the first IMU.
+    Imu1OffsetY,
+    /// Along z: accelerometer offset of the first IMU.
+    Imu1OffsetZ,
+    /// Along x: accelerometer scale of the first IMU.
+    Imu1ScaleX,
+    /// Along y: accelerometer scale of the first IMU.
+    Imu1ScaleY,
+    /// Along z: accelerometer scale of the first IMU.
+    Imu1ScaleZ,
+    /// Along x: how much of gravity the first IMU feels there in the level vehicle, by that along z.
+    Imu1LevelX,
+    /// Along y: how much of gravity the first IMU feels there in the level vehicle, by that along z.
+    Imu1LevelY,
+    /// Along x: gyro bias of the second IMU.
+    Imu2GyroX,
+    /// Along y: gyro bias of the second IMU.
+    Imu2GyroY,
+    /// Along z: gyro bias of the second IMU.
+    Imu2GyroZ,
+    /// Along x: accelerometer offset of the second IMU.
+    Imu2OffsetX,
+    /// Along y: accelerometer offset of the second IMU.
+    Imu2OffsetY,
+    /// Along z: accelerometer offset of the second IMU.
+    Imu2OffsetZ,
+    /// Along x: accelerometer scale of the second IMU.
+    Imu2ScaleX,
+    /// Along y: accelerometer scale of the second IMU.
+    Imu2ScaleY,
+    /// Along z: accelerometer scale of the second IMU.
+    Imu2ScaleZ,
+    /// Along x: how much of gravity the second IMU feels there in the level vehicle, by that along z.
+    Imu2LevelX,
+    /// Along y: how much of gravity the second IMU feels there in the level vehicle, by that along z.
+    Imu2LevelY,
 }
 
 /// One row.
@@ -49,12 +93,34 @@ const fn row(
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 5] = [
+pub const PARAMETERS: [Row; 27] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    true),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  true),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", false),
     row(Name::VerticalSpeed,   "GOV_SPEED_Z",  [0.1, 10.0],  2.0,  "m/s", false),
     row(Name::BatteryLow,      "BAT_LOW",      [0.0, 60.0],  0.0,  "V",   false),
+    row(Name::Imu1GyroX,       "IMU1_GYRO_X",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu1GyroY,       "IMU1_GYRO_Y",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu1GyroZ,       "IMU1_GYRO_Z",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu1OffsetX,     "IMU1_ACC_X",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu1OffsetY,     "IMU1_ACC_Y",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu1OffsetZ,     "IMU1_ACC_Z",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu1ScaleX,      "IMU1_SCALE_X", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu1ScaleY,      "IMU1_SCALE_Y", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu1ScaleZ,      "IMU1_SCALE_Z", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu1LevelX,      "IMU1_LEVEL_X", [-0.09, 0.09], 0.0,  "",      false),
+    row(Name::Imu1LevelY,      "IMU1_LEVEL_Y", [-0.09, 0.09], 0.0,  "",      false),
+    row(Name::Imu2GyroX,       "IMU2_GYRO_X",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu2GyroY,       "IMU2_GYRO_Y",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu2GyroZ,       "IMU2_GYRO_Z",  [-0.05, 0.05], 0.0,  "rad/s", false),
+    row(Name::Imu2OffsetX,     "IMU2_ACC_X",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu2OffsetY,     "IMU2_ACC_Y",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu2OffsetZ,     "IMU2_ACC_Z",   [-1.0, 1.0],   0.0,  "m/s^2", false),
+    row(Name::Imu2ScaleX,      "IMU2_SCALE_X", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu2ScaleY,      "IMU2_SCALE_Y", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu2ScaleZ,      "IMU2_SCALE_Z", [0.95, 1.05],  1.0,  "",      false),
+    row(Name::Imu2LevelX,      "IMU2_LEVEL_X", [-0.09, 0.09], 0.0,  "",      false),
+    row(Name::Imu2LevelY,      "IMU2_LEVEL_Y", [-0.09, 0.09], 0.0,  "",      false),
 ];
 
 impl Name {

@@ -17,6 +17,19 @@ pub struct Asked {
     pub command: MavCmd,
 }
 
+/// What is to be calibrated of the inertial sensors: see [`crate::imu`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Procedure {
+    /// The gyro's bias, at standstill.
+    Gyro,
+    /// The accelerometer's offsets and scales, each side down for a second.
+    SixSides,
+    /// How level it sits, in the level vehicle.
+    Level,
+    /// The accelerometer's offsets, in the level vehicle.
+    OneSide,
+}
+
 /// One message to send.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {

@@ -26,6 +26,8 @@ pub struct Timing {
     pub worst_jitter: u32,
     /// Ticks that did not run to their end in time.
     pub missed: u32,
+    /// Times that the IMU's increments broke off: it was silent, or control was late by more than they wait for.
+    pub gaps: u32,
 }
 
 /// What the link received since boot; each count starts again after 2^32.

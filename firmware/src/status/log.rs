@@ -25,12 +25,13 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
     };
     let timing = report.timing;
     defmt::info!(
-        "{=u64} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}",
+        "{=u64} ms: {}, longest tick {=u32} us, jitter {=u32} us, missed {=u32}, {=u32} gaps of the IMU",
         *time / 1000,
         report.mode,
         timing.worst_duration,
         timing.worst_jitter,
-        timing.missed
+        timing.missed,
+        timing.gaps
     );
     if let Some(state) = report.state {
         let p = state.position;
@@ -61,6 +62,10 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
             traffic.discarded,
             traffic.refused
         );
+    }
+    let lost = shared.lost_increments();
+    if lost > 0 {
+        defmt::warn!("{=u32} IMU increments lost", lost);
     }
     let lost = shared.lost_events();
     if lost > 0 {

@@ -2,9 +2,9 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
-use controller_core::flight::ImuSample;
+use controller_core::imu::ImuParameters;
 use core::future::pending;
-use firmware::hardware::{Clock, Fault, Imu};
+use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::imu::{PATIENCE, run};
 use nalgebra::Vector3;
 
@@ -26,18 +26,28 @@ struct Sensor<'a> {
 }
 
 impl Imu for Sensor<'_> {
-    async fn sample(&mut self) -> Result<ImuSample, Fault> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
         self.clock.until(self.clock.now() + 1_000).await;
         let now = self.clock.now();
-        let mut sample = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() };
+        // A sensor that works is noisy.
+        let jitter = (now / 1_000 % 7) as f32 * 1e-4;
+        let (mut angular_velocity, mut specific_force) = (Vector3::repeat(jitter), Vector3::new(0.0, jitter, 9.8));
         match if (self.from..self.to).contains(&now) { self.trouble } else { Says::Sample } {
             Says::Sample => {}
-            Says::Number(index @ 0..3, value) => sample.angular_velocity[index] = value,
-            Says::Number(index, value) => sample.specific_force[index - 3] = value,
+            Says::Number(index @ 0..3, value) => angular_velocity[index] = value,
+            Says::Number(index, value) => specific_force[index - 3] = value,
             Says::Fault => return Err(Fault),
             Says::Nothing => pending().await,
         }
-        Ok(sample)
+        Ok(RawImu { time: now, angular_velocity, specific_force: Some(specific_force) })
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        ImuParameters::BMI088
+    }
+
+    fn is_polled(&self) -> bool {
+        false
     }
 }
 
@@ -63,7 +73,7 @@ fn every_trouble_leaves_the_last_sample_to_age_and_is_told_once() {
         let (times, texts) = sampled(trouble);
         assert!(times.iter().all(|time| !(50_000..350_000).contains(time)));
         assert!(times.contains(&49_000));
-        assert_eq!(texts, ["IMU does not answer", "IMU answers again"]);
+        assert_eq!(texts, ["IMU does not answer", "IMU: gap in the samples", "IMU answers again"]);
         // A sensor that hangs is asked again after so long, and found well.
         let back = times.iter().find(|time| **time >= 350_000).unwrap();
         assert!(*back <= 350_000 + PATIENCE + 10_000, "{back}");

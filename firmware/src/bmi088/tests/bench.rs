@@ -12,13 +12,20 @@ use std::rc::Rc;
 #[derive(Clone, Default)]
 pub struct Jumping(Rc<Cell<u64>>);
 
+impl Jumping {
+    /// Lets time pass up to `time`.
+    pub fn jump(&self, time: u64) {
+        self.0.set(self.0.get().max(time));
+    }
+}
+
 impl Clock for Jumping {
     fn now(&self) -> u64 {
         self.0.get()
     }
 
     async fn until(&self, time: u64) {
-        self.0.set(self.0.get().max(time));
+        self.jump(time);
     }
 }
 
@@ -42,10 +49,14 @@ pub struct Registers {
     pub written: Vec<Written>,
     /// Reads answer after the address, or after one more byte.
     dummy: usize,
-    reset: u8,
+    pub reset: u8,
     /// The accelerometer ignores the bus until its chip select has risen once.
     asleep: bool,
     pub stuck: Option<u8>,
+    /// How often the first writes of each setting are lost.
+    pub deaf_per_setting: usize,
+    /// How often the writes of a register were lost so far.
+    lost: [usize; 128],
     pub hangs: bool,
     pub fails: bool,
 }
@@ -65,6 +76,8 @@ impl Part {
             reset,
             asleep,
             stuck: None,
+            deaf_per_setting: 0,
+            lost: [0; 128],
             hangs: false,
             fails: false,
         };
@@ -86,7 +99,11 @@ impl Registers {
             if asleep {
                 return;
             }
-            let value = data[0];
+            let (value, lost) = (data[0], &mut self.lost[usize::from(register)]);
+            if register != self.reset && *lost < self.deaf_per_setting {
+                *lost += 1;
+                return;
+            }
             self.written.push(Written { time: self.clock.now(), register, value });
             if register == self.reset && value == SOFT_RESET {
                 self.asleep = self.dummy > 0;
@@ -209,7 +226,7 @@ pub fn bench(mounting: Mounting) -> Bench {
 }
 
 impl Bench {
-    pub fn sample(&mut self) -> Result<ImuSample, Fault> {
+    pub fn sample(&mut self) -> Result<RawImu, Fault> {
         block_on(self.imu.sample())
     }
 }

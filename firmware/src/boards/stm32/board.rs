@@ -1,15 +1,14 @@
 //! What a board hands to its tasks.
 
-use super::imu::BoardImu;
 use super::light::Lamp;
 use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::restart::Cause;
 use super::storage::ParameterFlash;
 
 /// Everything on the board, each part ready for the task that will own it.
-pub struct Board<Motors, Watchdog, Battery> {
-    /// The sensor, powered up at its first sample.
-    pub imu: BoardImu,
+pub struct Board<Imu, Motors, Watchdog, Battery> {
+    /// The inertial sensors, each powered up at its first sample.
+    pub imu: Imu,
     /// The motors, silent.
     pub motors: Motors,
     /// The watchdog, not started.

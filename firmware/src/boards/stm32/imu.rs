@@ -1,7 +1,8 @@
-//! The BMI088 of both boards: two chip selects on one SPI bus with DMA, data-ready on an interrupt pin.
+//! The inertial sensors of the boards: chip selects on an SPI bus with DMA, data-ready on an interrupt pin.
 
 use super::clock::SystemClock;
 use crate::bmi088::Bmi088;
+use crate::bmi270::Bmi270;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::Output;
 use embassy_stm32::mode::Async;
@@ -9,10 +10,15 @@ use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{Config, Spi};
 use embassy_stm32::time::Hertz;
 
-/// The sensor as the boards wire it.
-pub type BoardImu = Bmi088<Spi<'static, Async, Master>, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+type Bus = Spi<'static, Async, Master>;
 
-/// The sensor takes up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
+/// A BMI088 as the boards wire it.
+pub type BoardBmi088 = Bmi088<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+
+/// A BMI270 as the boards wire it.
+pub type BoardBmi270 = Bmi270<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+
+/// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
 const FREQUENCY: Hertz = Hertz(6_000_000);
 

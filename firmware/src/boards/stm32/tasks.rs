@@ -4,11 +4,12 @@
 
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR};
-use super::imu::BoardImu;
 use super::light::Lamp;
 use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::storage::ParameterFlash;
-use crate::boards::chosen::{self, BoardBattery, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT};
+use crate::boards::chosen::{
+    self, BoardBattery, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
+};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::outputs::Outputs;

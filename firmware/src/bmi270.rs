@@ -1,0 +1,213 @@
+//! The BMI270 inertial measurement unit over SPI: power-up with its configuration file, data-ready, one sample at a time.
+//!
+//! One device with gyroscope and accelerometer, which measures only after a file was written into it ([`CONFIGURATION`]). Its
+//! data-ready pin INT1 rises 800 times a second: it has no 1000 Hz. Registers, waits and scales are those of the BMI270 data sheet.
+//!
+//! | what | setting |
+//! |---|---|
+//! | gyroscope | 800 Hz, normal filter (about 190 Hz), low noise, +-2000 deg/s in 16 bits |
+//! | accelerometer | 1600 Hz, fourfold oversampling (188 Hz), +-16 g in 16 bits |
+//! | bus | SPI mode 0 or 3, at most 10 MHz; a byte that means nothing comes before each answer |
+//!
+//! The gyroscope's x feels its z a little; the device knows how much, and the data sheet leaves the correction to the reader:
+//! omega_x = x - zx z / 512, zx being a signed number of 7 bits.
+//!
+//! Every sample asks the device who it is. Every wait is bounded. What does not come in time is a [`Fault`]; after [`RESTART_AFTER`]
+//! in a row the next call powers the sensor up anew, which takes about 90 ms.
+
+use crate::hardware::{Clock, Fault, Imu, RawImu};
+use crate::mounting::Mounting;
+use crate::pace::Pace;
+use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
+use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
+use controller_core::imu::ImuParameters;
+use embedded_hal::digital::OutputPin;
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::SpiBus;
+
+#[cfg(test)]
+mod tests;
+
+/// What the device runs: Bosch Sensortec's own, its smallest ("maximum FIFO"), which measures and recognises no gestures. Under
+/// the BSD-3-Clause licence, copyright (c) 2023 Bosch Sensortec GmbH: `licences/BMI270_SensorAPI.txt`.
+pub const CONFIGURATION: &[u8; 328] = include_bytes!("bmi270/configuration.bin");
+
+/// rad/s in one count: 2000 deg/s in 2^15 counts.
+pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
+
+/// m/s^2 in one count: 16 standard gravities in 2^15 counts.
+pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
+
+/// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has.
+pub const PARAMETERS: ImuParameters =
+    ImuParameters { rate: 800.0, cutoff: 60.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4 };
+
+/// Faults in a row after which the sensor is powered up anew.
+pub const RESTART_AFTER: u8 = 5;
+
+/// Time between samples, us.
+const PERIOD: u64 = 1_250;
+
+/// The longest an access may take, us; 14 bytes at 5 MHz take 22 us.
+const ACCESS_WITHIN: u64 = 500;
+
+/// The longest that writing the file may take, us; at 5 MHz it takes 530 us.
+const UPLOAD_WITHIN: u64 = 2_000;
+
+/// The longest a power-up may take, us.
+const POWER_UP_WITHIN: u64 = 150_000;
+
+const CHIP_ID: u8 = 0x00;
+const ID: u8 = 0x24;
+
+/// Where the data start: x, y, z of the accelerometer, then of the gyroscope, low byte first.
+const DATA: u8 = 0x0C;
+
+/// Where the file leaves how much of z the gyroscope's x feels.
+const CROSS_SENSITIVITY: u8 = 0x1E;
+
+/// It wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A reset takes 2 ms.
+/// Then: PWR_CONF without power save, which the file needs; INIT_CTRL 0, INIT_ADDR 0, INIT_DATA the file, INIT_CTRL 1;
+/// INTERNAL_STATUS says within 20 ms that the file runs. Settings: ACC_CONF, ACC_RANGE, GYR_CONF, GYR_RANGE, INT1 as push-pull
+/// and active high, not latched, data-ready to INT1; PWR_CTRL on, after which the gyroscope takes 45 ms.
+const POWER_UP: [Step; 19] = [
+    (CHIP_ID, 0, Wake),
+    (0x7E, 0xB6, Write(2_000)),
+    (CHIP_ID, 0, Wake),
+    (CHIP_ID, ID, Expect(0xFF)),
+    (0x7C, 0x00, Set(1_000)),
+    (0x59, 0x00, Write(0)),
+    (0x5B, 0x00, Write(0)),
+    (0x5C, 0x00, Write(0)),
+    (0x5E, 0, Upload(CONFIGURATION)),
+    (0x59, 0x01, Write(20_000)),
+    (0x21, 0x01, Expect(0x0F)),
+    (0x40, 0x8C, Set(0)),
+    (0x41, 0x03, Set(0)),
+    (0x42, 0xEB, Set(0)),
+    (0x43, 0x00, Set(0)),
+    (0x53, 0x0A, Set(0)),
+    (0x55, 0x00, Set(0)),
+    (0x58, 0x04, Set(0)),
+    (0x7D, 0x06, Set(50_000)),
+];
+
+/// The device on its bus.
+struct Port<'a, B, S, C> {
+    bus: &'a mut B,
+    select: &'a mut S,
+    clock: &'a C,
+}
+
+impl<B: SpiBus, S: OutputPin, C: Clock> Port<'_, B, S, C> {
+    /// Reads `N` bytes, of which the first two mean nothing.
+    async fn read_many<const N: usize>(&mut self, register: u8) -> Result<[u8; N], Fault> {
+        let mut bytes = [0; N];
+        *bytes.first_mut().ok_or(Fault)? = READ | register;
+        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, &mut bytes).await?;
+        Ok(bytes)
+    }
+}
+
+impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
+    async fn read(&mut self, register: u8) -> Result<u8, Fault> {
+        let [_, _, value] = self.read_many(register).await?;
+        Ok(value)
+    }
+
+    async fn write(&mut self, register: u8, bytes: &[u8]) -> Result<(), Fault> {
+        // DMA takes it from RAM.
+        let mut all = [0; 1 + CONFIGURATION.len()];
+        let used = all.get_mut(..=bytes.len()).ok_or(Fault)?;
+        if let [address, rest @ ..] = used {
+            *address = register;
+            rest.copy_from_slice(bytes);
+        }
+        exchange(self.bus, self.select, self.clock, UPLOAD_WITHIN, used).await
+    }
+}
+
+/// The device, the pin that says when, and the clock that bounds every wait.
+pub struct Bmi270<B, S, P, C> {
+    bus: B,
+    select: S,
+    clock: C,
+    pace: Pace<P>,
+    mounting: Mounting,
+    power_up: PowerUp,
+    /// Faults in a row.
+    faults: u8,
+    /// What the gyroscope's x feels of its z; none before it was read.
+    cross_sensitivity: Option<f32>,
+}
+
+impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi270<B, S, P, C> {
+    /// Touches nothing yet: the first sample powers the sensor up. `select` is high.
+    pub fn new(bus: B, select: S, data_ready: P, clock: C, mounting: Mounting) -> Self {
+        let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_TAKES);
+        let pace = Pace::new(data_ready, PERIOD);
+        Self { bus, select, clock, pace, mounting, power_up, faults: 0, cross_sensitivity: None }
+    }
+
+    fn port(&mut self) -> Port<'_, B, S, C> {
+        Port { bus: &mut self.bus, select: &mut self.select, clock: &self.clock }
+    }
+
+    /// Powers it up, if it is not, and says what the gyroscope's x feels of its z.
+    async fn ready(&mut self) -> Result<f32, Fault> {
+        if let Some(known) = self.cross_sensitivity {
+            return Ok(known);
+        }
+        let end = self.clock.now() + POWER_UP_WITHIN;
+        while !self.power_up.is_done(self.clock.now()) {
+            let due = self.power_up.due();
+            if due > end {
+                return Err(Fault);
+            }
+            self.clock.until(due).await;
+            let Self { bus, select, clock, power_up, .. } = self;
+            power_up.advance(&mut Port { bus, select, clock }, clock).await?;
+        }
+        let bits = self.port().read(CROSS_SENSITIVITY).await?;
+        // Seven bits, the highest of them the sign.
+        let known = f32::from(((bits << 1) as i8) >> 1) / 512.0;
+        Ok(*self.cross_sensitivity.insert(known))
+    }
+
+    async fn measure(&mut self, cross_sensitivity: f32) -> Result<RawImu, Fault> {
+        let time = self.pace.next(&self.clock).await;
+        if self.port().read(CHIP_ID).await? != ID {
+            return Err(Fault);
+        }
+        let [_, _, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5] = self.port().read_many(DATA).await?;
+        let mut rates = counts([g0, g1, g2, g3, g4, g5]);
+        rates.x -= cross_sensitivity * rates.z;
+        let accelerations = counts([a0, a1, a2, a3, a4, a5]);
+        Ok(RawImu {
+            time,
+            angular_velocity: self.mounting.to_body(rates) * RATE_PER_COUNT,
+            specific_force: Some(self.mounting.to_body(accelerations) * ACCELERATION_PER_COUNT),
+        })
+    }
+}
+
+impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Imu for Bmi270<B, S, P, C> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
+        let cross_sensitivity = self.ready().await?;
+        let sample = self.measure(cross_sensitivity).await;
+        self.faults = if sample.is_ok() { 0 } else { self.faults + 1 };
+        if self.faults >= RESTART_AFTER {
+            self.power_up.restart(self.clock.now() + POWER_TAKES);
+            (self.faults, self.cross_sensitivity) = (0, None);
+        }
+        sample
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        PARAMETERS
+    }
+
+    fn is_polled(&self) -> bool {
+        self.pace.is_polled()
+    }
+}

@@ -1,0 +1,314 @@
+//! Calibration of the inertial sensors: what was asked for, how far it is, and what came of it.
+//!
+//! | asked for by PREFLIGHT_CALIBRATION | does |
+//! |---|---|
+//! | parameter 1 = 1 | the gyro's bias, from a second of standing still; also without being asked, once after boot |
+//! | parameter 5 = 1 | the accelerometer's offsets and scales, from a second on each of its six sides, in any order |
+//! | parameter 5 = 2 | how level the sensor sits, from a second of the vehicle standing level |
+//! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
+//! | all zero | ends what is under way |
+//!
+//! Whether it stood still is [`standstill`](controller_core::imu::standstill)'s to say. The sensor that stands by is calibrated along
+//! with the other, from its own samples. What comes out is applied at once, and kept in the parameters. Six sides and the
+//! single one forget the level that was found with other offsets: level afterwards.
+//!
+//! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. What nobody asked
+//! for is done in silence, again and again until it stood still for once.
+
+use crate::hardware::{Fault, RawImu, Unit};
+use crate::parameters::calibration;
+use crate::shared::{Event, Procedure, Reply, Severity, Shared};
+use controller_core::imu::Calibration;
+use controller_core::imu::calibration::NotLevel;
+use controller_core::imu::six_point::{SixPoint, SixPointError};
+use controller_core::imu::standstill::{Moved, Rest, Standstill};
+use core::fmt::{self, Display};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::dialects::common::{MavCmd, MavResult};
+use nalgebra::Vector3;
+
+/// How long a sensor may need for a second's samples, us.
+const STANDSTILL_WITHIN: u64 = 5_000_000;
+
+/// How long the next side may take, us.
+const SIDE_WITHIN: u64 = 60_000_000;
+
+/// m/s^2.
+const GRAVITY: f32 = 9.806_65;
+
+/// The greatest offset that one side alone may find, m/s^2: the data sheet's four times, or 4.7 degrees of tilt.
+const OFFSET_MAX: f32 = 0.8;
+
+/// What is found out about one sensor.
+#[derive(Default)]
+struct Findings {
+    standstill: Standstill,
+    rest: Option<Result<Rest, Moved>>,
+    sides: SixPoint,
+}
+
+impl Findings {
+    fn take(&mut self, sample: &RawImu) {
+        let Some(force) = &sample.specific_force else { return };
+        if let Some(rest) = self.standstill.take(&sample.angular_velocity, force) {
+            self.rest = Some(rest);
+        }
+    }
+
+    /// Begins another standstill.
+    fn next(&mut self) {
+        (self.standstill, self.rest) = Default::default();
+    }
+}
+
+/// A calibration under way.
+struct Job {
+    procedure: Procedure,
+    /// Somebody waits for the result.
+    is_asked: bool,
+    /// When it has taken too long, us.
+    until: u64,
+    /// Of the first and of the second sensor.
+    findings: [Findings; 2],
+    sides: u8,
+    /// How the sensor that stands by does: none where there is none, or none yet.
+    standby: Option<Result<(), Fault>>,
+    /// What was last said of a side that is none.
+    said: Option<SixPointError>,
+}
+
+impl Job {
+    fn new(procedure: Procedure, is_asked: bool, now: u64) -> Self {
+        let within = if procedure == Procedure::SixSides { SIDE_WITHIN } else { STANDSTILL_WITHIN };
+        let findings = Default::default();
+        Self { procedure, is_asked, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
+    }
+}
+
+/// What corrects both sensors, and what is being done about it.
+pub struct Calibrator<'a, M: RawMutex> {
+    shared: &'a Shared<M>,
+    /// Of the first and of the second sensor.
+    calibrations: [Calibration; 2],
+    job: Option<Job>,
+}
+
+/// The sensor's place in a pair.
+fn place(unit: Unit) -> usize {
+    match unit {
+        Unit::First => 0,
+        Unit::Second => 1,
+    }
+}
+
+impl<'a, M: RawMutex> Calibrator<'a, M> {
+    /// Begins with what was kept, and with the gyro's bias of today.
+    pub fn new(shared: &'a Shared<M>, now: u64) -> Self {
+        let calibrations = [Unit::First, Unit::Second].map(|unit| calibration::load(&shared.parameters, unit));
+        Self { shared, calibrations, job: Some(Job::new(Procedure::Gyro, false, now)) }
+    }
+
+    /// What corrects a sensor's samples.
+    pub fn calibration(&self, unit: Unit) -> &Calibration {
+        let [first, second] = &self.calibrations;
+        match unit {
+            Unit::First => first,
+            Unit::Second => second,
+        }
+    }
+
+    /// Whether samples of the sensor that stands by are wanted. One that has failed is not asked again: it takes its time.
+    pub fn wants_standby(&self) -> bool {
+        self.job.as_ref().is_some_and(|job| job.standby != Some(Err(Fault)))
+    }
+
+    /// Takes up what was asked for, and gives up what may not go on.
+    pub fn listen(&mut self, now: u64) {
+        while let Some(asked) = self.shared.calibrations.take() {
+            match asked {
+                None => {
+                    self.fail("Calibration: ended by command");
+                    self.answer(MavResult::MAV_RESULT_ACCEPTED);
+                }
+                Some(_) if self.job.as_ref().is_some_and(|job| job.is_asked) => {
+                    self.answer(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+                }
+                Some(procedure) => {
+                    self.job = Some(Job::new(procedure, true, now));
+                    self.answer(MavResult::MAV_RESULT_IN_PROGRESS);
+                }
+            }
+        }
+        let Some(job) = &self.job else { return };
+        if self.shared.is_armed() {
+            self.fail("Calibration: ended by arming");
+        } else if self.shared.hil.is_raised() {
+            self.fail("Calibration: a simulator has the sensors");
+        } else if job.is_asked && now >= job.until {
+            self.fail("Calibration: took too long");
+        }
+    }
+
+    /// Takes a sample of the sensor that `unit` is, and one of the sensor that stands by, if there is one. Says whether
+    /// calibrations have changed.
+    pub fn take(&mut self, unit: Unit, sample: &RawImu, standby: Option<Result<RawImu, Fault>>) -> bool {
+        let Some(job) = &mut self.job else { return false };
+        if let Some(standby) = &standby {
+            job.standby = Some(standby.as_ref().map(|_| ()).map_err(|fault| *fault));
+        }
+        let [first, second] = &mut job.findings;
+        let (active, other) = match unit {
+            Unit::First => (first, second),
+            Unit::Second => (second, first),
+        };
+        active.take(sample);
+        if let Some(Ok(standby)) = &standby {
+            other.take(standby);
+        }
+        let Some(rest) = active.rest else { return false };
+        let others = other.rest.and_then(Result::ok);
+        active.next();
+        other.next();
+        let rests = match unit {
+            Unit::First => [rest.as_ref().ok(), others.as_ref()],
+            Unit::Second => [others.as_ref(), rest.as_ref().ok()],
+        };
+        match rest {
+            Ok(_) => self.conclude(unit, &rests, sample.time),
+            Err(moved) => {
+                if job.is_asked && job.procedure != Procedure::SixSides {
+                    self.fail(moved);
+                }
+                false
+            }
+        }
+    }
+
+    /// Makes of standstills what was asked for; that of `unit` is among them.
+    fn conclude(&mut self, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
+        let Some(job) = &mut self.job else { return false };
+        let procedure = job.procedure;
+        if procedure == Procedure::SixSides && !Self::add_sides(self.shared, job, unit, rests, time) {
+            return false;
+        }
+        let mut found = [None; 2];
+        for (index, (found, rest)) in found.iter_mut().zip(rests).enumerate() {
+            let (Some(rest), Some(before)) = (rest, self.calibrations.get(index)) else { continue };
+            let sides = job.findings.get(index).map(|findings| findings.sides);
+            match solve(procedure, before, rest, sides) {
+                Ok(calibration) => *found = Some(calibration),
+                Err(problem) if index == place(unit) => {
+                    self.fail(problem);
+                    return false;
+                }
+                // The sensor in use is calibrated all the same.
+                Err(_) => {}
+            }
+        }
+        for (index, unit) in [Unit::First, Unit::Second].into_iter().enumerate() {
+            let (Some(Some(found)), Some(kept)) = (found.get(index), self.calibrations.get_mut(index)) else {
+                continue;
+            };
+            *kept = *found;
+            if let Err(refused) = calibration::store(&self.shared.parameters, unit, found) {
+                self.shared.announce(Event::new(Severity::Warning, refused));
+            }
+        }
+        if let Some(job) = self.job.take().filter(|job| job.is_asked) {
+            if job.standby.is_some() && found.contains(&None) {
+                self.shared.announce(Event::new(Severity::Warning, "Calibration: not of the IMU that stands by"));
+            }
+            let words = match procedure {
+                Procedure::Gyro => "Gyro calibrated",
+                Procedure::SixSides | Procedure::OneSide => "Accelerometer calibrated: now level",
+                Procedure::Level => "Level calibrated",
+            };
+            self.shared.announce(Event::new(Severity::Information, words));
+            self.answer(MavResult::MAV_RESULT_ACCEPTED);
+        }
+        true
+    }
+
+    /// Adds a side, and says how far that is; whether all six are there.
+    fn add_sides(shared: &Shared<M>, job: &mut Job, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
+        for (index, (findings, rest)) in job.findings.iter_mut().zip(rests).enumerate() {
+            let Some(rest) = rest else { continue };
+            let added = findings.sides.add(rest, GRAVITY);
+            if index != place(unit) {
+                continue;
+            }
+            match added {
+                Ok(()) => {
+                    (job.sides, job.said) = (job.sides + 1, None);
+                    job.until = time.saturating_add(SIDE_WITHIN);
+                    let words = format_args!("Calibration: {} of 6 sides", job.sides);
+                    shared.announce(Event::new(Severity::Information, words));
+                }
+                // It still lies there.
+                Err(SixPointError::FaceTwice) => {}
+                Err(error) => {
+                    if job.said.replace(error) != Some(error) {
+                        shared.announce(Event::new(Severity::Warning, error));
+                    }
+                }
+            }
+            if added.is_err() {
+                return false;
+            }
+        }
+        job.sides == 6
+    }
+
+    /// Ends what is under way, and says why to whoever asked for it.
+    fn fail(&mut self, words: impl Display) {
+        if self.job.take().is_some_and(|job| job.is_asked) {
+            self.shared.announce(Event::new(Severity::Warning, words));
+            self.answer(MavResult::MAV_RESULT_FAILED);
+        }
+    }
+
+    fn answer(&self, result: MavResult) {
+        self.shared.reply(Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result });
+    }
+}
+
+/// Why there is no calibration.
+enum Problem {
+    NotLevel(NotLevel),
+    Sides(SixPointError),
+    Offset,
+}
+
+impl Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotLevel(error) => error.fmt(f),
+            Self::Sides(error) => error.fmt(f),
+            Self::Offset => f.write_str("Calibration: tilted, or offset over 0.8 m/s^2"),
+        }
+    }
+}
+
+/// What corrects a sensor that stood still so.
+fn solve(
+    procedure: Procedure,
+    before: &Calibration,
+    rest: &Rest,
+    sides: Option<SixPoint>,
+) -> Result<Calibration, Problem> {
+    let level = Calibration::NONE.level;
+    match procedure {
+        Procedure::Gyro => Ok(before.with_gyro_bias(rest)),
+        Procedure::Level => before.levelled(rest).map_err(Problem::NotLevel),
+        Procedure::OneSide => {
+            let offset = rest.specific_force - Vector3::z().component_div(&before.scale) * GRAVITY;
+            let plausible = offset.iter().all(|component| component.abs() <= OFFSET_MAX);
+            if plausible { Ok(Calibration { offset, level, ..*before }) } else { Err(Problem::Offset) }
+        }
+        Procedure::SixSides => {
+            let sides = sides.ok_or(Problem::Sides(SixPointError::FaceMissing))?;
+            let (offset, scale) = sides.solve(GRAVITY).map_err(Problem::Sides)?;
+            Ok(Calibration { offset, scale, level, ..*before })
+        }
+    }
+}

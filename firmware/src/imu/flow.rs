@@ -1,0 +1,99 @@
+//! A sensor's samples on their way to control: conditioned, and put down where control finds them.
+//!
+//! A fault is said when it sets in. One that goes on is not said again, one that comes back is, once it has been away for
+//! [`QUIET`]: eight kinds of faults cannot flood the link.
+//!
+//! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a low-pass made for 1 kHz
+//! would be late by many of them: they pass as they are. And a simulator's sensors may be free of noise, so that equal samples
+//! are no fault of theirs.
+
+use crate::hardware::RawImu;
+use crate::shared::{Event, Severity, Shared};
+use controller_core::error::ParameterError;
+use controller_core::estimator::Increment;
+use controller_core::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// How long a fault must have been away to be said again, us.
+const QUIET: u64 = 1_000_000;
+
+/// A simulator's sensor: the BMI088's filter, and ranges that nothing reaches.
+const SIMULATED: ImuParameters = ImuParameters { gyro_range: 1e6, accelerometer_range: 1e6, ..ImuParameters::BMI088 };
+
+/// A sensor's samples, as far as they have come.
+pub struct Flow<'a, M: RawMutex> {
+    shared: &'a Shared<M>,
+    conditioner: Conditioner,
+    is_simulated: bool,
+    /// When each fault was last seen, us.
+    seen: [Option<u64>; ImuFault::ALL.len()],
+}
+
+impl<'a, M: RawMutex> Flow<'a, M> {
+    /// From a sensor of these parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that makes no sense.
+    pub fn new(
+        shared: &'a Shared<M>,
+        parameters: &ImuParameters,
+        calibration: &Calibration,
+    ) -> Result<Self, ParameterError> {
+        let conditioner = Conditioner::new(parameters, calibration)?;
+        Ok(Self { shared, conditioner, is_simulated: false, seen: [None; _] })
+    }
+
+    /// From a simulator.
+    ///
+    /// # Errors
+    /// None: the parameters are good.
+    pub fn simulated(shared: &'a Shared<M>) -> Result<Self, ParameterError> {
+        Ok(Self { is_simulated: true, ..Self::new(shared, &SIMULATED, &Calibration::NONE)? })
+    }
+
+    /// Corrects samples in another way from now on.
+    pub fn calibrate(&mut self, calibration: &Calibration) {
+        self.conditioner.calibrate(calibration);
+    }
+
+    /// Goes on with another sensor's samples.
+    ///
+    /// # Errors
+    /// Names the parameter that makes no sense.
+    pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
+        self.conditioner.take_over(parameters, calibration)
+    }
+
+    /// Takes the next sample.
+    pub fn take(&mut self, raw: &RawImu) {
+        let before = self.conditioner.newest().map(|newest| newest.time);
+        let force = raw.specific_force.as_ref();
+        let Conditioned { mut increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);
+        if let Some(fault) = fault {
+            self.tell(fault, raw.time);
+        }
+        let Some(newest) = self.conditioner.newest().filter(|newest| Some(newest.time) != before) else { return };
+        let mut sample = newest.value;
+        let is_slow = before.is_some_and(|before| raw.time - before >= INCREMENT);
+        if self.is_simulated && is_slow {
+            sample.angular_velocity = raw.angular_velocity;
+            increment = increment.map(|one| Increment { angular_velocity: raw.angular_velocity, ..one });
+        }
+        self.shared.imu.put(sample, newest.time);
+        if let Some(increment) = increment {
+            self.shared.increment(increment);
+        }
+    }
+
+    fn tell(&mut self, fault: ImuFault, time: u64) {
+        if self.is_simulated && matches!(fault, ImuFault::GyroStuck | ImuFault::AccelerometerStuck) {
+            return;
+        }
+        let Some(seen) = self.seen.get_mut(fault as usize) else { return };
+        let is_new = seen.is_none_or(|seen| time.saturating_sub(seen) >= QUIET);
+        *seen = Some(time);
+        if is_new {
+            self.shared.announce(Event::new(Severity::Critical, fault));
+        }
+    }
+}

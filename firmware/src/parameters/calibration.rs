@@ -1,0 +1,51 @@
+//! The calibration of each inertial sensor as it is kept among the parameters: eleven rows of the table each.
+//!
+//! The level is kept as the direction that was up when the level vehicle stood still, in the sensor's corrected axes, divided by its z:
+//! two numbers, and no rounding can make them anything but a rotation.
+
+use super::table::{Name, PARAMETERS};
+use super::{OutOfRange, Parameters};
+use crate::hardware::Unit;
+use controller_core::imu::Calibration;
+use controller_core::imu::standstill::Rest;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use nalgebra::Vector3;
+
+/// Rows of one sensor: bias, offset and scale on three axes, level on two.
+const ROWS: usize = 11;
+
+/// A sensor's rows, in the table's order.
+fn rows(unit: Unit) -> impl Iterator<Item = Name> {
+    let first = match unit {
+        Unit::First => Name::Imu1GyroX,
+        Unit::Second => Name::Imu2GyroX,
+    };
+    PARAMETERS.iter().skip(first as usize).take(ROWS).map(|row| row.parameter)
+}
+
+/// What corrects the samples of `unit`. A level that is tilted by more than 5 degrees levels nothing.
+#[must_use]
+pub fn load<M: RawMutex>(parameters: &Parameters<M>, unit: Unit) -> Calibration {
+    let mut values = [0.0; ROWS];
+    for (value, name) in values.iter_mut().zip(rows(unit)) {
+        *value = parameters.get(name);
+    }
+    let [b_x, b_y, b_z, o_x, o_y, o_z, s_x, s_y, s_z, level_x, level_y] = values;
+    let (offset, scale) = (Vector3::new(o_x, o_y, o_z), Vector3::new(s_x, s_y, s_z));
+    let unlevelled = Calibration { gyro_bias: Vector3::new(b_x, b_y, b_z), offset, scale, ..Calibration::NONE };
+    let up = Vector3::new(level_x, level_y, 1.0);
+    let level = Rest { angular_velocity: Vector3::zeros(), specific_force: offset + up.component_div(&scale) };
+    unlevelled.levelled(&level).unwrap_or(unlevelled)
+}
+
+/// Keeps what corrects the samples of `unit`.
+///
+/// # Errors
+/// [`OutOfRange`] names the first row that the table does not allow; those before it are changed.
+pub fn store<M: RawMutex>(parameters: &Parameters<M>, unit: Unit, calibration: &Calibration) -> Result<(), OutOfRange> {
+    let Calibration { gyro_bias, offset, scale, level } = calibration;
+    // L takes up to e3, so its last row is up.
+    let (x, y, z) = (level.m31, level.m32, level.m33);
+    let values = gyro_bias.iter().chain(offset).chain(scale).copied().chain([x / z, y / z]);
+    rows(unit).zip(values).try_for_each(|(name, value)| parameters.set(name, value))
+}

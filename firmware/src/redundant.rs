@@ -1,0 +1,103 @@
+//! Two inertial sensors as one: the second takes over when the first fails, and keeps the vehicle until it is switched off.
+//!
+//! ```text
+//! first ── answers with [`TAKE_OVER_AFTER`] faults in a row ──────────────┐
+//!       ── its gyro or accelerometer says the same over and over ─────────┼──> second, for good
+//!       ── its accelerometer does not answer for [`SILENT_AFTER`] samples ┘
+//! ```
+//!
+//! There is no way back: a sensor that failed once under way is not trusted with the rest of it. Nor is there a way to a second
+//! that has never answered; powering it up takes longer than the flight rules wait. [`Imu::standby`] finds that out, on the ground.
+//!
+//! A takeover by silence lasts at most 15 ms from the first's last sample to the second's first, which is bridged
+//! ([`controller_core::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up anew.
+
+use crate::hardware::{Fault, Imu, RawImu, Unit};
+use controller_core::imu::watch::{Ranges, Watch};
+use controller_core::imu::{ImuFault, ImuParameters};
+
+/// Faults of the first in a row after which the second takes over: 10 ms at worst.
+pub const TAKE_OVER_AFTER: u8 = 4;
+
+/// Samples without a force in a row after which the second takes over: as many as make a sensor stuck.
+pub const SILENT_AFTER: u8 = 20;
+
+/// Both, and which of them speaks.
+pub struct Redundant<First, Second> {
+    first: First,
+    second: Second,
+    unit: Unit,
+    /// Whether the second answered when it was last asked.
+    is_ready: bool,
+    /// The first's samples.
+    watch: Watch,
+    /// The first's faults in a row. One under way counts: whoever is tired of waiting for it drops it.
+    faults: u8,
+    /// The first's samples in a row that had no force.
+    silent: u8,
+}
+
+impl<First: Imu, Second: Imu> Redundant<First, Second> {
+    /// The first speaks.
+    pub fn new(first: First, second: Second) -> Self {
+        let ImuParameters { gyro_range: gyro, accelerometer_range: accelerometer, .. } = first.parameters();
+        let watch = Watch::new(Ranges { gyro, accelerometer });
+        Self { first, second, unit: Unit::First, is_ready: false, watch, faults: 0, silent: 0 }
+    }
+
+    /// Whether the first's newest answer is the last that is borne.
+    fn fails(&mut self, answer: &Result<RawImu, Fault>) -> bool {
+        let Ok(sample) = answer else { return self.faults >= TAKE_OVER_AFTER };
+        self.faults = 0;
+        self.silent = if sample.specific_force.is_some() { 0 } else { self.silent.saturating_add(1) };
+        let fault = self.watch.see(&sample.angular_velocity, sample.specific_force.as_ref());
+        self.silent >= SILENT_AFTER || matches!(fault, Some(ImuFault::GyroStuck | ImuFault::AccelerometerStuck))
+    }
+}
+
+impl<First: Imu, Second: Imu> Imu for Redundant<First, Second> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
+        if self.unit == Unit::First {
+            self.faults = self.faults.saturating_add(1);
+            let answer =
+                if self.faults > TAKE_OVER_AFTER && self.is_ready { Err(Fault) } else { self.first.sample().await };
+            if !self.fails(&answer) || !self.is_ready {
+                return answer;
+            }
+            self.unit = Unit::Second;
+        }
+        self.second.sample().await
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        match self.unit {
+            Unit::First => self.first.parameters(),
+            Unit::Second => self.second.parameters(),
+        }
+    }
+
+    fn is_polled(&self) -> bool {
+        match self.unit {
+            Unit::First => self.first.is_polled(),
+            Unit::Second => self.second.is_polled(),
+        }
+    }
+
+    fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    async fn standby(&mut self) -> Option<Result<RawImu, Fault>> {
+        if self.unit == Unit::Second {
+            return None;
+        }
+        // Not before it has answered: a wait for it may be dropped.
+        self.is_ready = false;
+        let answer = self.second.sample().await;
+        self.is_ready = answer.is_ok();
+        Some(answer)
+    }
+}
+
+#[cfg(test)]
+mod tests;
