@@ -28,7 +28,11 @@ fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
     assert_eq!(imu.value.angular_velocity, Vector3::new(0.5, -0.25, -0.125));
     assert_eq!(imu.value.specific_force, Vector3::new(1.0, -2.0, 9.0));
     assert_eq!(pose.value.position(), Vector3::new(2.0, 1.0, 3.0));
-    assert!((pose.value.velocity().unwrap() - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-6, "{}", pose.value.velocity().unwrap());
+    assert!(
+        (pose.value.velocity().unwrap() - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-6,
+        "{}",
+        pose.value.velocity().unwrap()
+    );
     assert!(!hil.awaiting());
 }
 
