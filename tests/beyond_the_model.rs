@@ -2,8 +2,8 @@
 //! fails in part. `cargo test -p host-sim beyond_the_model -- --nocapture` prints the table that stands in `docs/measured.md`.
 
 use controller_core::certificate::certified::Certified;
-use controller_core::extended::controller::Estimates;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use controller_core::extended::controller::Estimates;
 use controller_core::flight::{Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use host_sim::course::Course;

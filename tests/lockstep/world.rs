@@ -82,7 +82,8 @@ impl World {
         let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
         let left = (-1e-6 * STEP as f64 / lag).exp();
         let force = Vector3::new(0.0, 0.0, f64::from(configuration.vehicle().gravity));
-        let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left, force };
+        let body =
+            Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left, force };
         let command = Cell::new((MotorCommand::Stop, 0));
         Self(Rc::new(Inner {
             clock: clock.clone(),
