@@ -15,7 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::Outputs;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
-use controller_core::estimator::{Fault as EstimatorFault, Increment, Taken};
+use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Refusal};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -145,6 +145,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn tell_of_the_estimate(&mut self, outcome: &Outcome, now: u64) {
         let (pose, fault) = &mut self.complaint.quiet;
         match outcome.pose {
+            // Before there is an IMU to compare it with, nothing is wrong with a pose.
+            Some(Err(Rejected::NoImu | Rejected::TooOld)) if outcome.estimated.is_none() => {}
             Some(Err(rejected)) if now >= *pose => {
                 *pose = now.saturating_add(TEXT_INTERVAL);
                 self.shared.announce(Event::Pose(Err(rejected)));

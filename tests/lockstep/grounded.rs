@@ -35,7 +35,7 @@ fn refused() -> (Flight, &'static str) {
 #[test]
 fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
     let (mut flight, failed) = refused();
-    flight.pass(1.5);
+    flight.pass(2.0);
     assert_eq!((flight.report().mode, flight.station.texts().len()), (Mode::Disarmed, 0));
     // Telemetry, watchdog, timing: all as ever.
     assert!(flight.report().state.is_some());
