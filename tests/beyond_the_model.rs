@@ -2,8 +2,9 @@
 //! fails in part. `cargo test -p host-sim beyond_the_model -- --nocapture` prints the table that stands in `docs/measured.md`.
 
 use controller_core::certificate::certified::Certified;
+use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::controller::Estimates;
-use controller_core::flight::{ImuSample, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use controller_core::flight::{Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use host_sim::course::Course;
 use host_sim::flight::Flight;
@@ -92,25 +93,54 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
     }
 }
 
-/// What a pilot asks of the rotors over what the law asks for, after `ticks` of standing at `height` with a setpoint far below.
-fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, ticks: u64, height: f32) -> f32 {
+/// The tick of arming: the estimate takes a second and a half to prove itself.
+const ARMED: u64 = 200;
+
+/// The tick in which something lifts the vehicle off.
+const LIFTED: u64 = 700;
+
+/// Height above the ground, m, and acceleration over the tick before, m/s^2: 12 cm up in 0.2 s.
+fn lifted(tick: u64) -> (f32, f32) {
+    let seconds = PERIOD as f32 * 1e-6;
+    let (mut height, mut speed, mut acceleration) = (0.0, 0.0, 0.0);
+    for tick in LIFTED..tick {
+        acceleration = match tick - LIFTED {
+            0..10 => 12.0,
+            10..20 => -12.0,
+            _ => 0.0,
+        };
+        height += speed * seconds + 0.5 * acceleration * seconds * seconds;
+        speed += acceleration * seconds;
+    }
+    (height, acceleration)
+}
+
+/// What a pilot asks of the rotors over what the law asks for, from tick `from` to `to`, with a setpoint far below.
+fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
     let mut share = f32::NAN;
-    for tick in from..from + ticks {
+    for tick in from..=to {
         let now = tick * PERIOD;
-        let imu = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::new(0.0, 0.0, 9.81) };
+        let (height, acceleration) = lifted(tick);
+        let zero = Vector3::zeros();
+        let delta_velocity = Vector3::new(0.0, 0.0, (9.81 + acceleration) * PERIOD as f32 * 1e-6);
+        let increment =
+            Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, angular_velocity: zero };
         let position = Vector3::new(0.0, 0.0, height);
         let still = Velocity::World(Vector3::zeros());
         let pose = Pose::new(position, still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
         let setpoint = Setpoint { motion: Motion::Position(Vector3::new(0.0, 0.0, -3.0)), turn: Turn::Keep };
         let outcome = pilot.tick(&Inputs {
             now,
-            imu: Some(Stamped { value: imu, time: now }),
-            pose: Some(Stamped { value: pose, time: now }),
+            increments: &[increment],
+            poses: &[Stamped { value: PoseMeasurement::new(&pose), time: now }],
             ground_station: Some(now),
-            request: (tick == 0).then_some(Request::Arm),
-            setpoint: (tick == 1).then_some(setpoint),
+            request: (tick == ARMED).then_some(Request::Arm),
+            setpoint: (tick == ARMED + 1).then_some(setpoint),
             ..Inputs::default()
         });
+        if tick < ARMED {
+            continue;
+        }
         let (Some(Ok(flown)), Output::Thrusts(thrusts)) = (outcome.flown, outcome.output) else { panic!("not flown") };
         share = thrusts.iter().sum::<f32>() / flown.wrench.thrust;
     }
@@ -121,10 +151,12 @@ fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, ticks: u64, height: f32) ->
 fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let certified = Certified::new(vehicle("hummingbird").configuration).unwrap();
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), memory);
-    let standing = asked_of_the_rotors(&mut pilot, 0, 500, 0.0);
+    let settings = Settings::bmi088(certified.configuration().vehicle());
+    let estimator = Box::leak(Box::new(Estimator::new(&settings)));
+    let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), estimator, memory);
+    let standing = asked_of_the_rotors(&mut pilot, 1, LIFTED);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
-    // Six centimetres higher what holds it up is taken for thrust.
-    let flying = asked_of_the_rotors(&mut pilot, 500, 100, 0.06);
+    // Twelve centimetres higher what holds it up is taken for thrust.
+    let flying = asked_of_the_rotors(&mut pilot, LIFTED + 1, LIFTED + 120);
     assert!(flying < 0.99, "{}", 1.0 / flying);
 }

@@ -61,7 +61,7 @@ pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
 pub use verdict::{Fault, Rejected, Taken};
 
-use crate::flight::Stamped;
+use crate::flight::{STAMP_LEAD_MAX, Stamped};
 use crate::state::State;
 use candidate::Candidate;
 use checkpoints::Checkpoints;
@@ -176,14 +176,11 @@ impl Estimator {
         verdict
     }
 
-    /// The state at `now`, us; none before the first, and beyond [`EXTRAPOLATION_MAX`] after the last increment.
+    /// The state at `now`, us; none before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, and before it.
     #[must_use]
     pub fn state(&self, now: u64) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = now.saturating_sub(last.end);
-        if ahead > EXTRAPOLATION_MAX {
-            return None;
-        }
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
         let per_second = 1.0 / last.seconds();
         let bent = last.delta_angle.cross(&last.delta_velocity) * 0.5;
         let force = (last.delta_velocity - bent) * per_second;
@@ -208,7 +205,7 @@ impl Estimator {
     /// What the estimate is worth at `now`, us.
     #[must_use]
     pub fn health(&self, now: u64) -> Health {
-        let imu_age = self.history.newest().map_or(u64::MAX, |newest| now.saturating_sub(newest.end));
+        let imu_age = self.imu_age(now).unwrap_or(u64::MAX);
         Health::new(self.filter.as_ref(), &self.statistics, &self.settings, imu_age, now)
     }
 
@@ -229,6 +226,12 @@ impl Estimator {
             }
             _ => false,
         }
+    }
+
+    /// How long ago the last increment ended, us; none before the first, or if the clock has run back since.
+    fn imu_age(&self, now: u64) -> Option<u64> {
+        let end = self.history.newest()?.end;
+        (end <= now.saturating_add(STAMP_LEAD_MAX)).then(|| now.saturating_sub(end))
     }
 
     /// Begins anew, with the biases as they are if they are plausible.

@@ -4,8 +4,9 @@
 //! - [`reason`]: reasons in words, for every transition and every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
 //! - `permission`: what arming and a motor test need;
-//! - `measurement`: IMU samples and poses, and which of them are flown; [`Pose::new`] checks a pose;
-//! - [`propagation`]: the attitude between poses, by gyro;
+//! - `measurement`: IMU samples, poses and time stamps; [`Pose::new`] checks a pose;
+//! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
+//! - [`propagation`]: the attitude between poses, by gyro, for simulators;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
@@ -13,12 +14,13 @@
 //! taking off, a setpoint above does it. Landing is not detected: a vehicle that has come down must be disarmed, and one set
 //! down by its setpoint keeps turning its rotors until it is.
 //!
-//! Until there is an estimator, position, velocity and attitude come from the pose source and body rates from the gyro.
-//! Between poses the attitude is carried on by gyro; position and velocity stay what they were, for
-//! [`rules::POSE_AGE_MAX`] at most. Poses that come more seldom than that are flown all the same, each for as long, with
-//! levelling in between; each begins a braking anew, so setpoints get nowhere then.
+//! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator refuses it, says why,
+//! and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for [`rules::LEVELLING_MAX`], then stops.
+//! Poses that are believed again are flown at once. Where the estimate jumps, because the sender says that its frame has moved or
+//! because a lost body was found again, the reference jumps with it, and brakes from there: the vehicle does not lurch.
 
 mod chain;
+mod estimate;
 #[cfg(test)]
 mod example;
 mod lift_off;
@@ -30,9 +32,8 @@ pub mod reason;
 pub mod rules;
 
 pub use chain::{Flown, Memory};
-pub use measurement::{
-    BODY_RATE_MAX, DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
-};
+pub use estimate::SETTLED_AFTER;
+pub use measurement::{DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity};
 pub use permission::MotorTest;
 pub use pilot::Pilot;
 pub use reason::{Grounded, Reason, Refusal};
@@ -40,6 +41,7 @@ pub use rules::{Mode, Transition};
 
 use crate::allocation::Thrusts;
 use crate::error::InputError;
+use crate::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
 use crate::governor::Setpoint;
 
 /// The time between ticks, us.
@@ -54,15 +56,15 @@ pub enum Request {
     MotorTest(MotorTest),
 }
 
-/// What a tick is given. Measurements stay in place until newer ones come; the rest is handed over once.
+/// What a tick is given: what has come since the last. Everything is handed over once, but for the ground station's time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Inputs {
+pub struct Inputs<'a> {
     /// The vehicle's clock, us.
     pub now: u64,
-    /// The newest IMU sample.
-    pub imu: Option<Stamped<ImuSample>>,
-    /// The newest pose.
-    pub pose: Option<Stamped<Pose>>,
+    /// What the IMU did, each increment beginning where the last ended: two of 5 ms, where nothing is late.
+    pub increments: &'a [Increment],
+    /// The poses that came, with the times at which they were true.
+    pub poses: &'a [Stamped<PoseMeasurement>],
     /// When the ground station was last heard, us.
     pub ground_station: Option<u64>,
     /// What was asked for since the last tick.
@@ -102,6 +104,13 @@ pub struct Outcome {
     pub answer: Option<Result<(), Refusal>>,
     /// Whether the setpoint was accepted.
     pub setpoint: Option<Result<(), Refusal>>,
+    /// The state at this tick, while there is one.
+    pub estimated: Option<EstimatedState>,
+    /// What it is worth.
+    pub health: Health,
+    /// What became of this tick's poses: the last refusal, or else what the last was taken for; none where none came, or
+    /// where all of them wait for the IMU.
+    pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,
 }

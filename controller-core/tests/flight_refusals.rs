@@ -4,36 +4,54 @@ mod flight;
 
 use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
-use controller_core::flight::{
-    Grounded, Inputs, Mode, MotorTest, Output, PERIOD, Pilot, Pose, Refusal, Request, STAMP_LEAD_MAX, Stamped,
-};
+use controller_core::estimator::{Fault, Increment};
+use controller_core::flight::{Grounded, Mode, MotorTest, Output, PERIOD, Pilot, Refusal, Request};
 use controller_core::governor::{GovernorLimits, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::{at_rest, certified, configuration, go_to, memory, pilot, pose, rotors};
+use flight::{
+    Flight, Handed, SETTLING, at_rest, at_rest_with, certified, configuration, displaced, estimator, go_to, memory,
+    pilot, rotors, settled,
+};
 
 const NOW: u64 = 5_000_000;
 
-/// Arming refused with these inputs, for this; and permitted a tick later without them.
-fn refuses(inputs: Inputs, refusal: Refusal) {
-    let mut pilot = pilot();
-    let outcome = pilot.tick(&Inputs { request: Some(Request::Arm), ..inputs });
+/// A request to arm.
+fn arm(handed: Handed) -> Handed {
+    Handed { request: Some(Request::Arm), ..handed }
+}
+
+/// Arming refused in a tick that is handed this after rest, for this; and permitted after rest again.
+fn refuses(handed: Handed, refusal: Refusal) {
+    let mut pilot = settled(NOW - PERIOD);
+    let outcome = arm(handed).to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(refusal)));
     assert_eq!((outcome.output, outcome.mode, outcome.transition), (Output::Stop, Mode::Disarmed, None));
-    let later = pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(NOW + 3 * PERIOD) });
+    for tick in 1..=SETTLING {
+        at_rest(NOW + tick * PERIOD).to(&mut pilot);
+    }
+    let later = arm(at_rest(NOW + (SETTLING + 1) * PERIOD)).to(&mut pilot);
     assert_eq!((later.answer, later.mode), (Some(Ok(())), Mode::Flying), "after {refusal:?}");
 }
 
-/// The inputs of a vehicle at rest with its pose changed.
-fn with_pose(change: impl FnOnce(&mut Stamped<Pose>)) -> Inputs {
-    let mut inputs = at_rest(NOW);
-    change(inputs.pose.as_mut().unwrap());
-    inputs
+/// The same after two seconds and a half in which `lie` has changed what the sensors of a vehicle at rest say.
+fn refuses_sensors(lie: impl FnOnce(&mut Flight), refusal: Refusal) {
+    let mut flight = Flight::new();
+    lie(&mut flight);
+    for _ in 0..250 {
+        flight.inputs.request = Some(Request::Arm);
+        let outcome = flight.tick();
+        assert!(matches!(outcome.answer, Some(Err(_))), "{refusal:?}: {:?} {:?}", outcome.answer, outcome.health);
+    }
+    flight.inputs.request = Some(Request::Arm);
+    let outcome = flight.tick();
+    assert_eq!(outcome.answer, Some(Err(refusal)), "{:?}", outcome.health);
 }
 
-fn with_imu(change: impl FnOnce(&mut Stamped<controller_core::flight::ImuSample>)) -> Inputs {
-    let mut inputs = at_rest(NOW);
-    change(inputs.imu.as_mut().unwrap());
-    inputs
+/// Every increment of the next tick changed.
+fn with_imu(change: impl FnMut(&mut Increment)) -> Handed {
+    let mut handed = at_rest(NOW);
+    handed.increments.iter_mut().for_each(change);
+    handed
 }
 
 /// A roll of `degrees`.
@@ -42,50 +60,158 @@ fn rolled(degrees: f32) -> Quaternion<f32> {
     Quaternion::new(half.cos(), half.sin(), 0.0, 0.0)
 }
 
-/// A vehicle at rest at the origin.
-fn turned(attitude: Quaternion<f32>) -> Pose {
-    pose(Vector3::zeros(), Vector3::zeros(), attitude)
-}
-
 #[test]
 fn arming_is_refused_without_fresh_measurements() {
-    refuses(Inputs { imu: None, ..at_rest(NOW) }, Refusal::ImuStale);
-    refuses(with_imu(|imu| imu.time = NOW - 20_001), Refusal::ImuStale);
-    refuses(Inputs { pose: None, ..at_rest(NOW) }, Refusal::PoseStale);
-    refuses(with_pose(|pose| pose.time = NOW - 100_000), Refusal::PoseStale);
+    let silent = |elapsed: u64| Handed { increments: vec![], poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
+    refuses(silent(20_001), Refusal::ImuStale);
+    refuses_sensors(|flight| flight.present.imu = false, Refusal::ImuStale);
+    refuses_sensors(|flight| flight.present.pose = false, Refusal::Estimator(Fault::NotStarted));
+    // Poses that break off: 300 ms later.
+    let mut flight = Flight::settled();
+    flight.present.pose = false;
+    flight.ticks(30);
+    flight.inputs.request = Some(Request::Arm);
+    assert_eq!(flight.tick().answer, Some(Err(Refusal::Estimator(Fault::NoPose))));
 }
 
 #[test]
 fn arming_is_refused_with_measurements_that_make_no_sense() {
-    refuses(with_imu(|imu| imu.value.angular_velocity.y = f32::NAN), Refusal::Unusable("imu.angular_velocity"));
-    refuses(with_imu(|imu| imu.value.angular_velocity.x = 101.0), Refusal::Unusable("imu.angular_velocity"));
-    refuses(with_imu(|imu| imu.value.specific_force.z = f32::INFINITY), Refusal::Unusable("imu.specific_force"));
-    refuses(with_imu(|imu| imu.time = NOW + STAMP_LEAD_MAX + 1), Refusal::Unusable("imu.time"));
-    refuses(with_pose(|pose| pose.time = NOW + STAMP_LEAD_MAX + 1), Refusal::Unusable("pose.time"));
+    for number in [f32::NAN, f32::INFINITY, 1e9] {
+        let not_started = Refusal::Estimator(Fault::NotStarted);
+        refuses(with_imu(|imu| imu.delta_angle.y = number), Refusal::ImuStale);
+        refuses(with_imu(|imu| imu.delta_velocity.z = number), Refusal::ImuStale);
+        refuses_sensors(|flight| flight.imu = Box::new(move |imu| imu.delta_velocity.x = number), Refusal::ImuStale);
+        // Only one of two.
+        let mut once = at_rest(NOW);
+        once.increments[0].angular_velocity.x = number;
+        refuses(once, not_started);
+    }
+    let mut early = at_rest(NOW);
+    early.poses[0].time += 100_000;
+    refuses(early, Refusal::PosesUnsettled);
+}
+
+#[test]
+fn arming_takes_a_whole_second_of_poses_that_are_all_believed() {
+    let mut pilot = pilot();
+    let mut first = None;
+    for tick in 1..400 {
+        let outcome = arm(at_rest(tick * PERIOD)).to(&mut pilot);
+        if outcome.answer == Some(Ok(())) {
+            first = first.or(Some(tick));
+        } else {
+            assert!(outcome.answer == Some(Err(Refusal::AlreadyArmed)) || first.is_none());
+        }
+    }
+    // Half a second for the estimate to begin, and a second.
+    assert_eq!(first, Some(151));
+    for (elapsed, answer) in [(99, Err(Refusal::PosesUnsettled)), (100, Ok(()))] {
+        let mut flight = Flight::settled();
+        flight.told = Box::new(|body, time| displaced(body, time, &Vector3::new(0.0, 0.1, 0.0), &Vector3::zeros()));
+        flight.tick();
+        flight.told = Flight::new().told;
+        flight.ticks(elapsed);
+        flight.inputs.request = Some(Request::Arm);
+        assert_eq!(flight.tick().answer, Some(answer), "{elapsed}");
+    }
+}
+
+#[test]
+fn arming_is_refused_while_the_vehicle_moves() {
+    for (speed, answer) in [(0.19, Ok(())), (0.21, Err(Refusal::Moving))] {
+        let mut flight = Flight::new();
+        flight.body.velocity.x = speed;
+        flight.held = false;
+        flight.weightless = true;
+        flight.ticks(200);
+        flight.inputs.request = Some(Request::Arm);
+        assert_eq!(flight.tick().answer, Some(answer), "{speed} m/s");
+    }
+    refuses(with_imu(|imu| imu.angular_velocity.z = 0.21), Refusal::Moving);
 }
 
 #[test]
 fn arming_is_refused_at_a_tilt_of_thirty_degrees_and_not_just_below() {
-    refuses(with_pose(|pose| pose.value = turned(rolled(30.01))), Refusal::Tilted);
-    refuses(with_pose(|pose| pose.value = turned(-rolled(-90.0))), Refusal::Tilted);
-    let inputs = with_pose(|pose| pose.value = turned(-rolled(29.99)));
-    assert_eq!(pilot().tick(&Inputs { request: Some(Request::Arm), ..inputs }).answer, Some(Ok(())));
+    for (degrees, answer) in
+        [(30.1, Err(Refusal::Tilted)), (90.0, Err(Refusal::Tilted)), (180.0, Err(Refusal::Tilted)), (29.9, Ok(()))]
+    {
+        let mut pilot = pilot();
+        for tick in 1..SETTLING {
+            at_rest_with(&rolled(degrees), tick * PERIOD).to(&mut pilot);
+        }
+        let outcome = arm(at_rest_with(&rolled(degrees), SETTLING * PERIOD)).to(&mut pilot);
+        assert_eq!(outcome.answer, Some(answer), "{degrees} degrees");
+    }
+}
+
+#[test]
+fn arming_is_refused_where_the_accelerometer_says_that_up_is_elsewhere() {
+    let flipped = |imu: &mut Increment| imu.delta_velocity = -imu.delta_velocity;
+    let weightless = |imu: &mut Increment| imu.delta_velocity = Vector3::zeros();
+    let not_started = Refusal::Estimator(Fault::NotStarted);
+    refuses_sensors(|flight| flight.imu = Box::new(flipped), not_started);
+    refuses_sensors(|flight| flight.imu = Box::new(weightless), not_started);
+    // It may also begin after the estimate has.
+    refuses(with_imu(flipped), Refusal::Gravity);
+    refuses(with_imu(weightless), Refusal::Gravity);
+    let leaning = |degrees: f32| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        with_imu(|imu| imu.delta_velocity = Vector3::new(sin, 0.0, cos) * imu.delta_velocity.z)
+    };
+    refuses(leaning(10.5), Refusal::Gravity);
+    let outcome = arm(leaning(9.5)).to(&mut settled(NOW - PERIOD));
+    assert_eq!(outcome.answer, Some(Ok(())));
+}
+
+#[test]
+fn arming_is_refused_where_the_gyro_turns_or_is_biased_by_a_degree_a_second() {
+    let turning = |rate: f32| {
+        move |imu: &mut Increment| {
+            imu.delta_angle.x += rate * imu.seconds();
+            imu.angular_velocity.x += rate;
+        }
+    };
+    refuses_sensors(|flight| flight.imu = Box::new(turning(10.0)), Refusal::Estimator(Fault::NotStarted));
+    refuses(with_imu(turning(10.0)), Refusal::Moving);
+    refuses_sensors(|flight| flight.imu = Box::new(turning(1_f32.to_radians())), Refusal::Estimator(Fault::GyroBias));
+}
+
+#[test]
+fn arming_is_refused_with_poses_that_lie_or_do_not_advance() {
+    let not_started = Refusal::Estimator(Fault::NotStarted);
+    let resent = Flight::new().tick().health;
+    assert!(resent.faults.contain(Fault::NotStarted));
+    refuses_sensors(
+        |flight| flight.told = Box::new(|body, _| displaced(body, 1_000_000, &Vector3::zeros(), &Vector3::zeros())),
+        not_started,
+    );
+    let upside_down = Vector3::new(std::f64::consts::PI, 0.0, 0.0);
+    refuses_sensors(
+        |flight| flight.told = Box::new(move |body, time| displaced(body, time, &Vector3::zeros(), &upside_down)),
+        not_started,
+    );
+    let untracked = |body: &flight::Body, time| {
+        let pose = displaced(body, time, &Vector3::zeros(), &Vector3::zeros());
+        controller_core::flight::Stamped { value: pose.value.quality(-1), ..pose }
+    };
+    refuses_sensors(|flight| flight.told = Box::new(untracked), not_started);
 }
 
 #[test]
 fn arming_is_refused_without_a_ground_station_or_against_a_disarm_command() {
-    refuses(Inputs { ground_station: None, ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Inputs { ground_station: Some(NOW - 2_500_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Inputs { ground_station: Some(NOW + 1_000_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Inputs { disarm: true, ..at_rest(NOW) }, Refusal::DisarmCommanded);
+    refuses(Handed { ground_station: None, ..at_rest(NOW) }, Refusal::GroundStationSilent);
+    refuses(Handed { ground_station: Some(NOW - 2_500_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
+    refuses(Handed { ground_station: Some(NOW + 1_000_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
+    refuses(Handed { disarm: true, ..at_rest(NOW) }, Refusal::DisarmCommanded);
 }
 
 #[test]
 fn an_armed_vehicle_refuses_requests_and_flies_on() {
-    let mut pilot = pilot();
-    pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(NOW) });
-    for request in [Request::Arm, Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1 })] {
-        let outcome = pilot.tick(&Inputs { request: Some(request), ..at_rest(NOW + PERIOD) });
+    let mut pilot = settled(NOW - PERIOD);
+    arm(at_rest(NOW)).to(&mut pilot);
+    let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1 });
+    for (tick, request) in (1..).zip([Request::Arm, test]) {
+        let outcome = Handed { request: Some(request), ..at_rest(NOW + tick * PERIOD) }.to(&mut pilot);
         assert_eq!(outcome.answer, Some(Err(Refusal::AlreadyArmed)));
         assert!(matches!(outcome.output, Output::Thrusts(_)));
     }
@@ -104,27 +230,27 @@ fn motor_tests_of_other_rotors_levels_or_durations_are_refused() {
         (MotorTest { duration: 0, ..good }, Refusal::MotorTestDuration),
     ] {
         let mut pilot = pilot();
-        let outcome = pilot.tick(&Inputs { request: Some(Request::MotorTest(test)), ..at_rest(NOW) });
+        let outcome = Handed { request: Some(Request::MotorTest(test)), ..at_rest(NOW) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.output), (Some(Err(refusal)), Output::Stop));
-        let outcome = pilot.tick(&Inputs { request: Some(Request::MotorTest(good)), ..at_rest(NOW) });
+        let outcome = Handed { request: Some(Request::MotorTest(good)), ..at_rest(NOW) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.mode), (Some(Ok(())), Mode::MotorTest));
-        let outcome = pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) });
+        let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::MotorTestRunning)), Mode::Disarmed));
     }
 }
 
 #[test]
 fn setpoints_are_refused_on_the_ground_and_when_they_make_no_sense() {
-    let mut pilot = pilot();
-    let outcome = pilot.tick(&Inputs { setpoint: Some(go_to(1.0, 0.0, 0.0)), ..at_rest(NOW) });
+    let mut pilot = settled(NOW - PERIOD);
+    let outcome = Handed { setpoint: Some(go_to(1.0, 0.0, 0.0)), ..at_rest(NOW) }.to(&mut pilot);
     assert_eq!(outcome.setpoint, Some(Err(Refusal::NotFlying)));
-    pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) });
+    Handed { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
     let bad = [
         (go_to(f32::NAN, 0.0, 0.0), "setpoint.position"),
         (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),
     ];
-    for (setpoint, field) in bad {
-        let outcome = pilot.tick(&Inputs { setpoint: Some(setpoint), ..at_rest(NOW + 2 * PERIOD) });
+    for (tick, (setpoint, field)) in (2..).zip(bad) {
+        let outcome = Handed { setpoint: Some(setpoint), ..at_rest(NOW + tick * PERIOD) }.to(&mut pilot);
         assert_eq!((outcome.setpoint, outcome.mode), (Some(Err(Refusal::Setpoint(field))), Mode::Flying));
     }
 }
@@ -132,11 +258,11 @@ fn setpoints_are_refused_on_the_ground_and_when_they_make_no_sense() {
 /// It never arms, says why, and tests motors nevertheless.
 fn is_grounded(mut pilot: Pilot, grounded: Grounded) {
     assert_eq!(pilot.grounded(), Some(grounded));
-    let outcome = pilot.tick(&Inputs { request: Some(Request::Arm), ..at_rest(NOW) });
+    let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW) }.to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(Refusal::Grounded(grounded))));
     assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Disarmed));
     let test = Request::MotorTest(MotorTest { rotor: 3, level: 0.1, duration: 1_000_000 });
-    let outcome = pilot.tick(&Inputs { request: Some(test), ..at_rest(NOW) });
+    let outcome = Handed { request: Some(test), ..at_rest(NOW) }.to(&mut pilot);
     assert_eq!(outcome.mode, Mode::MotorTest);
 }
 
@@ -147,7 +273,7 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
     let weak = Configuration::new(*base.vehicle(), weak, *base.gains().unwrap(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
-    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), memory());
+    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), estimator(), memory());
     let grounded = Grounded::Inequality("T2 yaw torque");
     assert_eq!(grounded.to_string(), "Not certified: T2 yaw torque");
     is_grounded(pilot, grounded);
@@ -157,13 +283,19 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
 fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     let limits = GovernorLimits::default();
     let rotorless = Certified::new(configuration()).unwrap();
-    is_grounded(Pilot::new(Ok(&rotorless), &limits, memory()), Grounded::NoRotors);
+    is_grounded(Pilot::new(Ok(&rotorless), &limits, estimator(), memory()), Grounded::NoRotors);
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
     let field = "reference_bounds.horizontal_speed";
-    is_grounded(Pilot::new(Ok(&hover), &limits, memory()), Grounded::Parameter(field));
+    is_grounded(Pilot::new(Ok(&hover), &limits, estimator(), memory()), Grounded::Parameter(field));
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
-    is_grounded(Pilot::new(Ok(&certified()), &slow, memory()), Grounded::Parameter("governor.horizontal_speed"));
+    is_grounded(
+        Pilot::new(Ok(&certified()), &slow, estimator(), memory()),
+        Grounded::Parameter("governor.horizontal_speed"),
+    );
     let error = ParameterError { field: "vehicle.mass", reason: Reason::NotPositive };
-    is_grounded(Pilot::new(Err(&Refused::Undefined(error)), &limits, memory()), Grounded::Parameter("vehicle.mass"));
+    is_grounded(
+        Pilot::new(Err(&Refused::Undefined(error)), &limits, estimator(), memory()),
+        Grounded::Parameter("vehicle.mass"),
+    );
 }

@@ -11,15 +11,17 @@ use crate::parameters::table::Name;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
+use controller_core::estimator::{Estimator, Settings};
 use controller_core::flight::{Memory, Pilot};
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// Where a pilot lies, and what its governor and mixer work with.
+/// Where a pilot lies, its estimator, and what its governor and mixer work with.
 pub struct Place {
     certification: StaticCell<Result<Certified, Refused>>,
     pilot: StaticCell<Pilot<'static>>,
+    estimator: StaticCell<Estimator>,
     memory: ConstStaticCell<Memory>,
 }
 
@@ -27,7 +29,12 @@ impl Place {
     /// For one pilot.
     #[allow(clippy::new_without_default)] // it is made where it stays
     pub const fn new() -> Self {
-        Self { certification: StaticCell::new(), pilot: StaticCell::new(), memory: ConstStaticCell::new(Memory::EMPTY) }
+        Self {
+            certification: StaticCell::new(),
+            pilot: StaticCell::new(),
+            estimator: StaticCell::new(),
+            memory: ConstStaticCell::new(Memory::EMPTY),
+        }
     }
 }
 
@@ -49,12 +56,13 @@ pub fn start<M: RawMutex>(
         vertical_speed: parameters.get(Name::VerticalSpeed),
         ..GovernorLimits::default()
     };
+    let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
     let certification = certify(place, configuration);
     log(certification);
-    Ok((pilot(place, certification.as_ref(), &limits), outputs))
+    Ok((pilot(place, certification.as_ref(), &limits, estimator), outputs))
 }
 
-// Configuration, certificate and pilot need most of the stack, one after the other: none may become part of another's frame.
+// Configuration, estimator, certificate and pilot need most of the stack, one after the other: none may become part of another's frame.
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]
@@ -63,13 +71,19 @@ fn certify(place: &'static Place, configuration: Configuration) -> &'static Resu
 }
 
 #[inline(never)]
+fn estimator(place: &'static Place, settings: &Settings) -> &'static mut Estimator {
+    place.estimator.init_with(|| Estimator::new(settings))
+}
+
+#[inline(never)]
 fn pilot(
     place: &'static Place,
     certification: Result<&Certified, &Refused>,
     limits: &GovernorLimits,
+    estimator: &'static mut Estimator,
 ) -> &'static mut Pilot<'static> {
     let memory = place.memory.take();
-    place.pilot.init_with(|| Pilot::new(certification, limits, memory))
+    place.pilot.init_with(|| Pilot::new(certification, limits, estimator, memory))
 }
 
 /// The numbers of every inequality that decides, and the verdict. `host-sim certify` says what they mean.

@@ -14,17 +14,19 @@ use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, Report, Shared, Timing};
+use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
-use controller_core::estimator::Increment;
-use controller_core::flight::rules::{IMU_AGE_MAX, POSE_AGE_MAX};
+use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Refusal};
-use controller_core::state::State;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use heapless::Vec;
 
 /// How long the motors' frame may take to write, us.
 const WRITING_MAX: u64 = 2_000;
+
+/// How often poses that are refused, and faults of the estimator, are told, us.
+const TEXT_INTERVAL: u64 = 1_000_000;
 
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
@@ -46,6 +48,9 @@ struct Complaint {
     setpoint: Option<Refusal>,
     law: Option<InputError>,
     writing: Option<Fault>,
+    estimator: Option<EstimatorFault>,
+    /// Before these times, us, no refused pose and no fault of the estimator is told again.
+    quiet: (u64, u64),
 }
 
 impl<'a, M: RawMutex> Control<'a, M> {
@@ -82,17 +87,17 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// One tick, from what the other tasks have put down to what the motors are told.
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
-        while let Some(increment) = self.shared.increments.take() {
-            self.integrate(&increment);
-        }
+        let increments: Vec<Increment, INCREMENTS> = waiting(&self.shared.increments);
+        let poses: Vec<_, POSES> = waiting(&self.shared.poses);
+        increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests.take();
-        let inputs = self.inputs(now, asked);
+        let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
-        self.report(&inputs, &outcome);
-        let ratio =
-            voltage_ratio(self.shared.parameters.get(Name::BatteryNominal), self.shared.voltage.get(), inputs.now);
-        self.outputs.command(&outcome.output, ratio)
+        self.tell_of_the_estimate(&outcome, now);
+        self.report(now, &outcome);
+        let nominal = self.shared.parameters.get(Name::BatteryNominal);
+        self.outputs.command(&outcome.output, voltage_ratio(nominal, self.shared.voltage.get(), now))
     }
 
     /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.
@@ -102,17 +107,17 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.integrated = Some(increment.end);
     }
 
-    fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs {
+    /// What is not measured.
+    fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs<'static> {
         // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once more.
         let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
-            imu: self.shared.imu.get(),
-            pose: self.shared.pose.get(),
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
             setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),
+            ..Inputs::default()
         }
     }
 
@@ -138,15 +143,39 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    fn report(&self, inputs: &Inputs, outcome: &Outcome) {
+    /// Poses that are refused, the estimate's jumps, and its faults, each once in a while.
+    fn tell_of_the_estimate(&mut self, outcome: &Outcome, now: u64) {
+        let (pose, fault) = &mut self.complaint.quiet;
+        match outcome.pose {
+            // Before there is an IMU to compare it with, nothing is wrong with a pose.
+            Some(Err(Rejected::NoImu | Rejected::TooOld)) if outcome.estimated.is_none() => {}
+            Some(Err(rejected)) if now >= *pose => {
+                *pose = now.saturating_add(TEXT_INTERVAL);
+                self.shared.announce(Event::Pose(Err(rejected)));
+            }
+            Some(Ok(taken @ (Taken::Rebased | Taken::Refound))) => self.shared.announce(Event::Pose(Ok(taken))),
+            _ => {}
+        }
+        // Before it begins there is nothing to complain about.
+        let worst = outcome.health.faults.worst().filter(|&worst| worst != EstimatorFault::NotStarted);
+        if worst != self.complaint.estimator && now >= *fault {
+            self.complaint.estimator = worst;
+            if let Some(worst) = worst {
+                *fault = now.saturating_add(TEXT_INTERVAL);
+                self.shared.announce(Event::Estimator(worst));
+            }
+        }
+    }
+
+    fn report(&self, now: u64, outcome: &Outcome) {
         let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
         let report = Report {
             mode: outcome.mode,
-            state: flown.map(|flown| flown.state).or_else(|| measured(inputs)),
+            state: outcome.estimated.map(|estimated| estimated.state),
             wrench: flown.map(|flown| flown.wrench),
             timing: self.timing,
         };
-        self.shared.report.put(report, inputs.now);
+        self.shared.report.put(report, now);
     }
 
     fn complain_about_writing(&mut self, written: Result<(), Fault>) {
@@ -158,13 +187,10 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 }
 
-/// The state as measured, where both measurements are fresh enough to fly: for telemetry before the law flies.
-fn measured(inputs: &Inputs) -> Option<State> {
-    let imu = inputs.imu.filter(|imu| imu.age(inputs.now) <= IMU_AGE_MAX)?.value;
-    let pose = inputs.pose.filter(|pose| pose.age(inputs.now) <= POSE_AGE_MAX)?.value;
-    let angular_velocity = imu.angular_velocity;
-    let (position, velocity, attitude) = (pose.position(), pose.velocity(), pose.attitude());
-    Some(State { position, velocity, attitude, angular_velocity })
+/// Everything that waits in a queue.
+fn waiting<M: RawMutex, T, const ROOM: usize>(queue: &Queue<M, T, ROOM>) -> Vec<T, ROOM> {
+    // No more than there is room for: what comes meanwhile waits for the next tick.
+    core::iter::from_fn(|| queue.take()).take(ROOM).collect()
 }
 
 /// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it overran.

@@ -188,8 +188,8 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
         }
         ODOMETRY_DATA::ID => {
             let Some(message) = frame.decode::<ODOMETRY_DATA>() else { return };
-            if let (Some(time), Ok(pose)) = (hil.stamp(message.time_usec), odometry(&message)) {
-                shared.pose.put(pose, time);
+            if let (Some(time), Ok(pose)) = (hil.stamp(message.time_usec), odometry(frame, &message)) {
+                let _ = shared.poses.put(Stamped { value: pose, time });
             }
         }
         _ => {}

@@ -19,6 +19,7 @@ pub mod command;
 pub mod frame;
 pub mod pose;
 pub mod receive;
+pub mod sender_clock;
 pub mod setpoint;
 pub mod telemetry;
 pub mod transmit;

@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
 //! | IMU | [`Shared::increments`] | control | a tick: each taken once |
-//! | link | [`Shared::pose`] | control | [`controller_core::flight`] decides |
+//! | link | [`Shared::poses`] | control | a tick: each taken once; [`controller_core::estimator`] decides |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
@@ -36,8 +36,8 @@ pub use reply::{Asked, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
 use crate::parameters::Parameters;
-use controller_core::estimator::Increment;
-use controller_core::flight::{ImuSample, Pose, Refusal};
+use controller_core::estimator::{Increment, PoseMeasurement};
+use controller_core::flight::{ImuSample, Refusal, Stamped};
 use controller_core::governor::Setpoint;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -49,6 +49,9 @@ pub const REQUESTS: usize = 4;
 
 /// IMU increments that wait for control, which takes all of them: 40 ms.
 pub const INCREMENTS: usize = 8;
+
+/// Poses that wait for control, which takes all of them: 40 ms of them at 200 Hz.
+pub const POSES: usize = 8;
 
 /// Calibrations that wait to be begun.
 pub const CALIBRATIONS: usize = 2;
@@ -67,8 +70,8 @@ pub struct Shared<M: RawMutex> {
     pub increments: Queue<M, Increment, INCREMENTS>,
     /// Calibrations that somebody asked for; none ends what is under way.
     pub calibrations: Queue<M, Option<Procedure>, CALIBRATIONS>,
-    /// The newest pose, with its time of arrival.
-    pub pose: Latest<M, Pose>,
+    /// Poses in the order in which they came, with the times at which they were true. Without room a pose is dropped: the next will do.
+    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES>,
     /// Its time says when a ground station was last heard.
     pub ground_station: Latest<M, ()>,
     /// The newest setpoint. An unread one is replaced: only the last counts.
@@ -110,7 +113,7 @@ impl<M: RawMutex> Shared<M> {
             imu: Latest::new(),
             increments: Queue::new(),
             calibrations: Queue::new(),
-            pose: Latest::new(),
+            poses: Queue::new(),
             ground_station: Latest::new(),
             setpoint: Latest::new(),
             requests: Queue::new(),

@@ -92,7 +92,7 @@ impl Flight {
     /// Boots, arms and goes up to 1 m.
     pub fn in_the_air() -> Self {
         let mut flight = Self::boot();
-        flight.pass(1.5);
+        flight.pass(2.0);
         flight.station.arm(true);
         flight.pass(0.1);
         assert!(flight.report().mode.is_armed(), "{:?}", flight.station.texts());

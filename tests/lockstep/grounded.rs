@@ -3,6 +3,7 @@
 use super::flight::Flight;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
+use controller_core::estimator::{Estimator, EstimatorParameters, Settings};
 use controller_core::flight::{Memory, Mode, Pilot};
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
@@ -24,15 +25,17 @@ fn refused() -> (Flight, &'static str) {
     let Refused::Fails(certificate) = &refused else { panic!("{refused:?}") };
     let failed = certificate.inequalities().find(|inequality| !inequality.holds()).unwrap().name;
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &GovernorLimits::default(), memory)));
-    let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap()).unwrap()));
+    let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
+    let estimator = Box::leak(Box::new(Estimator::new(&settings)));
+    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &GovernorLimits::default(), estimator, memory)));
+    let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap(), 0.0).unwrap()));
     (flight, failed)
 }
 
 #[test]
 fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
     let (mut flight, failed) = refused();
-    flight.pass(1.5);
+    flight.pass(2.0);
     assert_eq!((flight.report().mode, flight.station.texts().len()), (Mode::Disarmed, 0));
     // Telemetry, watchdog, timing: all as ever.
     assert!(flight.report().state.is_some());

@@ -3,7 +3,7 @@
 use super::flight::Flight;
 use super::station::Station;
 use controller_core::flight::Mode;
-use controller_core::flight::rules::POSE_AGE_MAX;
+use controller_core::flight::rules::COASTING_MAX;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
@@ -76,7 +76,7 @@ fn a_frame_that_arrives_in_two_halves_long_apart_is_no_fresh_pose() {
         flight.station.send_bytes(end);
     }
     let lost = flight.station.heard("Pose lost").unwrap();
-    assert!(lost - last <= 2 * POSE_AGE_MAX + 20_000, "{}", lost - last);
+    assert!(lost - last <= 2 * COASTING_MAX + 20_000, "{}", lost - last);
     assert_eq!(flight.report().mode, Mode::Disarmed);
 }
 
@@ -190,7 +190,7 @@ fn whatever_comes_in_no_stale_pose_is_flown() {
         levelled += u32::from(report.mode == Mode::Levelling);
         if matches!(report.mode, Mode::Flying | Mode::Holding) {
             assert!(
-                flight.now() - last <= POSE_AGE_MAX + 10_000,
+                flight.now() - last <= COASTING_MAX + 10_000,
                 "{:?} on a pose of {} us",
                 report.mode,
                 flight.now() - last

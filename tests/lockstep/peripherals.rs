@@ -70,7 +70,7 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
         }
         assert!(flight.now() - last > IMU_AGE_MAX - 1_000, "stopped by a sample {} us old", flight.now() - last);
         flight.pass(0.5);
-        assert!(flight.station.heard("Stopped: no IMU sample for 20 ms").is_some());
+        assert!(flight.station.heard("Stopped: no IMU for 20 ms").is_some());
         assert_eq!(count(&flight, "IMU does not answer"), 1);
         let (result, texts) = flight.ask_to_arm();
         assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));

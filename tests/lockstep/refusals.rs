@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// A vehicle on the ground with everything that arming needs.
 fn ready() -> Flight {
     let mut flight = Flight::boot();
-    flight.pass(1.5);
+    flight.pass(2.0);
     flight
 }
 
@@ -32,9 +32,11 @@ fn without_a_pose() {
     let mut flight = Flight::boot();
     flight.poses(false);
     flight.pass(1.5);
-    is_refused(&mut flight, "Refused: no pose for 100 ms");
+    is_refused(&mut flight, "Estimator: not started, no consistent poses");
     flight.poses(true);
-    flight.pass(0.05);
+    flight.pass(1.2);
+    is_refused(&mut flight, "Refused: poses not believed for a whole second");
+    flight.pass(0.5);
     is_granted(&mut flight);
 }
 
@@ -42,8 +44,8 @@ fn without_a_pose() {
 fn with_a_pose_that_has_just_grown_old() {
     let mut flight = ready();
     flight.poses(false);
-    flight.pass(0.12);
-    is_refused(&mut flight, "Refused: no pose for 100 ms");
+    flight.pass(0.4);
+    is_refused(&mut flight, "Estimator: no believable pose");
 }
 
 #[test]
@@ -52,13 +54,13 @@ fn on_a_slope_of_more_than_thirty_degrees_whichever_way() {
         for (roll, pitch) in [(31.0, 0.0), (-31.0, 0.0), (0.0, 31.0), (0.0, -31.0), (23.0, 23.0)] {
             let mut flight = ready();
             flight.world.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
-            flight.pass(0.05);
+            flight.pass(3.0);
             is_refused(&mut flight, "Refused: tilted by 30 degrees or more");
         }
         for (roll, pitch) in [(29.0, 0.0), (0.0, -29.0), (20.0, 20.0)] {
             let mut flight = ready();
             flight.world.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
-            flight.pass(0.05);
+            flight.pass(3.0);
             is_granted(&mut flight);
         }
     }
@@ -69,7 +71,7 @@ fn upside_down() {
     for (roll, pitch) in [(PI, 0.0), (0.0, PI), (PI - 0.3, 0.2)] {
         let mut flight = ready();
         flight.world.set_down(roll, pitch, 0.5);
-        flight.pass(0.05);
+        flight.pass(3.0);
         is_refused(&mut flight, "Refused: tilted by 30 degrees or more");
     }
 }
@@ -78,7 +80,7 @@ fn upside_down() {
 fn by_a_station_that_sends_no_heartbeats() {
     let mut flight = Flight::boot();
     flight.station.beat(false);
-    flight.pass(1.5);
+    flight.pass(2.0);
     is_refused(&mut flight, "Refused: no ground station for 2.5 s");
     flight.station.beat(true);
     flight.pass(1.0);
@@ -89,7 +91,7 @@ fn by_a_station_that_sends_no_heartbeats() {
 fn by_a_station_whose_heartbeats_have_ceased() {
     let mut flight = ready();
     flight.station.beat(false);
-    flight.pass(1.3);
+    flight.pass(0.8);
     // The last one came 1.8 s ago, then 2.8 s.
     flight.pass(1.0);
     is_refused(&mut flight, "Refused: no ground station for 2.5 s");

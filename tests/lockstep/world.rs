@@ -51,6 +51,8 @@ struct Body {
     speeds: [f64; MOTORS],
     /// What a step leaves of a speed's error.
     left: f64,
+    /// What the accelerometer says, m/s^2, body.
+    force: Vector3<f64>,
 }
 
 /// The rigid body at `state`.
@@ -79,7 +81,9 @@ impl World {
         let greatest = f64::from(rotors[0].speed_at(rotors[0].thrust_max));
         let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
         let left = (-1e-6 * STEP as f64 / lag).exp();
-        let body = Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left };
+        let force = Vector3::new(0.0, 0.0, f64::from(configuration.vehicle().gravity));
+        let body =
+            Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left, force };
         let command = Cell::new((MotorCommand::Stop, 0));
         Self(Rc::new(Inner {
             clock: clock.clone(),
@@ -171,6 +175,10 @@ impl Body {
             let state = BodyState { position, velocity: still, attitude: before.attitude, angular_velocity: still };
             self.plant = body(&self.configuration, state);
         }
+        let after = self.plant.state();
+        let gravity = Vector3::new(0.0, 0.0, f64::from(self.configuration.vehicle().gravity));
+        let gained = (after.velocity - before.velocity) / (STEP as f64 * 1e-6) + gravity;
+        self.force = nalgebra::UnitQuaternion::new_normalize(after.attitude).inverse_transform_vector(&gained);
     }
 }
 
@@ -184,8 +192,9 @@ impl Imu for SimImu {
         clock.until(time).await;
         self.0.0.sensor.get().answer().await?;
         let jitter = (time / STEP % 7) as f32 * 1e-5 - 3e-5;
-        let angular_velocity = self.0.0.body.borrow().plant.state().measured().angular_velocity.add_scalar(jitter);
-        Ok(RawImu { time, angular_velocity, specific_force: Some(Vector3::new(jitter, 0.0, 9.81)) })
+        let body = self.0.0.body.borrow();
+        let angular_velocity = body.plant.state().measured().angular_velocity.add_scalar(jitter);
+        Ok(RawImu { time, angular_velocity, specific_force: Some(body.force.cast().add_scalar(jitter)) })
     }
 
     fn parameters(&self) -> ImuParameters {

@@ -40,7 +40,9 @@ pub const MISSES_MAX: u8 = 2;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
     pub filter: Filter,
+    /// When its first pose was true, and its last, us: the filter's own time may be later.
     since: u64,
+    until: u64,
     poses: u16,
     misses: u8,
 }
@@ -48,7 +50,8 @@ pub(super) struct Candidate {
 impl Candidate {
     /// Begins at a pose.
     pub fn new(time: u64, pose: &PoseMeasurement, biases: &Biases, settings: &Settings) -> Self {
-        Self { filter: Filter::start(time, pose, biases, settings), since: time, poses: 1, misses: 0 }
+        let filter = Filter::start(time, pose, biases, settings);
+        Self { filter, since: time, until: time, poses: 1, misses: 0 }
     }
 
     /// Takes one more pose, later than the last.
@@ -68,6 +71,7 @@ impl Candidate {
         tested.gate()?;
         self.filter.fuse(pose, &tested)?;
         self.poses = self.poses.saturating_add(1);
+        self.until = time;
         self.misses = 0;
         Ok(())
     }
@@ -79,7 +83,7 @@ impl Candidate {
 
     /// Whether it has proven itself.
     pub fn is_proven(&self) -> bool {
-        self.poses >= POSES_MIN && self.filter.time.saturating_sub(self.since) >= PROVEN_AFTER
+        self.poses >= POSES_MIN && self.until.saturating_sub(self.since) >= PROVEN_AFTER
     }
 
     /// Whether up is where the accelerometer says.

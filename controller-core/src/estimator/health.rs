@@ -54,7 +54,7 @@ pub struct Health {
     pub faults: Faults,
     /// The age of the last pose that was fused, us; none before the first.
     pub pose_age: Option<u64>,
-    /// What became of the last pose.
+    /// What became of the last pose that did not have to wait.
     pub last: Option<Result<Taken, Rejected>>,
     /// Poses that were believed, and not.
     pub counts: (u32, u32),
@@ -89,10 +89,12 @@ impl Statistics {
 
     /// What became of a pose that was true at `time`, us.
     pub fn record(&mut self, verdict: Result<Taken, Rejected>, time: u64) {
+        if verdict == Ok(Taken::Waiting) {
+            return;
+        }
         self.last = Some(verdict);
         match verdict {
-            Ok(Taken::Waiting) => {}
-            Ok(Taken::Aligning) => self.counts.0 = self.counts.0.saturating_add(1),
+            Ok(Taken::Waiting | Taken::Aligning) => self.counts.0 = self.counts.0.saturating_add(1),
             Ok(Taken::Fused | Taken::Started | Taken::Rebased | Taken::Refound) => {
                 self.counts.0 = self.counts.0.saturating_add(1);
                 self.fused_at = self.fused_at.max(time);

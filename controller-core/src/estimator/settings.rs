@@ -14,6 +14,7 @@
 //! and 20 mg, in the square root of three hours: generous, since the filter pays nothing for it in a flight of minutes.
 
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
+use crate::vehicle::Vehicle;
 
 /// What the sensors are like. SI units, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,6 +77,13 @@ const DEVIATION_LEAST: f32 = 1e-4;
 const DEVIATION_MAX: f32 = 10.0;
 
 impl Settings {
+    /// [`EstimatorParameters::BMI088`], with a vehicle's gravity.
+    #[must_use]
+    pub fn bmi088(vehicle: &Vehicle) -> Self {
+        // A vehicle's gravity is positive, and the rest is checked by a test.
+        Self(EstimatorParameters { gravity: vehicle.gravity, ..EstimatorParameters::BMI088 })
+    }
+
     /// Checks `parameters`.
     ///
     /// # Errors

@@ -20,6 +20,31 @@ pub enum Taken {
     Refound,
 }
 
+impl Taken {
+    /// Everything a pose can be taken for.
+    pub const ALL: [Self; 6] =
+        [Self::Fused, Self::Waiting, Self::Aligning, Self::Started, Self::Rebased, Self::Refound];
+
+    /// The same in words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Fused => "Poses: believed",
+            Self::Waiting => "Poses: waiting for the IMU",
+            Self::Aligning => "Poses: aligning",
+            Self::Started => "Poses: the estimate begins",
+            Self::Rebased => "Poses: the sender's frame has moved",
+            Self::Refound => "Poses: body found again, estimate reset to it",
+        }
+    }
+}
+
+impl fmt::Display for Taken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
 /// Why a pose was not believed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -162,6 +187,7 @@ mod tests {
     #[test]
     fn every_reason_fits_a_status_text_and_says_something_of_its_own() {
         let texts = Rejected::ALL.map(Rejected::text).into_iter().chain(Fault::ALL.map(Fault::text));
+        let texts = texts.chain(Taken::ALL.map(Taken::text));
         let mut seen: heapless::Vec<&str, 32> = heapless::Vec::new();
         for text in texts {
             assert!(text.len() <= TEXT_MAX, "{text}: {}", text.len());

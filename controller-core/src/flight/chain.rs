@@ -8,11 +8,11 @@
 //! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had. The extended
 //! law keeps what it knows of the vehicle, its torque bias and thrust scale, and learns nothing meanwhile.
 //!
-//! Starting on the ground and regaining the pose both start the governor at a steady velocity, with the heading at rest: nothing
-//! to fade out, so no bridge is needed, and such a start fits in a tick.
+//! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
+//! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
 use super::lift_off::LiftOff;
-use super::measurement::Pose;
+use super::permission::heading;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
 use crate::allocation::{Mixer, Thrusts};
@@ -41,7 +41,7 @@ impl Memory {
 /// What the law was given in a tick and what it made of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flown {
-    /// The state: measured, or (levelling) on the reference with the propagated attitude.
+    /// The state: estimated, or (levelling) on the reference with the estimated attitude.
     pub state: State,
     /// The reference.
     pub reference: Reference,
@@ -141,14 +141,28 @@ impl<'m> Chain<'m> {
         self.law.restart();
     }
 
-    /// Takes a flight up again where the vehicle is, at its velocity as far as references may be as fast, with the heading that was
+    /// Takes a flight up again where the vehicle is found, at its velocity as far as references may be as fast, with the heading that was
     /// held; then brakes to a stop. The law needs no restart: levelling has left its filters at zero.
     ///
     /// # Errors
     /// As [`Self::start`].
-    pub fn regain(&mut self, pose: &Pose) -> Result<(), InputError> {
-        let velocity = slowed(&pose.velocity(), self.speed);
-        self.governor.start(&pose.position(), &velocity, &self.reference.heading)
+    pub fn regain(&mut self, state: &State) -> Result<(), InputError> {
+        let velocity = slowed(&state.velocity, self.speed);
+        self.governor.start(&state.position, &velocity, &self.reference.heading)
+    }
+
+    /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which may have
+    /// jumped too. Nothing is learnt from the jump. The certificate covers it as it covers any other jump of the reference.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn jump(&mut self, state: &State) -> Result<(), InputError> {
+        if let Some(heading) = heading(&state.attitude) {
+            self.reference.heading = heading;
+        }
+        self.law.hold_estimates();
+        self.lift_off.displace(&state.position);
+        self.regain(state)
     }
 
     /// Brings the reference to rest.

@@ -28,6 +28,11 @@ impl LiftOff {
         Self { standing_at: Some(position.z) }
     }
 
+    /// The same vehicle is found to be at `position`, m, world: it has not moved there.
+    pub fn displace(&mut self, position: &Vector3<f32>) {
+        self.standing_at = self.standing_at.map(|_| position.z);
+    }
+
     /// Whether the vehicle still stands in `state`; once it has left the ground it stands no more.
     pub fn stands(&mut self, state: &State) -> bool {
         self.standing_at = self
@@ -59,6 +64,11 @@ mod tests {
             assert!(!lift_off.stands(&leaves));
             assert!(!lift_off.stands(&at(7.0, 0.0)), "back on the ground");
         }
+        let mut displaced = LiftOff::from(&Vector3::zeros());
+        displaced.displace(&Vector3::new(0.0, 0.0, 7.0));
+        assert!(displaced.stands(&at(7.04, 0.0)) && !displaced.stands(&at(7.06, 0.0)));
+        displaced.displace(&Vector3::zeros());
+        assert!(!displaced.stands(&at(0.0, 0.0)), "it had left the ground");
         assert!(!LiftOff::DONE.clone().stands(&at(0.0, 0.0)));
     }
 }

@@ -1,22 +1,16 @@
-//! What is measured, and which of it is flown: of all that was offered, the newest that can be used.
+//! What is measured, with the time at which it was true.
 //!
 //! A pose is checked once, where it is made: [`Pose::new`] is the only way to one, and its attitude is a unit quaternion from
-//! there on. Everything else that cannot be used (an IMU sample with a number that is not finite or out of range, a time stamp
-//! still to come) is no measurement: the one before it ages on, and the limits on age in [`super::rules`] decide how long that
-//! may go on. So the law never sees a number that it could refuse.
+//! there on. Increments of the IMU are checked by the estimator, which begins anew where one cannot be. So the law never sees a
+//! number that it could refuse.
 
-use super::reason::field;
 use crate::governor::SPEED_RANGE;
 use crate::math;
-use crate::state::{STATE_RANGE, check_vectors};
 use core::fmt;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// How far ahead of the clock a time stamp may be, us: a sample taken while the tick was beginning.
 pub const STAMP_LEAD_MAX: u64 = 1_000;
-
-/// The greatest body rate about an axis, rad/s: no gyro that flies measures more.
-pub const BODY_RATE_MAX: f32 = 100.0;
 
 /// How far from the origin a pose may be, m: single precision tells millimetres apart up to here.
 pub const DISTANCE_MAX: f32 = 10_000.0;
@@ -50,8 +44,7 @@ pub struct ImuSample {
     pub specific_force: Vector3<f32>,
 }
 
-/// What the pose source says: until an estimator exists, attitude and velocity come from outside. Whoever holds one holds
-/// numbers that can be flown.
+/// What the pose source says. Whoever holds one holds numbers that can be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     position: Vector3<f32>,
@@ -141,81 +134,9 @@ fn within(vector: &Vector3<f32>, most: f32, field: &'static str) -> Result<(), P
     if vector.norm_squared() <= most * most { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
 }
 
-/// Whether a time stamp can be of something that has happened.
-fn is_in_time(time: u64, now: u64) -> bool {
-    time <= now.saturating_add(STAMP_LEAD_MAX)
-}
-
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
 pub(super) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
-    now.saturating_sub(time) <= age_max && is_in_time(time, now)
-}
-
-/// Something measured that can be told to be usable.
-pub(super) trait Measurement: Copy {
-    /// The name of its time stamp.
-    const TIME: &'static str;
-
-    /// Whether it can be used.
-    ///
-    /// # Errors
-    /// Names the field that cannot.
-    fn check(&self) -> Result<(), &'static str>;
-}
-
-impl Measurement for ImuSample {
-    const TIME: &'static str = "imu.time";
-
-    fn check(&self) -> Result<(), &'static str> {
-        let rates = (&self.angular_velocity, BODY_RATE_MAX, "imu.angular_velocity");
-        check_vectors(&[rates, (&self.specific_force, STATE_RANGE, "imu.specific_force")]).map_err(field)
-    }
-}
-
-impl Measurement for Pose {
-    const TIME: &'static str = "pose.time";
-
-    /// Any can: see [`Pose::new`].
-    fn check(&self) -> Result<(), &'static str> {
-        Ok(())
-    }
-}
-
-/// The newest usable measurement of a kind.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Newest<T> {
-    usable: Option<Stamped<T>>,
-    unusable: Option<&'static str>,
-}
-
-impl<T: Measurement> Newest<T> {
-    /// None yet.
-    pub const NONE: Self = Self { usable: None, unusable: None };
-
-    /// Considers what is offered in the tick at `now`; the same measurement may be offered again and again, and one older
-    /// than what is here is passed over. Returns it if it is new and usable.
-    pub fn offer(&mut self, offered: &Option<Stamped<T>>, now: u64) -> Option<&Stamped<T>> {
-        let offered = offered.as_ref()?;
-        if self.usable.as_ref().is_some_and(|kept| offered.time <= kept.time) {
-            return None;
-        }
-        let checked = if is_in_time(offered.time, now) { offered.value.check() } else { Err(T::TIME) };
-        self.unusable = checked.err();
-        if self.unusable.is_some() {
-            return None;
-        }
-        Some(self.usable.insert(*offered))
-    }
-
-    /// The newest usable one, if it is not older than `age_max`, us, and the clock has not run back.
-    pub fn within(&self, age_max: u64, now: u64) -> Option<&Stamped<T>> {
-        self.usable.as_ref().filter(|kept| is_fresh(kept.time, age_max, now))
-    }
-
-    /// The field for which the newest one offered cannot be used, if so.
-    pub fn unusable(&self) -> Option<&'static str> {
-        self.unusable
-    }
+    now.saturating_sub(time) <= age_max && time <= now.saturating_add(STAMP_LEAD_MAX)
 }
 
 #[cfg(test)]

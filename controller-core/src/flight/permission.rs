@@ -1,14 +1,22 @@
 //! What arming and a motor test need, and why they are refused.
 
-use super::measurement::{ImuSample, Newest, Pose};
+use super::estimate::Estimate;
 use super::reason::Refusal;
-use super::rules::{IMU_AGE_MAX, MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode, POSE_AGE_MAX};
+use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode};
+use crate::estimator::{EstimatedState, Fault};
 use crate::heading::Heading;
 use crate::math;
 use nalgebra::{Quaternion, Vector2, Vector3};
 
 /// The cosine of the greatest tilt that arms, 30 degrees.
 const TILT_COSINE: f32 = 0.866_025_4;
+
+/// The acceleration, m/s^2, beyond which the accelerometer and the estimate do not agree on gravity: what 10 degrees between two ups
+/// make of it, 2 g sin 5 degrees. A vehicle at rest has none.
+const GRAVITY_ERROR: f32 = 1.71;
+
+/// The speed, m/s, and the body rate, rad/s, beyond which a vehicle does not arm.
+const MOVING: (f32, f32) = (0.2, 0.2);
 
 /// One motor to be turned slowly for a while, to see which it is and which way it turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,20 +50,24 @@ pub(super) fn to_leave(mode: Mode, disarm: bool) -> Result<(), Refusal> {
     }
 }
 
-/// Arming: fresh and usable measurements, nearly upright, and somebody at the other end of the link.
-pub(super) fn to_arm(
-    imu: &Newest<ImuSample>,
-    pose: &Newest<Pose>,
-    ground_station_silent: bool,
-    now: u64,
-) -> Result<Start, Refusal> {
-    imu.unusable().or(pose.unusable()).map_or(Ok(()), |field| Err(Refusal::Unusable(field)))?;
-    require(imu.within(IMU_AGE_MAX, now).is_some(), Refusal::ImuStale)?;
-    let pose = &pose.within(POSE_AGE_MAX - 1, now).ok_or(Refusal::PoseStale)?.value;
-    require(upright(&pose.attitude()) > TILT_COSINE, Refusal::Tilted)?;
+/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and somebody at the
+/// other end of the link.
+pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
+    let faults = estimate.health.faults;
+    // Without an IMU nothing else can be well.
+    require(!faults.contain(Fault::ImuStale), Refusal::ImuStale)?;
+    faults.worst().map_or(Ok(()), |fault| Err(Refusal::Estimator(fault)))?;
+    let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::Estimator(Fault::NotStarted))?;
+    let (speed, rate) = MOVING;
+    // Written so that a number that is none is refused.
+    let still = state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate;
+    require(still, Refusal::Moving)?;
+    require(acceleration.norm_squared() < GRAVITY_ERROR * GRAVITY_ERROR, Refusal::Gravity)?;
+    require(estimate.settled, Refusal::PosesUnsettled)?;
+    require(upright(&state.attitude) > TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
-    let heading = heading(&pose.attitude()).ok_or(Refusal::Tilted)?;
-    Ok(Start { position: pose.position(), heading })
+    let heading = heading(&state.attitude).ok_or(Refusal::Tilted)?;
+    Ok(Start { position: state.position, heading })
 }
 
 /// A motor test: one rotor that exists, slowly, not for long.
@@ -75,7 +87,7 @@ fn upright(q: &Quaternion<f32>) -> f32 {
 }
 
 /// Which way body x points, seen from above; none straight up or down.
-fn heading(q: &Quaternion<f32>) -> Option<Heading> {
+pub(super) fn heading(q: &Quaternion<f32>) -> Option<Heading> {
     let forward = Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k));
     Heading::new(forward / math::sqrt(forward.norm_squared()), 0.0, 0.0).ok()
 }

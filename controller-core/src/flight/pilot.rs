@@ -1,45 +1,46 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! In a tick, in this order: the newest usable measurements are taken; a request is answered; the rules' conditions are worked
-//! out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output is worked out.
+//! In a tick, in this order: the estimator takes what was measured; a jump of the estimate is followed; a request is answered; the
+//! rules' conditions are worked out and the table decides; a new mode is entered; a setpoint is taken; and the mode's output
+//! is worked out.
 
 use super::chain::{Chain, Flown, Memory};
-use super::measurement::{Newest, is_fresh};
+use super::estimate::{Estimate, Estimation};
+use super::measurement::is_fresh;
 use super::permission::{self, MotorTest};
-use super::propagation::PropagatedAttitude;
 use super::reason::{Grounded, Refusal, field};
-use super::rules::{
-    self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, IMU_AGE_MAX, LEVELLING_MAX, Mode, POSE_AGE_MAX, Transition,
-};
-use super::{ImuSample, Inputs, Outcome, Output, PERIOD, Pose, Request};
+use super::rules::{self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, Mode, Transition};
+use super::{Inputs, Outcome, Output, PERIOD, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
+use crate::estimator::Estimator;
 use crate::governor::{GovernorLimits, Setpoint};
-use crate::state::State;
 
-/// Everything that decides what the motors do. Size: about 2.5 KB, and its [`Memory`].
+/// Everything that decides what the motors do. Size: about 2.5 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m> {
     chain: Result<Chain<'m>, Grounded>,
     mode: Mode,
     /// When the mode was entered, us.
     since: u64,
-    imu: Newest<ImuSample>,
-    pose: Newest<Pose>,
-    /// None before the first pose.
-    attitude: Option<PropagatedAttitude>,
+    estimation: Estimation<'m>,
     test: MotorTest,
 }
 
 impl<'m> Pilot<'m> {
-    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. Its
-    /// governor and mixer lie in `memory`.
+    /// A disarmed pilot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. It flies
+    /// on what `estimator` makes of the measurements; its governor and mixer lie in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
     /// arms, and says why.
     #[must_use]
-    pub fn new(certification: Result<&Certified, &Refused>, limits: &GovernorLimits, memory: &'m mut Memory) -> Self {
+    pub fn new(
+        certification: Result<&Certified, &Refused>,
+        limits: &GovernorLimits,
+        estimator: &'m mut Estimator,
+        memory: &'m mut Memory,
+    ) -> Self {
         Self {
             chain: match certification {
                 Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
@@ -47,9 +48,7 @@ impl<'m> Pilot<'m> {
             },
             mode: Mode::Disarmed,
             since: 0,
-            imu: Newest::NONE,
-            pose: Newest::NONE,
-            attitude: None,
+            estimation: Estimation::new(estimator),
             test: MotorTest::NONE,
         }
     }
@@ -68,38 +67,44 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        self.measure(inputs);
+        let estimate = self.estimation.tick(inputs, self.mode);
+        self.decide(inputs, &estimate)
+    }
+
+    /// The tick on an estimate.
+    fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let silent = is_silent(inputs);
-        let answer = inputs.request.map(|request| self.answer(request, inputs, silent));
-        let transition = rules::transition(self.mode, self.conditions(inputs, answer, silent));
+        let followed = self.follow(estimate);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, silent));
+        let conditions = self.conditions(inputs, estimate, answer, silent);
+        let conditions = conditions.with(Condition::EstimateLost, estimate.is_lost() || !followed);
+        let transition = rules::transition(self.mode, conditions);
         if let Some(transition) = transition {
             self.enter(&transition, inputs);
         }
         let setpoint = inputs.setpoint.map(|setpoint| self.accept(&setpoint));
-        let (output, flown) = self.output(inputs.now);
-        Outcome { output, mode: self.mode, transition, answer, setpoint, flown }
+        let (output, flown) = self.output(estimate);
+        let Estimate { state: estimated, health, pose, .. } = *estimate;
+        Outcome { output, mode: self.mode, transition, answer, setpoint, flown, estimated, health, pose }
     }
 
-    /// Takes the newest measurements, and carries the attitude on.
-    fn measure(&mut self, inputs: &Inputs) {
-        let now = inputs.now;
-        self.imu.offer(&inputs.imu, now);
-        let rates = self.imu.within(u64::MAX, now).map_or_else(Default::default, |imu| imu.value.angular_velocity);
-        if let Some(pose) = self.pose.offer(&inputs.pose, now) {
-            self.attitude = Some(PropagatedAttitude::new(pose.value.attitude(), rates, pose.time));
-        }
-        if let Some(attitude) = &mut self.attitude {
-            attitude.advance(rates, now);
+    /// Goes along where the estimate has jumped in flight; whether that was possible.
+    fn follow(&mut self, estimate: &Estimate) -> bool {
+        match (&mut self.chain, &estimate.state) {
+            (Ok(chain), Some(estimated)) if estimate.jumped && self.mode.is_armed() => {
+                chain.jump(&estimated.state).is_ok()
+            }
+            _ => true,
         }
     }
 
     /// Whether a request is granted. Granting an arm request readies the chain for it.
-    fn answer(&mut self, request: Request, inputs: &Inputs, silent: bool) -> Result<(), Refusal> {
+    fn answer(&mut self, request: Request, inputs: &Inputs, estimate: &Estimate, silent: bool) -> Result<(), Refusal> {
         permission::to_leave(self.mode, inputs.disarm)?;
         match request {
             Request::Arm => {
                 let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
-                let start = permission::to_arm(&self.imu, &self.pose, silent, inputs.now)?;
+                let start = permission::to_arm(estimate, silent)?;
                 chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
             }
             Request::MotorTest(test) => {
@@ -111,13 +116,19 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the rules need to know in this tick.
-    fn conditions(&mut self, inputs: &Inputs, answer: Option<Result<(), Refusal>>, silent: bool) -> Conditions {
-        let now = inputs.now;
-        let elapsed = now.saturating_sub(self.since);
+    fn conditions(
+        &mut self,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        answer: Option<Result<(), Refusal>>,
+        silent: bool,
+    ) -> Conditions {
+        let elapsed = inputs.now.saturating_sub(self.since);
         let granted = answer == Some(Ok(()));
-        let pose = self.pose.within(POSE_AGE_MAX, now);
-        let regained = match (self.mode, &mut self.chain, pose) {
-            (Mode::Levelling, Ok(chain), Some(pose)) => chain.regain(&pose.value).is_ok(),
+        let regained = match (self.mode, &mut self.chain, &estimate.state) {
+            (Mode::Levelling, Ok(chain), Some(estimated)) if estimate.is_found() => {
+                chain.regain(&estimated.state).is_ok()
+            }
             _ => false,
         };
         Conditions::NONE
@@ -126,16 +137,15 @@ impl<'m> Pilot<'m> {
             .with(Condition::MotorTestPermitted, granted && matches!(inputs.request, Some(Request::MotorTest(_))))
             .with(Condition::Requested, inputs.request.is_some())
             .with(Condition::MotorTestOver, elapsed >= self.test.duration)
-            .with(Condition::ImuStale, self.imu.within(IMU_AGE_MAX, now).is_none())
+            .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
-            .with(Condition::PoseStale, pose.is_none())
             .with(Condition::PoseRegained, regained)
             .with(Condition::LevellingOver, elapsed >= LEVELLING_MAX)
             .with(Condition::GroundStationSilent, silent)
             .with(Condition::GroundStationHeard, !silent)
     }
 
-    /// Does what entering a mode takes. What arming and regaining the pose take is done where they are found possible.
+    /// Does what entering a mode takes. What arming and finding the pose again take is done where they are found possible.
     fn enter(&mut self, transition: &Transition, inputs: &Inputs) {
         self.mode = transition.to;
         self.since = inputs.now;
@@ -154,24 +164,19 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
+    fn output(&mut self, estimate: &Estimate) -> (Output, Option<Result<Flown, InputError>>) {
         if self.mode == Mode::MotorTest {
             return (Output::Test { rotor: self.test.rotor, level: self.test.level }, None);
         }
-        // Every armed mode has all of these, by the rules.
-        let (Ok(chain), Some(imu), Some(pose), Some(attitude)) =
-            (&mut self.chain, self.imu.within(IMU_AGE_MAX, now), self.pose.within(u64::MAX, now), &self.attitude)
-        else {
+        // Every armed mode has both, by the rules.
+        let (Ok(chain), Some(estimated)) = (&mut self.chain, &estimate.state) else {
             return (Output::Stop, None);
         };
-        let (attitude, angular_velocity) = (attitude.attitude(), imu.value.angular_velocity);
+        let state = &estimated.state;
         let flown = match self.mode {
             Mode::Disarmed | Mode::MotorTest => return (Output::Stop, None),
-            Mode::Levelling => chain.fly_level(attitude, angular_velocity),
-            Mode::Flying | Mode::Holding => {
-                let (position, velocity) = (pose.value.position(), pose.value.velocity());
-                chain.fly(&State { position, velocity, attitude, angular_velocity })
-            }
+            Mode::Levelling => chain.fly_level(state.attitude, state.angular_velocity),
+            Mode::Flying | Mode::Holding => chain.fly(state),
         };
         let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
         (output, Some(flown))

@@ -4,6 +4,7 @@
 
 use crate::certificate::certified::Refused;
 use crate::error::{InputError, ParameterError};
+use crate::estimator::Fault;
 use core::fmt;
 
 /// The length of a STATUSTEXT, characters.
@@ -23,15 +24,15 @@ pub enum Reason {
     MotorTestInterrupted,
     /// The motor test has had its time.
     MotorTestOver,
-    /// No usable IMU sample for [`super::rules::IMU_AGE_MAX`] in flight.
+    /// No IMU increment for [`super::rules::IMU_AGE_MAX`] in flight, or the estimator lost its state.
     ImuLost,
     /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
     ThrustsRefused,
-    /// No usable pose for [`super::rules::POSE_AGE_MAX`] in flight.
+    /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
     PoseLost,
-    /// A pose again while levelling.
+    /// Poses are believed again while levelling.
     PoseRegained,
-    /// No pose in [`super::rules::LEVELLING_MAX`] of levelling.
+    /// None was in [`super::rules::LEVELLING_MAX`] of levelling.
     PoseLostForLong,
     /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
     GroundStationLost,
@@ -65,11 +66,11 @@ impl Reason {
             Self::MotorTestRequested => "Motor test begins",
             Self::MotorTestInterrupted => "Motor test stopped by another request",
             Self::MotorTestOver => "Motor test over",
-            Self::ImuLost => "Stopped: no IMU sample for 20 ms",
+            Self::ImuLost => "Stopped: no IMU for 20 ms, or its data broke off",
             Self::ThrustsRefused => "Stopped: the law refused its input for 50 ms",
             Self::PoseLost => "Pose lost: levelling for at most 1 s",
             Self::PoseRegained => "Pose regained: braking to hold position",
-            Self::PoseLostForLong => "Stopped: no pose after 1 s of levelling",
+            Self::PoseLostForLong => "Stopped: no believable pose in 1 s of levelling",
             Self::GroundStationLost => "Ground station lost: holding position",
             Self::GroundStationRegained => "Ground station regained",
         }
@@ -144,12 +145,16 @@ pub enum Refusal {
     MotorTestRunning,
     /// A disarm command came in the same tick.
     DisarmCommanded,
-    /// No IMU sample under [`super::rules::IMU_AGE_MAX`] old.
+    /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
     ImuStale,
-    /// No pose under [`super::rules::POSE_AGE_MAX`] old.
-    PoseStale,
-    /// The newest IMU sample or pose cannot be used: this field is not finite, out of range, or of a time to come.
-    Unusable(&'static str),
+    /// The estimate is not healthy, for this before all.
+    Estimator(Fault),
+    /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
+    PosesUnsettled,
+    /// The vehicle moves, at 0.2 m/s or 0.2 rad/s or more.
+    Moving,
+    /// Gravity is 10 degrees or more elsewhere for the accelerometer, or not there at all.
+    Gravity,
     /// Body z is 30 degrees or more from up.
     Tilted,
     /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
@@ -162,7 +167,7 @@ pub enum Refusal {
     MotorTestLevel,
     /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
     MotorTestDuration,
-    /// Setpoints are accepted in flight with a ground station and a pose, and at no other time.
+    /// Setpoints are accepted in flight with a ground station and an estimate, and at no other time.
     NotFlying,
     /// A setpoint with a field that is not finite or out of range.
     Setpoint(&'static str),
@@ -172,14 +177,16 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Grounded(grounded) => return grounded.fmt(f),
-            Self::Unusable(field) => return write!(f, "Refused: {field:.32} unusable"),
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
             Self::ImuStale => "Refused: no IMU sample for 20 ms",
-            Self::PoseStale => "Refused: no pose for 100 ms",
+            Self::Estimator(fault) => fault.text(),
+            Self::PosesUnsettled => "Refused: poses not believed for a whole second",
+            Self::Moving => "Refused: the vehicle moves",
+            Self::Gravity => "Refused: gravity is not what accelerometer says",
             Self::Tilted => "Refused: tilted by 30 degrees or more",
             Self::GroundStationSilent => "Refused: no ground station for 2.5 s",
             Self::NoSuchRotor => "Motor test refused: no such rotor",

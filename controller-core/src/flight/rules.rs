@@ -8,15 +8,17 @@
 //! every check made anew.
 
 use super::reason::Reason;
+use crate::estimator::EXTRAPOLATION_MAX;
 
-/// The greatest age of a pose that is flown, us. At the greatest speed the governor plans by default, 5 m/s, that is 0.5 m.
-pub const POSE_AGE_MAX: u64 = 100_000;
+/// How long a flight goes on by IMU alone after the last pose that was believed, us. Drift grows with the square of the time: it must
+/// stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
+pub const COASTING_MAX: u64 = 1_000_000;
 
-/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks. The attitude loop
+/// The greatest age of what the IMU said that is flown, us: twenty samples missed, two control ticks. The attitude loop
 /// stands one or two ticks of delay, not more (docs/sampled-loop.md), and without rates nothing tells where up is.
-pub const IMU_AGE_MAX: u64 = 20_000;
+pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
 
-/// How long a flight may be levelled without a pose, us.
+/// How long a flight may be levelled without a pose that is believed, us.
 pub const LEVELLING_MAX: u64 = 1_000_000;
 
 /// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half a
@@ -53,9 +55,9 @@ pub const REFUSALS_MAX: u32 = 5;
 /// |          | <---------------------------------- |           |
 /// +----------+  ground station heard               +-----------+
 ///   |      ^                                              |
-///   | pose | pose                                         | pose stale
-///   | stale| regained                                     |
-///   v      |                                              |
+///   | esti-| pose                                         | estimate lost
+///   | mate | regained                                     |
+///   v lost |                                              |
 /// +-----------+                                           |
 /// | Levelling | <-----------------------------------------+
 /// +-----------+
@@ -71,7 +73,7 @@ pub enum Mode {
     Flying,
     /// The ground station is lost: the reference is brought to rest and held there; setpoints are refused.
     Holding,
-    /// The pose is lost: level at hover thrust, by gyro alone.
+    /// The estimate is lost: level at hover thrust, by the IMU's attitude alone.
     Levelling,
 }
 
@@ -99,13 +101,13 @@ pub enum Condition {
     Requested,
     /// The motor test has had its time.
     MotorTestOver,
-    /// The newest usable IMU sample is older than [`IMU_AGE_MAX`].
+    /// The IMU's last increment is older than [`IMU_AGE_MAX`], or the estimator has lost its state.
     ImuStale,
     /// [`REFUSALS_MAX`] ticks in a row brought no new thrusts.
     ThrustsRefused,
-    /// The newest usable pose is older than [`POSE_AGE_MAX`].
-    PoseStale,
-    /// It is not, and the governor has started from it.
+    /// No pose has been believed for [`COASTING_MAX`], or the estimate is too uncertain.
+    EstimateLost,
+    /// Poses are believed again, and the governor has started from the estimate.
     PoseRegained,
     /// Levelling has lasted [`LEVELLING_MAX`].
     LevellingOver,
@@ -125,7 +127,7 @@ impl Condition {
         Self::MotorTestOver,
         Self::ImuStale,
         Self::ThrustsRefused,
-        Self::PoseStale,
+        Self::EstimateLost,
         Self::PoseRegained,
         Self::LevellingOver,
         Self::GroundStationSilent,
@@ -189,13 +191,13 @@ pub const TABLE: [Row; 21] = {
         row(Flying,    DisarmCommanded,     Disarmed,  Reason::DisarmCommanded),
         row(Flying,    ImuStale,            Disarmed,  Reason::ImuLost),
         row(Flying,    ThrustsRefused,      Disarmed,  Reason::ThrustsRefused),
-        row(Flying,    PoseStale,           Levelling, Reason::PoseLost),
+        row(Flying,    EstimateLost,        Levelling, Reason::PoseLost),
         row(Flying,    GroundStationSilent, Holding,   Reason::GroundStationLost),
 
         row(Holding,   DisarmCommanded,     Disarmed,  Reason::DisarmCommanded),
         row(Holding,   ImuStale,            Disarmed,  Reason::ImuLost),
         row(Holding,   ThrustsRefused,      Disarmed,  Reason::ThrustsRefused),
-        row(Holding,   PoseStale,           Levelling, Reason::PoseLost),
+        row(Holding,   EstimateLost,        Levelling, Reason::PoseLost),
         row(Holding,   GroundStationHeard,  Flying,    Reason::GroundStationRegained),
 
         row(Levelling, DisarmCommanded,     Disarmed,  Reason::DisarmCommanded),

@@ -1,4 +1,6 @@
-//! A pilot with a Hummingbird around it: rigid body, sensors and ground station that can be taken away.
+//! A pilot with a Hummingbird around it: rigid body, sensors and ground station that can be taken away, or lie.
+//!
+//! The IMU's increments are exact: from attitude and velocity at both ends of each 5 ms. Poses come every tick, exact and on time.
 
 // Every test crate that includes this module uses a part of it.
 #![allow(dead_code)]
@@ -10,12 +12,14 @@ pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
+use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::flight::{
-    ImuSample, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
+    Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
+use nalgebra::UnitQuaternion;
 use std::sync::LazyLock;
 
 /// The vehicle, limits, gains and bounds of `vehicles/hummingbird.toml`, without rotors and without projection.
@@ -64,29 +68,84 @@ pub fn memory() -> &'static mut Memory {
     Box::leak(Box::new(Memory::EMPTY))
 }
 
+/// An estimator for one pilot.
+pub fn estimator() -> &'static mut Estimator {
+    Box::leak(Box::new(Estimator::new(&Settings::bmi088(configuration().vehicle()))))
+}
+
 /// A new pilot; certified once for all, since that takes longer than most flights here.
 pub fn pilot() -> Pilot<'static> {
     static CERTIFIED: LazyLock<Certified> = LazyLock::new(certified);
-    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), memory())
+    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), estimator(), memory())
 }
 
-/// A pose as sources give it, velocity in the world.
-pub fn pose(position: Vector3<f32>, velocity: Vector3<f32>, attitude: Quaternion<f32>) -> Pose {
-    Pose::new(position, Velocity::World(velocity), attitude).unwrap()
+/// A pose as sources give it, at rest.
+pub fn pose(position: Vector3<f32>, attitude: Quaternion<f32>) -> PoseMeasurement {
+    PoseMeasurement::new(&Pose::new(position, Velocity::World(Vector3::zeros()), attitude).unwrap())
 }
 
-/// Everything as it should be for a vehicle at rest and level at the origin.
-pub fn at_rest(now: u64) -> Inputs {
-    let imu = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::new(0.0, 0.0, 9.81) };
-    let pose = pose(Vector3::zeros(), Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
-    Inputs {
-        now,
-        imu: Some(Stamped { value: imu, time: now }),
-        pose: Some(Stamped { value: pose, time: now }),
-        ground_station: Some(now),
-        ..Inputs::default()
+/// What a tick is handed.
+#[derive(Debug, Clone, Default)]
+pub struct Handed {
+    pub now: u64,
+    pub increments: Vec<Increment>,
+    pub poses: Vec<Stamped<PoseMeasurement>>,
+    pub ground_station: Option<u64>,
+    pub request: Option<Request>,
+    pub disarm: bool,
+    pub setpoint: Option<Setpoint>,
+}
+
+impl Handed {
+    pub fn to(&self, pilot: &mut Pilot) -> Outcome {
+        let Self { now, increments, poses, ground_station, request, disarm, setpoint } = self;
+        pilot.tick(&Inputs {
+            now: *now,
+            increments,
+            poses,
+            ground_station: *ground_station,
+            request: *request,
+            disarm: *disarm,
+            setpoint: *setpoint,
+        })
     }
 }
+
+/// What an IMU does that rests with `attitude`.
+pub fn resting_imu(start: u64, end: u64, attitude: &Quaternion<f32>) -> Increment {
+    let up = UnitQuaternion::new_normalize(*attitude).inverse_transform_vector(&Vector3::z());
+    let delta_velocity = up * (9.81 * (end - start) as f32 * 1e-6);
+    Increment { start, end, delta_angle: Vector3::zeros(), delta_velocity, angular_velocity: Vector3::zeros() }
+}
+
+/// Everything as it should be for a vehicle at rest at the origin with `attitude`, after a period.
+pub fn at_rest_with(attitude: &Quaternion<f32>, now: u64) -> Handed {
+    let halves = [(now - PERIOD, now - PERIOD / 2), (now - PERIOD / 2, now)];
+    Handed {
+        now,
+        increments: halves.iter().map(|&(start, end)| resting_imu(start, end, attitude)).collect(),
+        poses: vec![Stamped { value: pose(Vector3::zeros(), *attitude), time: now }],
+        ground_station: Some(now),
+        ..Handed::default()
+    }
+}
+
+/// The same, level.
+pub fn at_rest(now: u64) -> Handed {
+    at_rest_with(&Quaternion::new(1.0, 0.0, 0.0, 0.0), now)
+}
+
+/// A pilot that has been at rest for as long as arming needs, up to `now`.
+pub fn settled(now: u64) -> Pilot<'static> {
+    let mut pilot = pilot();
+    for tick in (0..SETTLING).rev() {
+        at_rest(now - tick * PERIOD).to(&mut pilot);
+    }
+    pilot
+}
+
+/// Ticks after which a vehicle at rest may be armed: half a second for the estimate to begin, and a second.
+pub const SETTLING: u64 = 160;
 
 pub fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
     Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
@@ -100,36 +159,67 @@ pub struct Present {
     pub ground_station: bool,
 }
 
+/// What is told of the body at a time, us.
+pub type Told = Box<dyn FnMut(&Body, u64) -> Stamped<PoseMeasurement>>;
+
+/// The truth, displaced by `offset` (m, world) and turned by `turn` on the left.
+pub fn displaced(body: &Body, time: u64, offset: &Vector3<f64>, turn: &Vector3<f64>) -> Stamped<PoseMeasurement> {
+    let attitude = UnitQuaternion::from_scaled_axis(*turn).into_inner() * body.attitude;
+    Stamped { value: pose((body.position + offset).cast(), attitude.cast()), time }
+}
+
 /// A flight in the making.
 pub struct Flight {
     pub pilot: Pilot<'static>,
     pub body: Body,
     pub present: Present,
     /// The next tick's requests; handed over once.
-    pub inputs: Inputs,
+    pub inputs: Handed,
+    /// What poses say; the truth, at first.
+    pub told: Told,
+    /// What becomes of the IMU's increments.
+    pub imu: Box<dyn FnMut(&mut Increment)>,
+    /// Whether something holds the body where it is.
+    pub held: bool,
+    /// Whether something carries its weight.
+    pub weightless: bool,
     mixer: Mixer,
     certified: Certified,
-    newest: Inputs,
+    ground_station: Option<u64>,
+    increments: Vec<Increment>,
 }
 
 impl Flight {
     /// A disarmed vehicle held at rest, level, 1 m up, heading along x.
     pub fn new() -> Self {
         let body = Body::resting(Vector3::new(0.0, 0.0, 1.0), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+        let inputs = Handed { now: 1_000_000, ..Handed::default() };
         Self {
             pilot: pilot(),
             body,
             present: Present { imu: true, pose: true, ground_station: true },
-            inputs: Inputs { now: 1_000_000, ..Inputs::default() },
+            inputs,
+            told: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
+            imu: Box::new(|_| {}),
+            held: true,
+            weightless: false,
             mixer: Mixer::new(&rotors()),
             certified: certified(),
-            newest: Inputs::default(),
+            ground_station: None,
+            increments: Vec::new(),
         }
+    }
+
+    /// The same after two seconds: as long as the estimate takes to begin and to prove itself.
+    pub fn settled() -> Self {
+        let mut flight = Self::new();
+        flight.ticks(200);
+        flight
     }
 
     /// The same, armed and let go.
     pub fn armed() -> Self {
-        let mut flight = Self::new();
+        let mut flight = Self::settled();
         flight.inputs.request = Some(Request::Arm);
         assert_eq!(flight.tick().answer, Some(Ok(())));
         flight
@@ -137,21 +227,21 @@ impl Flight {
 
     /// One tick and the motion until the next. Whatever the mode, the wrench is within the certificate.
     pub fn tick(&mut self) -> Outcome {
-        let (state, now) = (self.body.state(), self.inputs.now);
-        let imu = ImuSample { angular_velocity: state.angular_velocity, specific_force: Vector3::zeros() };
-        let pose = pose(state.position, state.velocity, state.attitude);
+        let now = self.inputs.now;
+        let mut increments = std::mem::take(&mut self.increments);
+        increments.iter_mut().for_each(&mut self.imu);
         if self.present.imu {
-            self.newest.imu = Some(Stamped { value: imu, time: now });
+            self.inputs.increments = increments;
         }
         if self.present.pose {
-            self.newest.pose = Some(Stamped { value: pose, time: now });
+            self.inputs.poses = vec![(self.told)(&self.body, now)];
         }
         if self.present.ground_station {
-            self.newest.ground_station = Some(now);
+            self.ground_station = Some(now);
         }
-        let Inputs { imu, pose, ground_station, .. } = self.newest;
-        let outcome = self.pilot.tick(&Inputs { imu, pose, ground_station, ..self.inputs });
-        self.inputs = Inputs { now: now + PERIOD, ..Inputs::default() };
+        self.inputs.ground_station = self.ground_station;
+        let outcome = self.inputs.to(&mut self.pilot);
+        self.inputs = Handed { now: now + PERIOD, ..Handed::default() };
 
         let wrench = match &outcome.output {
             Output::Thrusts(thrusts) => self.mixer.wrench(thrusts),
@@ -164,13 +254,41 @@ impl Flight {
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
             assert!(torque.x <= proven.torque.x && torque.y <= proven.torque.y && torque.z <= proven.torque.z);
         }
-        self.body.advance(self.certified.configuration().vehicle(), &wrench, PERIOD as f64 * 1e-6, 10);
+        self.held &= !matches!(outcome.output, Output::Thrusts(_));
+        for start in [now, now + PERIOD / 2] {
+            let increment = self.move_on(&wrench, start, start + PERIOD / 2);
+            self.increments.push(increment);
+        }
         outcome
+    }
+
+    /// The motion between two times, us, and what the IMU says of it.
+    fn move_on(&mut self, wrench: &Wrench, start: u64, end: u64) -> Increment {
+        let vehicle = self.certified.configuration().vehicle();
+        let (before, seconds) = (self.body, (end - start) as f64 * 1e-6);
+        if self.weightless {
+            self.body.position += self.body.velocity * seconds;
+        } else if !self.held {
+            self.body.advance(vehicle, wrench, seconds, 5);
+        }
+        let attitude = UnitQuaternion::new_normalize(before.attitude);
+        let gravity = Vector3::new(0.0, 0.0, f64::from(vehicle.gravity));
+        let gained = self.body.velocity - before.velocity + gravity * seconds;
+        let turned = attitude.inverse() * UnitQuaternion::new_normalize(self.body.attitude);
+        Increment {
+            start,
+            end,
+            delta_angle: turned.scaled_axis().cast(),
+            delta_velocity: attitude.inverse_transform_vector(&gained).cast(),
+            angular_velocity: self.body.angular_velocity.cast(),
+        }
     }
 
     /// As many ticks; the last one's outcome.
     pub fn ticks(&mut self, count: u64) -> Outcome {
-        (1..count).for_each(|_| drop(self.tick()));
+        (1..count).for_each(|_| {
+            self.tick();
+        });
         self.tick()
     }
 

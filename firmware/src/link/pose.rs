@@ -1,37 +1,35 @@
 //! Poses: ODOMETRY and ATT_POS_MOCAP, checked and turned into the law's frames.
 //!
-//! | message | accepted | velocity |
+//! | message | accepted | besides |
 //! |---|---|---|
-//! | ODOMETRY | position in LOCAL_NED or LOCAL_FRD | given: in BODY_FRD, or in the frame of the position |
-//! | ATT_POS_MOCAP | FRD to NED | from differences of positions, see [`Differences`] |
+//! | ODOMETRY | position in LOCAL_NED or LOCAL_FRD, velocity in BODY_FRD or in the frame of the position | quality, reset counter, covariance |
+//! | ATT_POS_MOCAP | FRD to NED | nothing |
 //!
-//! The pose's time is its arrival on the vehicle's clock: the clocks of sender and vehicle are not compared, so what passed
-//! on the way there is not known, and not part of its age. The sender's own time serves two things: a message whose time
-//! is not after the last one's is a repetition (or was overtaken) and is dropped, and differences are taken over it.
+//! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are zero) has its
+//! poses stamped as they arrive. A message whose time does not advance is a repetition, or was overtaken, and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
-//! jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless. Body rates
-//! must be finite too, though the gyro's are flown; covariances are not looked at (NaN there means unknown).
+//! jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless. Velocities and body rates
+//! must be finite too, though the IMU's are flown. Of the covariance the greatest variances of position and of attitude count, where
+//! they are positive (NaN means unknown, and zero that nobody has filled it in).
 
 use super::frame::Frame;
+use super::sender_clock::SenderClock;
 use crate::frames;
-use controller_core::flight::{Pose, PoseError, Velocity};
+use controller_core::estimator::PoseMeasurement;
+use controller_core::flight::{Pose, PoseError, Stamped, Velocity};
+use controller_core::math;
 use core::fmt;
 use mavlink::MessageData;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
 use nalgebra::{Quaternion, Vector3};
 
-/// How long a source must have been silent before another is listened to, or its clock may start again, us.
+/// How long a source must have been silent before another is listened to, us.
 pub const SOURCE_SILENCE: u64 = 1_000_000;
 
-/// The longest gap that a difference is taken over, us of the sender's clock.
-pub const GAP_MAX: u64 = 100_000;
-
-/// The shortest, us: less would divide millimetres of noise by next to nothing.
-pub const GAP_MIN: u64 = 1_000;
-
-/// Time constant of the smoothing of differences, s.
-const SMOOTHING: f32 = 0.02;
+/// Where ODOMETRY's extension fields lie, which the message's type does not have.
+const RESET_COUNTER: usize = ODOMETRY_DATA::ENCODED_LEN;
+const QUALITY: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
 
 /// Why a pose was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,8 +42,6 @@ pub enum PoseRefusal {
     Repeated,
     /// Another source is being listened to.
     SecondSource,
-    /// ATT_POS_MOCAP without a time: no velocity can be found.
-    NoTime,
 }
 
 impl fmt::Display for PoseRefusal {
@@ -55,7 +51,6 @@ impl fmt::Display for PoseRefusal {
             Self::Frame => f.write_str("use LOCAL_NED and BODY_FRD"),
             Self::Repeated => f.write_str("its time does not advance"),
             Self::SecondSource => f.write_str("another source is in use"),
-            Self::NoTime => f.write_str("ATT_POS_MOCAP without a time"),
         }
     }
 }
@@ -66,9 +61,9 @@ struct Source {
     system: u8,
     component: u8,
     message: u32,
-    /// The sender's time of the last message, us; zero if it has none.
-    time: u64,
-    /// When that arrived, us.
+    /// None if it has none.
+    clock: Option<SenderClock>,
+    /// When its last message arrived, us.
     arrived: u64,
 }
 
@@ -76,107 +71,68 @@ struct Source {
 #[derive(Debug, Default)]
 pub struct Poses {
     source: Option<Source>,
-    differences: Differences,
 }
 
 impl Poses {
-    /// The pose in `frame`. None where there is none (yet): another message, or the first of those whose differences count.
+    /// The pose in `frame`; none in another message.
     ///
     /// # Errors
     /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
-    pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Pose>, PoseRefusal> {
-        match frame.message {
+    pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Stamped<PoseMeasurement>>, PoseRefusal> {
+        let (value, time) = match frame.message {
             ODOMETRY_DATA::ID => {
                 let message = frame.decode().ok_or(PoseRefusal::Frame)?;
-                let pose = odometry(&message)?;
-                self.listen(frame, message.time_usec)?;
-                Ok(Some(pose))
+                (odometry(frame, &message)?, message.time_usec)
             }
             ATT_POS_MOCAP_DATA::ID => {
                 let message: ATT_POS_MOCAP_DATA = frame.decode().ok_or(PoseRefusal::Frame)?;
-                let ATT_POS_MOCAP_DATA { time_usec: time, q, x, y, z } = message;
-                let pose = |velocity| pose([x, y, z], q, Velocity::World(velocity));
-                // Nothing else may become the last position.
-                let still = pose(Vector3::zeros())?;
-                if time == 0 {
-                    return Err(PoseRefusal::NoTime);
-                }
-                self.listen(frame, time)?;
-                self.differences.take(still.position(), time, pose)
+                let ATT_POS_MOCAP_DATA { time_usec, q, x, y, z } = message;
+                let still = Velocity::World(Vector3::zeros());
+                (PoseMeasurement::new(&pose([x, y, z], q, still)?), time_usec)
             }
-            _ => Ok(None),
-        }
+            _ => return Ok(None),
+        };
+        let time = self.listen(frame, time)?;
+        Ok(Some(Stamped { value, time }))
     }
 
-    /// Decides whether this sender is the one listened to and whether its message is a new one.
-    fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<(), PoseRefusal> {
+    /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us.
+    fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<u64, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
-        let new = Source { system, component, message: frame.message, time, arrived: frame.time };
-        if let Some(old) = self.source.filter(|old| frame.time.saturating_sub(old.arrived) <= SOURCE_SILENCE) {
-            if (old.system, old.component, old.message) != (system, component, frame.message) {
+        let sender = (system, component, frame.message);
+        let fresh = Source { system, component, message: frame.message, clock: None, arrived: frame.time };
+        let source = self.source.get_or_insert(fresh);
+        if (source.system, source.component, source.message) != sender {
+            if frame.time.saturating_sub(source.arrived) <= SOURCE_SILENCE {
                 return Err(PoseRefusal::SecondSource);
             }
-            if time <= old.time && time != 0 {
-                return Err(PoseRefusal::Repeated);
+            *source = fresh;
+        }
+        let stamp = match &mut source.clock {
+            _ if time == 0 => Some(frame.time),
+            Some(clock) => clock.stamp(time, frame.time),
+            none => {
+                *none = Some(SenderClock::new(time, frame.time));
+                Some(frame.time)
             }
-        }
-        self.source = Some(new);
-        Ok(())
+        };
+        let stamp = stamp.ok_or(PoseRefusal::Repeated)?;
+        source.arrived = frame.time;
+        Ok(stamp)
     }
 }
 
-/// The velocity of a sender that gives positions only.
-///
-/// Successive positions' difference over the sender's time between them, smoothed by a first-order filter with a time
-/// constant of 20 ms: at 100 Hz that leaves 0.26 of the noise and makes it 25 ms old, differencing included. After a gap of
-/// more than [`GAP_MAX`] it starts again, and there is no pose before the second position.
-#[derive(Debug, Default)]
-pub struct Differences {
-    last: Option<(Vector3<f32>, u64)>,
-    velocity: Option<Vector3<f32>>,
-}
-
-impl Differences {
-    /// The pose at this position (m) and sender's time (us), if a velocity is known; `pose` makes it of a velocity (m/s).
-    fn take(
-        &mut self,
-        position: Vector3<f32>,
-        time: u64,
-        pose: impl Fn(Vector3<f32>) -> Result<Pose, PoseRefusal>,
-    ) -> Result<Option<Pose>, PoseRefusal> {
-        let last = self.last.map(|(last, then)| (last, time.saturating_sub(then)));
-        if last.is_some_and(|(_, gap)| gap < GAP_MIN) {
-            return Err(PoseRefusal::Repeated);
-        }
-        self.last = Some((position, time));
-        let Some((last, gap)) = last.filter(|&(_, gap)| gap <= GAP_MAX) else {
-            self.velocity = None;
-            return Ok(None);
-        };
-        let gap = gap as f32 * 1e-6;
-        let difference = (position - last) / gap;
-        // What no pose can have is a jump, and must not be smoothed into the next ones.
-        pose(difference)?;
-        let velocity = match self.velocity {
-            Some(velocity) => velocity + (difference - velocity) * (gap / (SMOOTHING + gap)),
-            None => difference,
-        };
-        self.velocity = Some(velocity);
-        pose(velocity).map(Some)
-    }
-}
-
-/// The pose in an ODOMETRY message.
+/// The pose in an ODOMETRY message, which came in `frame`.
 ///
 /// # Errors
 /// [`PoseRefusal::Frame`] or [`PoseRefusal::Numbers`].
-pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
-    let &ODOMETRY_DATA { x, y, z, q, vx, vy, vz, frame_id: frame, child_frame_id: child, .. } = message;
+pub(crate) fn odometry(frame: &Frame<'_>, message: &ODOMETRY_DATA) -> Result<PoseMeasurement, PoseRefusal> {
+    let &ODOMETRY_DATA { x, y, z, q, vx, vy, vz, frame_id, child_frame_id, .. } = message;
     if ![message.rollspeed, message.pitchspeed, message.yawspeed].iter().all(|rate| rate.is_finite()) {
         return Err(PoseRefusal::Numbers(PoseError::NotFinite("body rate")));
     }
     let velocity = Vector3::new(vx, vy, vz);
-    let velocity = match (frame, child) {
+    let velocity = match (frame_id, child_frame_id) {
         (MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_FRD, MavFrame::MAV_FRAME_BODY_FRD) => {
             Velocity::Body(frames::body(&velocity))
         }
@@ -184,7 +140,21 @@ pub(crate) fn odometry(message: &ODOMETRY_DATA) -> Result<Pose, PoseRefusal> {
         | (MavFrame::MAV_FRAME_LOCAL_FRD, MavFrame::MAV_FRAME_LOCAL_FRD) => Velocity::World(frames::world(&velocity)),
         _ => return Err(PoseRefusal::Frame),
     };
-    pose([x, y, z], q, velocity)
+    let measured = PoseMeasurement::with_velocity(&pose([x, y, z], q, velocity)?);
+    // The diagonal of the upper triangle, row by row: x, y, z, roll, pitch, yaw.
+    let [xx, .., yy, _, _, _, _, zz, _, _, _, rr, _, _, pp, _, hh] = message.pose_covariance;
+    let measured = measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh]));
+    // Zeros at the end are cut off, and older senders do not know these fields.
+    let extension = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
+    Ok(measured.quality(extension(QUALITY).cast_signed()).reset_counter(extension(RESET_COUNTER)))
+}
+
+/// The root of the greatest of three variances; NaN if any of them says nothing.
+fn deviation(variances: [f32; 3]) -> f32 {
+    if !variances.iter().all(|&variance| variance > 0.0) {
+        return f32::NAN;
+    }
+    math::sqrt(variances.iter().fold(0.0, |greatest, &variance| math::greater(greatest, variance)))
 }
 
 /// The pose at a position of NED with an attitude FRD to NED, scalar first, and a velocity in the law's frames.

@@ -150,7 +150,10 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
 
     fn pose(&mut self, frame: &Frame<'_>) {
         match self.poses.take(frame) {
-            Ok(Some(pose)) => self.shared.pose.put(pose, frame.time),
+            Ok(Some(pose)) => {
+                // Where control does not take them, one more or less makes no difference.
+                let _ = self.shared.poses.put(pose);
+            }
             Ok(None) => {}
             Err(refusal) => {
                 self.refused();

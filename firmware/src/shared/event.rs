@@ -1,6 +1,7 @@
 //! What people are told. An event is put into words where it is sent or logged, not in the control task it may come from.
 
 use controller_core::error::InputError;
+use controller_core::estimator::{Fault, Rejected, Taken};
 use controller_core::flight::{Reason, Refusal};
 use core::fmt::{self, Write};
 
@@ -54,6 +55,10 @@ pub enum Event {
     Mode(Reason),
     /// A request or a setpoint was refused.
     Refused(Refusal),
+    /// What became of a pose.
+    Pose(Result<Taken, Rejected>),
+    /// The estimate is not what it should be.
+    Estimator(Fault),
     /// The law cannot use its input.
     Input(InputError),
     /// The motors' frames do not go out.
@@ -79,8 +84,8 @@ impl Event {
             Self::Mode(ImuLost | ThrustsRefused | PoseLost | PoseLostForLong | GroundStationLost)
             | Self::Input(_)
             | Self::MotorsLost => Severity::Critical,
-            Self::Mode(_) | Self::MotorsRegained => Severity::Information,
-            Self::Refused(_) => Severity::Warning,
+            Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
+            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) => Severity::Warning,
             Self::Words(severity, _) => *severity,
         }
     }
@@ -91,6 +96,9 @@ impl fmt::Display for Event {
         match self {
             Self::Mode(reason) => reason.fmt(f),
             Self::Refused(refusal) => refusal.fmt(f),
+            Self::Pose(Ok(taken)) => taken.fmt(f),
+            Self::Pose(Err(rejected)) => rejected.fmt(f),
+            Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),

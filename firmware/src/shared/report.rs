@@ -8,8 +8,7 @@ use controller_core::state::{State, Wrench};
 pub struct Report {
     /// Which state of the flight rules the tick left the vehicle in.
     pub mode: Mode,
-    /// Where the vehicle is and how it moves, as control took it; none before the first pose and IMU sample, or without
-    /// fresh ones.
+    /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
     /// What the law asked for; none while it does not fly.
     pub wrench: Option<Wrench>,

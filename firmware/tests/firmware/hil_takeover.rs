@@ -1,6 +1,6 @@
 //! When a simulator takes over from sensors and motors, and what becomes of those.
 
-use crate::support::receiver::{Fed, Local, texts};
+use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
 use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
@@ -19,8 +19,9 @@ struct Steady<'a>(&'a Simulated);
 
 impl Imu for Steady<'_> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
-        self.0.until(self.0.now() + 1_000).await;
-        Ok(RawImu { time: self.0.now(), angular_velocity: Vector3::zeros(), specific_force: Some(Vector3::z()) })
+        let time = self.0.now() + 1_000;
+        self.0.until(time).await;
+        Ok(RawImu { time, angular_velocity: Vector3::zeros(), specific_force: Some(Vector3::z()) })
     }
 
     fn parameters(&self) -> ImuParameters {
@@ -43,13 +44,13 @@ fn the_vehicles_own_sensors_count_for_nothing_while_a_simulator_is_wanted() {
         assert_eq!(shared.imu.get().is_none(), wanted);
         let mut fed = Fed::new(&shared);
         fed.message(&odometry(1_000), 10_000);
-        assert_eq!(shared.pose.take().is_none(), wanted);
+        assert_eq!(newest(&shared).is_none(), wanted);
         let mut fed = Fed::new(&shared);
         for (sequence, time_usec) in [(1, 1_000), (2, 11_000)] {
             let mocap = ATT_POS_MOCAP_DATA { time_usec, q: [1.0, 0.0, 0.0, 0.0], ..Default::default() };
             fed.bytes(&v2(sequence, &mocap), 10_000 + time_usec);
         }
-        assert_eq!(shared.pose.get().is_none(), wanted);
+        assert_eq!(newest(&shared).is_none(), wanted);
     }
 }
 

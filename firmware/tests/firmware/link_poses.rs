@@ -1,9 +1,12 @@
 //! Poses in: frames, checks, velocities, repetitions.
 
-use crate::support::receiver::{Fed, Local, texts};
-use crate::support::{patched, v1, v2};
+use crate::support::receiver::{Fed, Local, newest, texts};
+use crate::support::{extended, patched, v1, v2};
+use controller_core::estimator::PoseMeasurement;
+use controller_core::flight::Stamped;
 use core::f32::consts::FRAC_1_SQRT_2;
-use firmware::link::pose::{GAP_MAX, SOURCE_SILENCE};
+use firmware::link::pose::SOURCE_SILENCE;
+use firmware::link::sender_clock::STEADY;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
 use nalgebra::{Quaternion, Vector3};
 
@@ -37,13 +40,13 @@ fn close(a: Vector3<f32>, b: Vector3<f32>) -> bool {
 }
 
 #[test]
-fn odometry_comes_out_in_the_laws_frames_with_its_time_of_arrival() {
+fn odometry_comes_out_in_the_laws_frames_with_the_first_ones_time_of_arrival() {
     let shared = Local::new();
     Fed::new(&shared).message(&odometry(1), 77);
-    let pose = shared.pose.get().unwrap();
+    let pose = newest(&shared).unwrap();
     assert_eq!(pose.time, 77);
     assert_eq!(pose.value.position(), Vector3::new(2.0, 1.0, 3.0));
-    assert!(close(pose.value.velocity(), Vector3::new(0.5, -0.25, -0.125)), "{:?}", pose.value);
+    assert!(close(pose.value.velocity().unwrap(), Vector3::new(0.5, -0.25, -0.125)), "{:?}", pose.value);
     assert!((pose.value.attitude().coords - Quaternion::identity().coords).norm() < 1e-6);
 }
 
@@ -52,7 +55,7 @@ fn odometrys_velocity_may_also_be_in_the_world() {
     let shared = Local::new();
     let child_frame_id = MavFrame::MAV_FRAME_LOCAL_NED;
     Fed::new(&shared).message(&ODOMETRY_DATA { child_frame_id, ..odometry(1) }, 0);
-    assert_eq!(shared.pose.get().unwrap().value.velocity(), Vector3::new(0.25, 0.5, -0.125));
+    assert_eq!(newest(&shared).unwrap().value.velocity(), Some(Vector3::new(0.25, 0.5, -0.125)));
 }
 
 #[test]
@@ -65,7 +68,7 @@ fn frames_that_are_not_converted_are_refused_in_words() {
     ] {
         let shared = Local::new();
         Fed::new(&shared).message(&ODOMETRY_DATA { frame_id, child_frame_id, ..odometry(1) }, 0);
-        assert!(shared.pose.get().is_none(), "{frame_id:?} {child_frame_id:?}");
+        assert!(newest(&shared).is_none(), "{frame_id:?} {child_frame_id:?}");
         assert_eq!(texts(&shared), ["Pose refused: use LOCAL_NED and BODY_FRD"]);
     }
 }
@@ -77,10 +80,10 @@ fn no_field_that_is_used_may_be_nan_or_infinite() {
         for field in 0..13 {
             let shared = Local::new();
             Fed::new(&shared).bytes(&patched(&odometry(1), 8 + 4 * field, value), 0);
-            let rate = field >= 10;
-            assert!(shared.pose.get().is_none() || (rate && value == f32::MAX), "ODOMETRY field {field}: {value}");
+            let (rate, taken) = (field >= 10, newest(&shared).is_some());
+            assert!(!taken || (rate && value == f32::MAX), "ODOMETRY field {field}: {value}");
             let texts = texts(&shared);
-            assert!(shared.pose.get().is_some() || texts.len() == 1);
+            assert!(taken || texts.len() == 1);
             let words = format!(
                 "Pose refused: {} is not finite",
                 ["position", "attitude", "velocity", "body rate"][[0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 3, 3, 3][field]]
@@ -90,14 +93,15 @@ fn no_field_that_is_used_may_be_nan_or_infinite() {
         for field in 13..55 {
             let shared = Local::new();
             Fed::new(&shared).bytes(&patched(&odometry(1), 8 + 4 * field, value), 0);
-            assert!(shared.pose.get().is_some(), "ODOMETRY field {field}: {value}");
+            assert!(newest(&shared).is_some(), "ODOMETRY field {field}: {value}");
         }
         for field in 0..7 {
             let shared = Local::new();
             let mut fed = Fed::new(&shared);
             fed.message(&mocap(1_000, 0.0), 0);
+            assert!(newest(&shared).is_some());
             fed.bytes(&patched(&mocap(11_000, 0.0), 8 + 4 * field, value), 10_000);
-            assert!(shared.pose.get().is_none(), "ATT_POS_MOCAP field {field}: {value}");
+            assert!(newest(&shared).is_none(), "ATT_POS_MOCAP field {field}: {value}");
             assert_eq!(texts(&shared).len(), 1);
         }
     }
@@ -108,8 +112,9 @@ fn only_rotations_are_attitudes() {
     for (scale, taken) in [(0.96, true), (1.04, true), (0.94, false), (1.06, false), (0.0, false)] {
         let shared = Local::new();
         Fed::new(&shared).message(&ODOMETRY_DATA { q: EAST.map(|part| part * scale), ..odometry(1) }, 0);
-        assert_eq!(shared.pose.get().is_some(), taken, "{scale}");
-        assert!(shared.pose.get().is_none_or(|pose| (pose.value.attitude().norm() - 1.0).abs() < 1e-6));
+        let pose = newest(&shared);
+        assert_eq!(pose.is_some(), taken, "{scale}");
+        assert!(pose.is_none_or(|pose| (pose.value.attitude().norm() - 1.0).abs() < 1e-6));
     }
 }
 
@@ -120,39 +125,64 @@ fn a_pose_from_the_moon_is_refused() {
     for (message, field) in [(far, "position"), (fast, "velocity")] {
         let shared = Local::new();
         Fed::new(&shared).message(&message, 0);
-        assert!(shared.pose.get().is_none());
+        assert!(newest(&shared).is_none());
         assert_eq!(texts(&shared), [format!("Pose refused: {field} is out of range")]);
     }
 }
 
 #[test]
-fn a_jump_of_a_position_becomes_no_velocity_now_or_later() {
+fn a_repeated_or_overtaken_pose_is_none_however_long() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
-    // Ten metres away for one message: a thousand metres a second, there and back.
-    for (count, x) in [(1, 0.0), (2, 0.0), (3, 10.0), (4, 0.0), (5, 0.0)] {
-        fed.message(&mocap(10_000 * count, x), 10_000 * count);
-        let pose = shared.pose.take();
-        assert_eq!(pose.is_some(), [2, 5].contains(&count), "message {count}");
-        assert!(pose.is_none_or(|pose| pose.value.velocity().norm() < 1e-6), "message {count}: {pose:?}");
+    let (first, second) = (v2(1, &odometry(1_000)), v2(2, &odometry(2_000)));
+    fed.bytes(&first, 1_000);
+    fed.bytes(&second, 2_000);
+    assert_eq!(newest(&shared).unwrap().time, 2_000);
+    for count in 0..1_000 {
+        fed.bytes(&second, 3_000 + 10_000 * count);
+        fed.bytes(&first, 4_000 + 10_000 * count);
+        assert!(newest(&shared).is_none());
+    }
+}
+
+/// What becomes of ten messages, 10 ms apart, of a sender whose clock has been set to `start`, us, before the first.
+fn set_back(message: impl Fn(u64) -> Vec<u8>, start: u64) -> Vec<Option<u64>> {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    for count in 0..100 {
+        fed.bytes(&message(5_000_000 + 10_000 * count), 10_000 * count);
+        assert_eq!(newest(&shared).map(|pose| pose.time), Some(10_000 * count));
+    }
+    let taken = (0..10).map(|count| {
+        fed.bytes(&message(start + 10_000 * count), 1_000_000 + 10_000 * count);
+        newest(&shared).map(|pose| pose.time)
+    });
+    taken.collect()
+}
+
+#[test]
+fn a_clock_set_back_costs_no_more_than_40_ms_of_poses() {
+    for start in [1, 1_000_000, 5_900_000] {
+        for stamps in [set_back(|time| v2(1, &odometry(time)), start), set_back(|time| v2(1, &mocap(time, 0.0)), start)]
+        {
+            let lost = usize::from(STEADY) - 1;
+            assert!(stamps[..lost].iter().all(Option::is_none), "{stamps:?}");
+            let back: Vec<_> = (lost as u64..10).map(|count| Some(1_000_000 + 10_000 * count)).collect();
+            assert_eq!(stamps[lost..], back, "from {start}");
+        }
     }
 }
 
 #[test]
-fn a_repeated_or_overtaken_pose_does_not_become_a_fresh_one() {
+fn what_a_line_takes_longer_than_usual_is_told_by_the_senders_clock() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
-    let (first, second) = (v2(1, &odometry(100)), v2(2, &odometry(200)));
-    fed.bytes(&first, 1_000);
-    fed.bytes(&second, 2_000);
-    fed.bytes(&second, 3_000);
-    fed.bytes(&first, 4_000);
-    assert_eq!(shared.pose.get().unwrap().time, 2_000);
-    // A sender that starts again is believed once it has been silent.
-    fed.message(&odometry(5), 2_000 + SOURCE_SILENCE);
-    assert_eq!(shared.pose.get().unwrap().time, 2_000);
-    fed.message(&odometry(5), 2_001 + SOURCE_SILENCE);
-    assert_eq!(shared.pose.get().unwrap().time, 2_001 + SOURCE_SILENCE);
+    for count in 0..50 {
+        let late = if count % 2 == 1 { 30_000 } else { 0 };
+        fed.message(&odometry(7_000_000 + 20_000 * count), 20_000 * count + late);
+        let error = newest(&shared).unwrap().time.abs_diff(20_000 * count);
+        assert!(error <= 20, "{error} us");
+    }
 }
 
 #[test]
@@ -161,7 +191,7 @@ fn a_sender_without_a_clock_is_believed() {
     let mut fed = Fed::new(&shared);
     for now in [0, 10_000, 20_000] {
         fed.message(&odometry(0), now);
-        assert_eq!(shared.pose.get().unwrap().time, now);
+        assert_eq!(newest(&shared).unwrap().time, now);
     }
 }
 
@@ -172,62 +202,43 @@ fn one_source_is_listened_to_at_a_time() {
     fed.message(&odometry(1_000), 0);
     fed.message(&mocap(20_000, 0.0), 10_000);
     fed.message(&mocap(30_000, 0.0), 20_000);
-    assert_eq!(shared.pose.get().unwrap().time, 0);
+    assert_eq!(newest(&shared).unwrap().time, 0);
+    fed.message(&mocap(2_000_000, 0.0), SOURCE_SILENCE);
+    assert!(newest(&shared).is_none());
+    fed.message(&mocap(2_010_000, 0.0), SOURCE_SILENCE + 1);
+    assert_eq!(newest(&shared).unwrap().time, SOURCE_SILENCE + 1);
     assert_eq!(texts(&shared), ["Pose refused: another source is in use"]);
 }
 
-#[test]
-fn positions_alone_become_velocities_by_their_differences() {
+/// What the sender says of an ODOMETRY message besides the pose.
+fn sent(message: ODOMETRY_DATA, extensions: [u8; 3]) -> PoseMeasurement {
     let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&mocap(1_000, 0.0), 0);
-    assert!(shared.pose.get().is_none(), "one position has no velocity");
-    // 2 m/s north; the line delivers unevenly, the sender's clock counts.
-    for k in 1..=40_u64 {
-        fed.message(&mocap(1_000 + 10_000 * k, 0.02 * k as f32), 10_000 * k + 3_000 * (k % 3));
-    }
-    let pose = shared.pose.get().unwrap();
-    assert!((pose.value.velocity() - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-3, "{:?}", pose.value);
-    assert_eq!(pose.time, 10_000 * 40 + 3_000);
+    Fed::new(&shared).bytes(&extended(&message, &extensions), 0);
+    let Stamped { value, .. } = newest(&shared).unwrap();
+    value
 }
 
 #[test]
-fn noise_of_positions_is_smoothed_to_a_quarter_and_a_ramp_lags_25_ms() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    let (mut sum, count) = (0.0, 4000);
-    for k in 1..=count {
-        // A millimetre up and down at random (a linear congruence's high bits).
-        let noise = if (k * 1_103_515_245 + 12_345) >> 16 & 1 == 0 { 1e-3 } else { -1e-3 };
-        fed.message(&mocap(10_000 * k, noise), 10_000 * k);
-        sum += shared.pose.get().map_or(0.0, |pose| pose.value.velocity().y.powi(2));
+fn odometrys_quality_reset_counter_and_covariance_go_along() {
+    let plain = sent(odometry(1), [0, 0, 0]);
+    // Reset counter, kind of estimator, quality.
+    assert_eq!(sent(odometry(1), [7, 0, 0]), plain.reset_counter(7));
+    assert_eq!(sent(odometry(1), [7, 0, 100]), plain.reset_counter(7).quality(100));
+    assert_eq!(sent(odometry(1), [0, 3, 255]), plain.quality(-1));
+    assert_ne!(plain.quality(-1), plain);
+    let mut covariance = [0.0; 21];
+    for (place, variance) in [(0, 1e-4), (6, 4e-4), (11, 1e-6), (15, 1e-6), (18, 1e-6), (20, 9e-6)] {
+        covariance[place] = variance;
     }
-    let unsmoothed = 2.0_f32.sqrt() * 1e-3 / 0.01;
-    let ratio = (sum / count as f32).sqrt() / unsmoothed;
-    assert!((0.2..0.32).contains(&ratio), "{ratio}");
-
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    for k in 1..=100 {
-        let t = 0.01 * k as f32;
-        fed.message(&mocap(10_000 * k, t * t / 2.0), 10_000 * k);
+    let known = sent(ODOMETRY_DATA { pose_covariance: covariance, ..odometry(1) }, [0, 0, 0]);
+    assert_eq!(known, plain.deviations(4e-4_f32.sqrt(), 9e-6_f32.sqrt()));
+    for place in [0, 6, 11, 15, 18, 20] {
+        for unknown in [f32::NAN, 0.0, -1.0] {
+            let mut covariance = covariance;
+            covariance[place] = unknown;
+            assert_eq!(sent(ODOMETRY_DATA { pose_covariance: covariance, ..odometry(1) }, [0, 0, 0]), plain);
+        }
     }
-    let lag = 1.0 - shared.pose.get().unwrap().value.velocity().y;
-    assert!((lag - 0.025).abs() < 2e-3, "{lag}");
-}
-
-#[test]
-fn no_difference_is_taken_over_a_gap() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&mocap(1_000, 0.0), 0);
-    fed.message(&mocap(11_000, 0.0), 10_000);
-    assert_eq!(shared.pose.get().unwrap().time, 10_000);
-    fed.message(&mocap(11_001 + GAP_MAX, 5.0), 10_001 + GAP_MAX);
-    assert_eq!(shared.pose.get().unwrap().time, 10_000);
-    fed.message(&mocap(21_001 + GAP_MAX, 5.0), 20_001 + GAP_MAX);
-    let pose = shared.pose.get().unwrap();
-    assert_eq!((pose.time, pose.value.velocity()), (20_001 + GAP_MAX, Vector3::zeros()));
 }
 
 #[test]
@@ -246,5 +257,5 @@ fn version_1_poses_are_as_good() {
     let mut fed = Fed::new(&shared);
     fed.bytes(&v1(2, &mocap(1_000, 0.0)), 0);
     fed.bytes(&v1(3, &mocap(11_000, 0.0)), 10_000);
-    assert!(shared.pose.get().is_some());
+    assert!(newest(&shared).is_some());
 }

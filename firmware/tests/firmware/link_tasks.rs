@@ -179,7 +179,7 @@ fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
     shared.answer(command, Ok(()));
-    shared.answer(command, Err(Refusal::PoseStale));
+    shared.answer(command, Err(Refusal::PosesUnsettled));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
     shared.replies.put(Reply::Command { command: other, result }).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
@@ -192,7 +192,7 @@ fn commands_are_answered_with_number_and_result() {
     assert_eq!(answers, expected);
     // The refusal also goes out in words.
     let texts: Vec<STATUSTEXT_DATA> = sent(&written);
-    assert_eq!(texts[0].text.to_str().unwrap(), "Refused: no pose for 100 ms");
+    assert_eq!(texts[0].text.to_str().unwrap(), "Refused: poses not believed for a whole second");
     assert_eq!(texts[0].severity, MavSeverity::MAV_SEVERITY_WARNING);
 }
 

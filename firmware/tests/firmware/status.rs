@@ -98,8 +98,8 @@ fn every_event_fits_its_text_and_matters_as_it_should() {
         let on_its_own = reason.text().contains("lost") || reason.text().starts_with("Stopped");
         assert_eq!(event.severity() == Severity::Critical, on_its_own, "{reason}");
     }
-    let refused = Event::Refused(Refusal::Unusable("imu.angular_velocity"));
-    assert_eq!(words(&refused), "Refused: imu.angular_velocity unusable");
+    let refused = Event::Refused(Refusal::Setpoint("setpoint.position"));
+    assert_eq!(words(&refused), "Setpoint refused: setpoint.position");
     assert_eq!(refused.severity(), Severity::Warning);
     let input = Event::Input(InputError::NotFinite { field: "state.position" });
     assert_eq!((words(&input).as_str(), input.severity()), ("state.position: must be finite", Severity::Critical));

@@ -60,12 +60,7 @@ fn a_velocity_of_the_body_is_turned_into_the_world() {
 }
 
 #[test]
-fn what_is_stamped_with_a_time_to_come_is_not_flown() {
-    let mut newest = Newest::NONE;
-    let value = Pose::new(Vector3::zeros(), STILL, LEVEL).unwrap();
-    let stamped = |time| Some(Stamped { value, time });
-    assert_eq!(newest.offer(&stamped(STAMP_LEAD_MAX + 1), 0), None);
-    assert_eq!(newest.unusable(), Some("pose.time"));
-    assert!(newest.offer(&stamped(STAMP_LEAD_MAX), 0).is_some());
-    assert_eq!(newest.unusable(), None);
+fn what_is_stamped_with_a_time_to_come_is_not_fresh() {
+    assert!(is_fresh(STAMP_LEAD_MAX, 0, 0) && !is_fresh(STAMP_LEAD_MAX + 1, u64::MAX, 0));
+    assert!(is_fresh(u64::MAX, 0, u64::MAX) && is_fresh(5, 10, 15) && !is_fresh(5, 10, 16));
 }

@@ -3,64 +3,96 @@
 extern crate std;
 use super::super::example;
 use super::super::rules::REFUSALS_MAX;
-use super::super::{Reason, Stamped, Velocity};
+use super::super::{Pose, Reason, Stamped, Velocity};
 use super::*;
+use crate::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use nalgebra::{Quaternion, Vector3};
 use std::boxed::Box;
 
-const NAN: Quaternion<f32> = Quaternion::new(f32::NAN, 0.0, 0.0, 0.0);
+/// Ticks of rest before arming.
+const SETTLING: u64 = 160;
 
-fn inputs(now: u64) -> Inputs {
-    let imu = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::new(0.0, 0.0, 9.81) };
-    Inputs { now, imu: Some(Stamped { value: imu, time: now }), ground_station: Some(now), ..Inputs::default() }
+/// A tick at rest at the origin.
+fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, Outcome) {
+    let (now, zero) = (number * PERIOD, Vector3::zeros());
+    let delta_velocity = Vector3::new(0.0, 0.0, 9.81 * PERIOD as f32 * 1e-6);
+    let increment =
+        Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, angular_velocity: zero };
+    let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
+    let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
+    let inputs = Inputs { increments: &[increment], poses: &[pose], request, ..quiet(now) };
+    let estimate = pilot.estimation.tick(&inputs, pilot.mode);
+    let outcome = pilot.decide(&inputs, &estimate);
+    (estimate, outcome)
 }
 
-fn pose(time: u64) -> Option<Stamped<Pose>> {
-    let still = Velocity::World(Vector3::zeros());
-    let value = Pose::new(Vector3::zeros(), still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
-    Some(Stamped { value, time })
+/// A tick in which nothing comes but the ground station's word.
+fn quiet(now: u64) -> Inputs<'static> {
+    Inputs { now, ground_station: Some(now), ..Inputs::default() }
 }
 
 fn pilot() -> Pilot<'static> {
+    let certified = example::certified();
+    let settings = Settings::bmi088(certified.configuration().vehicle());
+    let estimator = Box::leak(Box::new(Estimator::new(&settings)));
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    Pilot::new(Ok(&example::certified()), &GovernorLimits::default(), memory)
+    Pilot::new(Ok(&certified), &GovernorLimits::default(), estimator, memory)
 }
 
-/// Armed at time zero and flown for a second tick.
-fn armed() -> Pilot<'static> {
+/// Armed, with the number of the last tick, and its estimate with an attitude that is none.
+fn armed() -> (Pilot<'static>, u64, Estimate) {
     let mut pilot = pilot();
-    let arming = pilot.tick(&Inputs { request: Some(Request::Arm), pose: pose(0), ..inputs(0) });
+    for tick in 1..SETTLING {
+        rest(&mut pilot, tick, None);
+    }
+    let (mut estimate, arming) = rest(&mut pilot, SETTLING, Some(Request::Arm));
     assert_eq!(arming.answer, Some(Ok(())));
-    pilot.tick(&Inputs { pose: pose(PERIOD), ..inputs(PERIOD) });
-    pilot
+    estimate.state.as_mut().unwrap().state.attitude = Quaternion::new(f32::NAN, 0.0, 0.0, 0.0);
+    (pilot, SETTLING, estimate)
 }
 
 #[test]
 fn thrusts_that_the_law_refuses_to_renew_are_held_for_five_ticks_and_then_stop() {
-    let mut pilot = armed();
-    let last = pilot.chain.as_ref().unwrap().thrusts().cloned().unwrap();
+    let (mut pilot, last, broken) = armed();
+    let thrusts = pilot.chain.as_ref().unwrap().thrusts().cloned().unwrap();
     for tick in 1..=u64::from(REFUSALS_MAX) {
-        pilot.attitude = Some(PropagatedAttitude::new(NAN, Vector3::zeros(), 0));
-        let outcome = pilot.tick(&inputs((1 + tick) * PERIOD));
+        let outcome = pilot.decide(&quiet((last + tick) * PERIOD), &broken);
         assert!(matches!(outcome.flown, Some(Err(InputError::NotFinite { .. }))), "{outcome:?}");
-        assert_eq!(outcome.output, Output::Thrusts(last.clone()));
+        assert_eq!(outcome.output, Output::Thrusts(thrusts.clone()));
     }
-    let outcome = pilot.tick(&inputs(7 * PERIOD));
+    let outcome = pilot.decide(&quiet((last + 6) * PERIOD), &broken);
     assert_eq!(outcome.transition.map(|transition| transition.reason), Some(Reason::ThrustsRefused));
     assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Disarmed));
 }
 
 #[test]
 fn a_refusal_that_passes_is_flown_through() {
-    let mut pilot = armed();
-    pilot.attitude = Some(PropagatedAttitude::new(NAN, Vector3::zeros(), 0));
-    for tick in 2..6 {
-        pilot.tick(&inputs(tick * PERIOD));
+    let (mut pilot, last, broken) = armed();
+    for tick in 1..5 {
+        pilot.decide(&quiet((last + tick) * PERIOD), &broken);
     }
-    for tick in 6..20 {
-        let outcome = pilot.tick(&Inputs { pose: pose(tick * PERIOD), ..inputs(tick * PERIOD) });
+    let sound = Estimate { state: sound(&broken), ..broken };
+    for tick in 5..20 {
+        let outcome = pilot.decide(&quiet((last + tick) * PERIOD), &sound);
         assert!(matches!((outcome.mode, outcome.flown), (Mode::Flying, Some(Ok(_)))));
     }
+}
+
+/// The estimated state of a vehicle that is level.
+fn sound(broken: &Estimate) -> Option<crate::estimator::EstimatedState> {
+    broken.state.map(|mut estimated| {
+        estimated.state.attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
+        estimated
+    })
+}
+
+#[test]
+fn a_jump_to_where_the_governor_cannot_start_is_levelled() {
+    let (mut pilot, last, broken) = armed();
+    let mut state = sound(&broken);
+    state.as_mut().unwrap().state.position = Vector3::repeat(1e8);
+    let outcome = pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state, jumped: true, ..broken });
+    assert_eq!((outcome.mode, outcome.transition.map(|t| t.reason)), (Mode::Levelling, Some(Reason::PoseLost)));
 }
 
 #[test]
@@ -72,6 +104,7 @@ fn a_place_where_the_governor_cannot_start_is_blamed_by_name() {
 }
 
 #[test]
-fn a_pilot_takes_the_memory_its_documentation_says() {
+fn a_pilot_and_its_estimator_take_the_memory_their_documentation_says() {
     assert!(size_of::<Pilot>() < 2_600, "{} bytes", size_of::<Pilot>());
+    assert!(size_of::<Estimator>() < 12_000, "{} bytes", size_of::<Estimator>());
 }

@@ -34,20 +34,20 @@ MotorTest --DisarmCommanded--> Disarmed: Disarmed by command
 MotorTest --Requested--> Disarmed: Motor test stopped by another request
 MotorTest --MotorTestOver--> Disarmed: Motor test over
 Flying --DisarmCommanded--> Disarmed: Disarmed by command
-Flying --ImuStale--> Disarmed: Stopped: no IMU sample for 20 ms
+Flying --ImuStale--> Disarmed: Stopped: no IMU for 20 ms, or its data broke off
 Flying --ThrustsRefused--> Disarmed: Stopped: the law refused its input for 50 ms
-Flying --PoseStale--> Levelling: Pose lost: levelling for at most 1 s
+Flying --EstimateLost--> Levelling: Pose lost: levelling for at most 1 s
 Flying --GroundStationSilent--> Holding: Ground station lost: holding position
 Holding --DisarmCommanded--> Disarmed: Disarmed by command
-Holding --ImuStale--> Disarmed: Stopped: no IMU sample for 20 ms
+Holding --ImuStale--> Disarmed: Stopped: no IMU for 20 ms, or its data broke off
 Holding --ThrustsRefused--> Disarmed: Stopped: the law refused its input for 50 ms
-Holding --PoseStale--> Levelling: Pose lost: levelling for at most 1 s
+Holding --EstimateLost--> Levelling: Pose lost: levelling for at most 1 s
 Holding --GroundStationHeard--> Flying: Ground station regained
 Levelling --DisarmCommanded--> Disarmed: Disarmed by command
-Levelling --ImuStale--> Disarmed: Stopped: no IMU sample for 20 ms
+Levelling --ImuStale--> Disarmed: Stopped: no IMU for 20 ms, or its data broke off
 Levelling --ThrustsRefused--> Disarmed: Stopped: the law refused its input for 50 ms
 Levelling --PoseRegained--> Flying: Pose regained: braking to hold position
-Levelling --LevellingOver--> Disarmed: Stopped: no pose after 1 s of levelling
+Levelling --LevellingOver--> Disarmed: Stopped: no believable pose in 1 s of levelling
 "
     );
 }
@@ -104,14 +104,14 @@ fn every_mode_is_reached_from_disarmed_and_the_only_ways_out_of_disarmed_are_per
 }
 
 #[test]
-fn no_armed_mode_outlives_its_gyro_its_thrusts_or_but_for_levelling_its_pose() {
+fn no_armed_mode_outlives_its_gyro_its_thrusts_or_but_for_levelling_its_estimate() {
     for mode in Mode::ALL.into_iter().filter(|mode| mode.is_armed()) {
         for conditions in every_set() {
             for lost in [Condition::ImuStale, Condition::ThrustsRefused] {
                 assert_eq!(next(mode, conditions.with(lost, true)), Mode::Disarmed);
             }
-            let after = next(mode, conditions.with(Condition::PoseStale, true));
-            // A pose cannot be stale and regained; the pilot never says so.
+            let after = next(mode, conditions.with(Condition::EstimateLost, true));
+            // Nothing is lost and regained at once; the pilot never says so.
             if mode != Mode::Levelling {
                 assert!(matches!(after, Mode::Levelling | Mode::Disarmed));
             } else if conditions.contain(Condition::LevellingOver) && !conditions.contain(Condition::PoseRegained) {

@@ -49,6 +49,15 @@ pub fn patched<D: MessageData>(message: &D, offset: usize, value: f32) -> Vec<u8
     v2_of_payload(9, D::ID, D::EXTRA_CRC, &payload[..D::ENCODED_LEN])
 }
 
+/// A frame with extension fields behind those that the message's type has.
+pub fn extended<D: MessageData>(message: &D, extensions: &[u8]) -> Vec<u8> {
+    let mut payload = [0; 255];
+    let _ = message.ser(MavlinkVersion::V1, &mut payload);
+    let end = D::ENCODED_LEN + extensions.len();
+    payload[D::ENCODED_LEN..end].copy_from_slice(extensions);
+    v2_of_payload(9, D::ID, D::EXTRA_CRC, &payload[..end])
+}
+
 /// Time that passes when the test says so, us.
 #[derive(Default)]
 pub struct Simulated(pub Cell<u64>);

@@ -1,6 +1,8 @@
 //! A receiver fed with frames, and everything it may change.
 
 use super::v2;
+use controller_core::estimator::PoseMeasurement;
+use controller_core::flight::Stamped;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
@@ -44,6 +46,11 @@ impl<'a> Fed<'a> {
 /// Events announced so far, taken away.
 pub fn texts(shared: &Local) -> Vec<String> {
     std::iter::from_fn(|| shared.events.take()).map(|event| Text::new(event).as_str().to_owned()).collect()
+}
+
+/// The last of the poses that wait for control, taken away with the others.
+pub fn newest(shared: &Local) -> Option<Stamped<PoseMeasurement>> {
+    std::iter::from_fn(|| shared.poses.take()).last()
 }
 
 /// Control's report, in this mode.

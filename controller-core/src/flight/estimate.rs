@@ -1,0 +1,92 @@
+//! What is flown: the estimator's state, what it is worth, and since when.
+//!
+//! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that have jumped and
+//! agree among themselves; in flight it does not: such poses are refused as long as they lie.
+
+use super::measurement::is_fresh;
+use super::rules::COASTING_MAX;
+use super::{Inputs, Mode};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Rejected, Taken};
+
+/// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
+pub const SETTLED_AFTER: u64 = 1_000_000;
+
+/// What a tick flies on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Estimate {
+    /// The state at the tick's instant; none without an IMU, or where the estimator has lost it.
+    pub state: Option<EstimatedState>,
+    pub health: Health,
+    /// What became of this tick's poses: the last refusal, or else what the last was taken for.
+    pub pose: Option<Result<Taken, Rejected>>,
+    /// Whether the state has jumped since the last tick.
+    pub jumped: bool,
+    /// Whether all has been well for [`SETTLED_AFTER`].
+    pub settled: bool,
+}
+
+impl Estimate {
+    /// Whether poses are no longer believed, or the estimate has become too uncertain to be flown.
+    pub fn is_lost(&self) -> bool {
+        !self.is_certain_within(COASTING_MAX)
+    }
+
+    /// Whether poses are believed, and the estimate may be flown again.
+    pub fn is_found(&self) -> bool {
+        self.is_certain_within(COASTING_AFTER)
+    }
+
+    fn is_certain_within(&self, age_max: u64) -> bool {
+        let Health { faults, pose_age, .. } = self.health;
+        !faults.contain(Fault::Uncertain) && pose_age.is_some_and(|age| age <= age_max)
+    }
+}
+
+/// The estimator, and what the last tick left of it.
+#[derive(Debug, PartialEq)]
+pub(super) struct Estimation<'m> {
+    estimator: &'m mut Estimator,
+    /// Poses that were believed, and not.
+    counts: (u32, u32),
+    jumps: u32,
+    /// Since when all has been well, us.
+    since: Option<u64>,
+}
+
+impl<'m> Estimation<'m> {
+    pub fn new(estimator: &'m mut Estimator) -> Self {
+        Self { estimator, counts: (0, 0), jumps: 0, since: None }
+    }
+
+    /// Takes what has arrived since the last tick, in `mode`.
+    pub fn tick(&mut self, inputs: &Inputs, mode: Mode) -> Estimate {
+        let now = inputs.now;
+        // What ends in a time to come did not happen.
+        for increment in inputs.increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
+            self.estimator.imu(increment);
+        }
+        let mut refused = None;
+        for pose in inputs.poses {
+            if let Err(rejected) = self.estimator.pose(pose, now) {
+                refused = Some(Err(rejected));
+            }
+        }
+        if !mode.is_armed() {
+            // That it has is counted with the other jumps.
+            let _ = self.estimator.adopt();
+        }
+        let (health, state) = (self.estimator.health(now), self.estimator.state(now));
+        let jumped = health.jumps != self.jumps;
+        let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
+        self.since = if steady { self.since.or(Some(now)) } else { None };
+        let pose = refused.or(health.last.filter(|_| health.counts != self.counts));
+        (self.jumps, self.counts) = (health.jumps, health.counts);
+        Estimate {
+            state,
+            health,
+            pose,
+            jumped,
+            settled: self.since.is_some_and(|since| now.saturating_sub(since) >= SETTLED_AFTER),
+        }
+    }
+}
