@@ -53,7 +53,7 @@ fn a_pose_lost_at_speed_is_levelled_and_then_stopped() {
     assert!(stopped.abs_diff(COASTING_MAX + LEVELLING_MAX) <= 2 * TICK, "{stopped} us");
     // Hover thrust has kept its height, and nothing has braked it.
     let pose = flight.world.pose();
-    assert!((2.0..3.5).contains(&pose.velocity.x), "{}", pose.velocity);
+    assert!((2.0..5.5).contains(&pose.velocity.x), "{}", pose.velocity);
     assert!((pose.position.z - 1.0).abs() < 0.2, "{}", pose.position);
     flight.pass(0.5);
     assert!(flight.station.heard("Stopped: no believable pose").is_some());
@@ -75,30 +75,32 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         // The old way is forgotten: it stands where braking took it.
         let pose = flight.world.pose();
         assert!(pose.velocity.norm() < 0.05, "{}", pose.velocity);
-        assert!((0.0..8.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
+        assert!((0.0..16.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
         assert!((pose.position.z - 1.0).abs() < 0.5, "{}", pose.position);
     }
 }
 
 #[test]
 fn what_the_law_was_correcting_when_the_pose_was_lost_is_forgotten() {
-    // A source that jumps to five metres below, then falls silent when the law is busy correcting that.
+    // It climbs faster and faster when its poses are lost.
     let mut flight = Flight::in_the_air();
-    flight.poses(false);
+    flight.station.go_to([0.0, 0.0, 40.0]);
     let (begin, weight) = (flight.now(), hover_thrust());
-    while flight.report().wrench.unwrap().thrust < 1.03 * weight {
-        assert!(flight.now() - begin < 3_000_000, "nothing to forget");
-        let mut pose = flight.world.pose();
-        pose.position.z -= 5.0;
-        flight.station.send(&Station::odometry(&pose));
+    let thrust = |flight: &Flight| flight.report().wrench.unwrap().thrust;
+    while thrust(&flight) < 1.012 * weight {
+        assert!(flight.now() - begin < 5_000_000, "nothing to forget");
         flight.pass(0.01);
     }
+    flight.poses(false);
+    let mut last = 0.0;
     while flight.report().mode == Mode::Flying {
+        last = thrust(&flight);
         flight.pass(0.01);
     }
+    assert!(last > 1.01 * weight, "{last} N: nothing left to forget");
     // Levelling sets in at hover thrust, lessened by no more than the lean.
     while flight.report().mode == Mode::Levelling {
-        let thrust = flight.report().wrench.unwrap().thrust;
+        let thrust = thrust(&flight);
         let level = weight * flight.world.tilt().cos();
         assert!((thrust - level).abs() < 0.003 * weight, "{thrust} N, hover is {level} N");
         flight.pass(0.01);

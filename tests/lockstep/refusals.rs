@@ -91,9 +91,7 @@ fn by_a_station_that_sends_no_heartbeats() {
 fn by_a_station_whose_heartbeats_have_ceased() {
     let mut flight = ready();
     flight.station.beat(false);
-    flight.pass(0.8);
-    // The last one came 1.8 s ago, then 2.8 s.
-    flight.pass(1.0);
+    flight.pass(2.6);
     is_refused(&mut flight, "Refused: no ground station for 2.5 s");
 }
 
