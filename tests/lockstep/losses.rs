@@ -1,7 +1,6 @@
 //! The pose is lost in the middle of a fast way, not at a hover.
 
 use super::flight::Flight;
-use super::station::Station;
 use controller_core::flight::Mode;
 use firmware::hardware::MotorCommand;
 
