@@ -54,14 +54,14 @@ mod nominal;
 mod stream;
 mod taking;
 
-pub use health::{Faults, Health};
-pub use history::Increment;
+pub use health::{COASTING_AFTER, Faults, Health};
+pub use history::{EXTRAPOLATION_MAX, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
 pub use verdict::{Fault, Rejected, Taken};
 
-use crate::flight::{STAMP_LEAD_MAX, Stamped};
+use crate::measurement::{STAMP_LEAD_MAX, Stamped};
 use crate::state::State;
 use candidate::Candidate;
 use checkpoints::Checkpoints;
@@ -72,13 +72,6 @@ use history::History;
 use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
 use stream::Stream;
-
-/// How far beyond the last increment a state is extrapolated, and the longest increment, us.
-pub const EXTRAPOLATION_MAX: u64 = 20_000;
-
-/// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150 ms late,
-/// and their jitter.
-pub const COASTING_AFTER: u64 = 300_000;
 
 /// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves.
 pub const REBASE_EVERY: u64 = 1_000_000;

@@ -4,7 +4,7 @@
 //! - [`reason`]: reasons in words, for every transition and every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
 //! - `permission`: what arming and a motor test need;
-//! - `measurement`: IMU samples, poses and time stamps; [`Pose::new`] checks a pose;
+//! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - [`propagation`]: the attitude between poses, by gyro, for simulators;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
@@ -24,16 +24,17 @@ mod estimate;
 #[cfg(test)]
 mod example;
 mod lift_off;
-mod measurement;
 mod permission;
 pub mod pilot;
 pub mod propagation;
 pub mod reason;
 pub mod rules;
 
+pub use crate::measurement::{
+    DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
+};
 pub use chain::{Flown, Memory};
 pub use estimate::SETTLED_AFTER;
-pub use measurement::{DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity};
 pub use permission::MotorTest;
 pub use pilot::Pilot;
 pub use reason::{Grounded, Reason, Refusal};

@@ -34,7 +34,7 @@ pub use watch::ImuFault;
 
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::estimator::Increment;
-use crate::flight::{ImuSample, Stamped};
+use crate::measurement::{ImuSample, Stamped};
 use integrator::Integrator;
 use low_pass::LowPass;
 use nalgebra::Vector3;

@@ -72,6 +72,7 @@ pub mod heading;
 pub mod imu;
 pub mod law;
 pub mod math;
+pub mod measurement;
 pub mod mrp;
 pub mod path_lifting;
 pub mod position;

@@ -3,7 +3,7 @@
 
 use super::filter::Filter;
 use super::measurement::PoseMeasurement;
-use crate::flight::Stamped;
+use crate::measurement::Stamped;
 use heapless::{Deque, Vec};
 
 /// Poses that can be taken back: 40 ms of them at 200 Hz, and the jitter of a network at 100 Hz.

@@ -5,11 +5,15 @@
 //! sensors are what its settings say has 3.
 
 use super::filter::Filter;
+use super::history::EXTRAPOLATION_MAX;
 use super::settings::Settings;
 use super::verdict::{Fault, Rejected, Taken};
-use super::{COASTING_AFTER, EXTRAPOLATION_MAX};
 use crate::math;
 use nalgebra::Matrix3;
+
+/// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150 ms late,
+/// and their jitter.
+pub const COASTING_AFTER: u64 = 300_000;
 
 /// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace).
 const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);

@@ -13,6 +13,9 @@
 use heapless::Deque;
 use nalgebra::Vector3;
 
+/// How far beyond the last increment a state is extrapolated, and the longest increment, us.
+pub const EXTRAPOLATION_MAX: u64 = 20_000;
+
 /// Increments that are kept: 320 ms of them at 5 ms.
 pub const CAPACITY: usize = 64;
 

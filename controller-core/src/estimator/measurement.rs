@@ -1,6 +1,6 @@
 //! A pose as the estimator takes it: where the vehicle was, how sure the sender is, and what it says about its own stream.
 
-use crate::flight::Pose;
+use crate::measurement::Pose;
 use nalgebra::{Quaternion, Vector3};
 
 /// A checked pose with what its sender says about it.

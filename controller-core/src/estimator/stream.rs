@@ -7,7 +7,7 @@
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;
-use crate::flight::{STAMP_LEAD_MAX, Stamped};
+use crate::measurement::{STAMP_LEAD_MAX, Stamped};
 use heapless::Deque;
 
 /// Time stamps that are remembered: 160 ms of them at 100 Hz.

@@ -13,7 +13,7 @@ use super::filter::Filter;
 use super::measurement::PoseMeasurement as Pose;
 use super::verdict::{Rejected, Taken};
 use super::{EXTRAPOLATION_MAX, Estimator, Increment, REBASE_EVERY, TILT_COSINE, rotated};
-use crate::flight::Stamped;
+use crate::measurement::Stamped;
 
 impl Estimator {
     /// Takes a pose if the IMU has got that far, or keeps it.

@@ -3,10 +3,11 @@
 //! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that have jumped and
 //! agree among themselves; in flight it does not: such poses are refused as long as they lie.
 
-use super::measurement::is_fresh;
 use super::rules::COASTING_MAX;
-use super::{Inputs, Mode};
-use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Rejected, Taken};
+use crate::estimator::{
+    COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Increment, PoseMeasurement, Rejected, Taken,
+};
+use crate::measurement::{Stamped, is_fresh};
 
 /// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
 pub const SETTLED_AFTER: u64 = 1_000_000;
@@ -58,20 +59,25 @@ impl<'m> Estimation<'m> {
         Self { estimator, counts: (0, 0), jumps: 0, since: None }
     }
 
-    /// Takes what has arrived since the last tick, in `mode`.
-    pub fn tick(&mut self, inputs: &Inputs, mode: Mode) -> Estimate {
-        let now = inputs.now;
+    /// Takes what the IMU did and the poses that came since the last tick, at `now`, us, `armed` or not.
+    pub fn tick(
+        &mut self,
+        increments: &[Increment],
+        poses: &[Stamped<PoseMeasurement>],
+        armed: bool,
+        now: u64,
+    ) -> Estimate {
         // What ends in a time to come did not happen.
-        for increment in inputs.increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
+        for increment in increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
             self.estimator.imu(increment);
         }
         let mut refused = None;
-        for pose in inputs.poses {
+        for pose in poses {
             if let Err(rejected) = self.estimator.pose(pose, now) {
                 refused = Some(Err(rejected));
             }
         }
-        if !mode.is_armed() {
+        if !armed {
             // That it has is counted with the other jumps.
             let _ = self.estimator.adopt();
         }

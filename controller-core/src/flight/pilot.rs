@@ -6,7 +6,6 @@
 
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
-use super::measurement::is_fresh;
 use super::permission::{self, MotorTest};
 use super::reason::{Grounded, Refusal, field};
 use super::rules::{self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, Mode, Transition};
@@ -16,6 +15,7 @@ use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
 use crate::estimator::Estimator;
 use crate::governor::{GovernorLimits, Setpoint};
+use crate::measurement::is_fresh;
 
 /// Everything that decides what the motors do. Size: about 2.5 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let estimate = self.estimation.tick(inputs, self.mode);
+        let estimate = self.estimation.tick(inputs.increments, inputs.poses, self.mode.is_armed(), inputs.now);
         self.decide(inputs, &estimate)
     }
 

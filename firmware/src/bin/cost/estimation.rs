@@ -1,7 +1,7 @@
 //! What the estimator costs: each sample of the IMU, each increment, and poses that come soon, late and seldom.
 
+use crate::count::Cost;
 use crate::counter::Counter;
-use crate::target::Cost;
 use controller_core::estimator::{
     EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
 };

@@ -12,6 +12,8 @@
 #[cfg(target_os = "none")]
 mod body;
 #[cfg(target_os = "none")]
+mod count;
+#[cfg(target_os = "none")]
 mod counter;
 #[cfg(target_os = "none")]
 mod estimation;

@@ -1,6 +1,7 @@
 //! The flights that are measured, and the table.
 
 use crate::body;
+use crate::count::Cost;
 use crate::counter::Counter;
 use crate::estimation;
 use crate::stack;
@@ -27,33 +28,6 @@ use static_cell::ConstStaticCell;
 const STEPS: u64 = 1000;
 const PERIOD_US: u64 = 10_000;
 const PERIOD: f32 = 0.01;
-/// Clocks of the boards, MHz.
-const CLOCKS: [f64; 2] = [168.0, 400.0];
-
-/// Mean and worst of one kind of call.
-#[derive(Default)]
-pub struct Cost {
-    sum: f64,
-    count: u32,
-    worst: f64,
-}
-
-impl Cost {
-    /// Counts one more.
-    pub fn add(&mut self, instructions: f64) {
-        self.sum += instructions;
-        self.count += 1;
-        self.worst = self.worst.max(instructions);
-    }
-
-    /// As a line of the table.
-    pub fn print(&self, what: &str) {
-        let mean = self.sum / f64::from(self.count);
-        let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
-        hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
-    }
-}
-
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
 

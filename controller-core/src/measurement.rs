@@ -135,7 +135,7 @@ fn within(vector: &Vector3<f32>, most: f32, field: &'static str) -> Result<(), P
 }
 
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
-pub(super) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
+pub(crate) fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
     now.saturating_sub(time) <= age_max && time <= now.saturating_add(STAMP_LEAD_MAX)
 }
 

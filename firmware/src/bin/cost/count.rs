@@ -1,0 +1,30 @@
+//! What a kind of call costs: instructions, counted.
+
+use cortex_m_semihosting::hprintln;
+
+/// Clocks of the boards, MHz.
+const CLOCKS: [f64; 2] = [168.0, 400.0];
+
+/// Mean and worst of one kind of call.
+#[derive(Default)]
+pub struct Cost {
+    sum: f64,
+    count: u32,
+    worst: f64,
+}
+
+impl Cost {
+    /// Counts one more.
+    pub fn add(&mut self, instructions: f64) {
+        self.sum += instructions;
+        self.count += 1;
+        self.worst = self.worst.max(instructions);
+    }
+
+    /// As a line of the table.
+    pub fn print(&self, what: &str) {
+        let mean = self.sum / f64::from(self.count);
+        let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
+        hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
+    }
+}
