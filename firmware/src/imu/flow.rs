@@ -72,6 +72,10 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         if let Some(fault) = fault {
             self.tell(fault, raw.time);
         }
+        // A gyro that is stuck is none: without increments nothing arms, and what flies stops as without an IMU.
+        if fault == Some(ImuFault::GyroStuck) && !self.is_simulated {
+            return;
+        }
         let Some(newest) = self.conditioner.newest().filter(|newest| Some(newest.time) != before) else { return };
         let mut sample = newest.value;
         let is_slow = before.is_some_and(|before| raw.time - before >= INCREMENT);
