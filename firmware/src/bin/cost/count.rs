@@ -3,7 +3,7 @@
 use cortex_m_semihosting::hprintln;
 
 /// Clocks of the boards, MHz.
-const CLOCKS: [f64; 2] = [168.0, 400.0];
+pub const CLOCKS: [f64; 2] = [168.0, 400.0];
 
 /// Mean and worst of one kind of call.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! The flights that are measured, and the table.
 
 use crate::body;
-use crate::count::Cost;
+use crate::count::{CLOCKS, Cost};
 use crate::counter::Counter;
 use crate::estimation;
 use crate::stack;
