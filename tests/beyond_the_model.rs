@@ -1,6 +1,7 @@
 //! The extended law where its vehicle is not what was certified: on the ground, with an emptying battery, with a rotor that
 //! fails in part. `cargo test -p host-sim beyond_the_model -- --nocapture` prints the table that stands in `docs/measured.md`.
 
+use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::controller::Estimates;
@@ -14,17 +15,11 @@ use scenario::Scenario;
 use scenario::reality::battery::Battery;
 use scenario::reality::failure::Failure;
 use scenario::reality::ground::Ground;
-use std::path::Path;
 
 /// How near is there, m.
 const NEAR: f64 = 0.1;
 /// When a rotor fails, s.
 const FAILS_AT: f64 = 5.0;
-
-fn vehicle(name: &str) -> Scenario {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
-    Scenario::load(&folder.join(format!("{name}.toml"))).unwrap()
-}
 
 fn hovering(name: &str, seconds: f64, change: impl FnOnce(&mut Scenario)) -> Course {
     let mut scenario = hover(&vehicle(name), Vector3::zeros(), seconds).unwrap();

@@ -2,13 +2,13 @@
 //! 100 a second, late. `cargo test -p host-sim estimated_flights -- --nocapture` prints the table that stands in
 //! `docs/measured.md`.
 
+use crate::support::extended::vehicle;
 use host_sim::flight::{Cause, Flight};
 use host_sim::tune::trials::{hover, recovery};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::reality::estimator::{Estimator, Outage};
 use scenario::timing::Timing;
-use std::path::Path;
 
 const SENSORS: Estimator = Estimator {
     imu_noise: 1.0,
@@ -21,9 +21,8 @@ const SENSORS: Estimator = Estimator {
     seed: 1,
 };
 
-fn vehicle() -> Scenario {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
-    Scenario::load(&folder.join("hummingbird.toml")).unwrap()
+fn hummingbird() -> Scenario {
+    vehicle("hummingbird")
 }
 
 /// What a flight showed, m.
@@ -61,14 +60,14 @@ fn fly(mut scenario: Scenario, estimator: Option<Estimator>) -> Shown {
 }
 
 fn circle() -> Scenario {
-    let circle = vehicle();
+    let circle = hummingbird();
     Scenario { timing: Timing { ticks: 2_000, ..circle.timing }, ..circle }
 }
 
 #[test]
 fn late_poses_cost_millimetres_and_make_nothing_oscillate() {
-    let hovering = || hover(&vehicle(), Vector3::zeros(), 20.0).unwrap();
-    let turned = || recovery(&vehicle(), 15.0).unwrap();
+    let hovering = || hover(&hummingbird(), Vector3::zeros(), 20.0).unwrap();
+    let turned = || recovery(&hummingbird(), 15.0).unwrap();
     let known = fly(turned(), None).height_lost;
     println!(
         "poses late by: hover RMS, greatest; circle RMS; estimate RMS, mm; height lost in recovery, m ({known:.2} on the truth)"
@@ -94,7 +93,7 @@ fn late_poses_cost_millimetres_and_make_nothing_oscillate() {
 #[test]
 fn half_a_second_without_poses_is_flown_through() {
     let outage = Some(Outage { start: 8.0, duration: 0.5 });
-    for (name, scenario) in [("hover", hover(&vehicle(), Vector3::zeros(), 12.0).unwrap()), ("circle", circle())] {
+    for (name, scenario) in [("hover", hover(&hummingbird(), Vector3::zeros(), 12.0).unwrap()), ("circle", circle())] {
         let shown = fly(scenario, Some(Estimator { outage, ..SENSORS }));
         println!("{name}: greatest error {:.1} mm", 1e3 * shown.greatest);
         assert!(shown.greatest < 0.1, "{name}: {}", shown.greatest);
@@ -104,7 +103,7 @@ fn half_a_second_without_poses_is_flown_through() {
 #[test]
 fn poses_that_come_seldom_or_not_always_are_enough() {
     for (pose_every, dropout) in [(5, 0.0), (100, 0.0), (10, 0.5)] {
-        let scenario = hover(&vehicle(), Vector3::zeros(), 12.0).unwrap();
+        let scenario = hover(&hummingbird(), Vector3::zeros(), 12.0).unwrap();
         let shown = fly(scenario, Some(Estimator { pose_every, dropout, ..SENSORS }));
         println!("{} Hz, {dropout} lost: hover RMS {:.1} mm", 1000 / pose_every, 1e3 * shown.rms);
         assert!(shown.rms < 10e-3, "{pose_every} ms, {dropout}: {}", shown.rms);
@@ -113,7 +112,7 @@ fn poses_that_come_seldom_or_not_always_are_enough() {
 
 #[test]
 fn a_flight_begins_on_a_proven_estimate_or_not_at_all() {
-    let mut scenario = hover(&vehicle(), Vector3::zeros(), 1.0).unwrap();
+    let mut scenario = hover(&hummingbird(), Vector3::zeros(), 1.0).unwrap();
     scenario.reality.estimator = Some(Estimator { dropout: 0.99, ..SENSORS });
     let error = Flight::new(&scenario).unwrap().tick().unwrap_err();
     assert!(matches!(error.cause, Cause::Estimate(_)), "{error}");

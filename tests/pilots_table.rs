@@ -1,6 +1,7 @@
 //! What a pilot feels of the extended law on the vehicles of `vehicles/`, figure by figure, each with what is required of it.
 //! `cargo test -p host-sim pilots_table -- --nocapture` prints the table that stands in `docs/measured.md`.
 
+use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use host_sim::course::Course;
 use host_sim::flight::Flight;
@@ -15,11 +16,6 @@ use std::path::Path;
 
 /// How near is there, m.
 const NEAR: f64 = 0.1;
-
-fn vehicle(name: &str) -> Scenario {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
-    Scenario::load(&folder.join(format!("{name}.toml"))).unwrap()
-}
 
 /// A vehicle in all the circumstances of the table.
 struct Subject {

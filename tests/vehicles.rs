@@ -2,6 +2,7 @@
 //! What the boards allocate with clips nothing of what their certificates allow.
 //! `cargo test -p host-sim vehicles -- --nocapture` prints what each flight showed.
 
+use crate::support::extended::vehicle;
 use crate::support::random;
 use crate::support::random::ChaCha8Rng;
 use controller_core::allocation::support::ROUNDING;
@@ -16,7 +17,6 @@ use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;
-use std::path::Path;
 
 const VEHICLES: [&str; 2] = ["hummingbird-paper-law", "study-paper-law"];
 
@@ -32,11 +32,6 @@ const ROUNDED_ACCELERATION: f64 = 16.0 * 0.5 * f32::EPSILON as f64 * 9.81;
 
 /// How long a recovery from upside down is watched, s: the slowest is back after a minute.
 const RECOVERY: f64 = 120.0;
-
-fn vehicle(name: &str) -> Scenario {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
-    Scenario::load(&folder.join(format!("{name}.toml"))).unwrap()
-}
 
 /// The greatest errors in one stretch of five seconds.
 #[derive(Debug, Clone, Copy, Default)]

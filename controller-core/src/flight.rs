@@ -6,7 +6,6 @@
 //! - `permission`: what arming and a motor test need;
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
-//! - [`propagation`]: the attitude between poses, by gyro, for simulators;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
@@ -26,7 +25,6 @@ mod example;
 mod lift_off;
 mod permission;
 pub mod pilot;
-pub mod propagation;
 pub mod reason;
 pub mod rules;
 

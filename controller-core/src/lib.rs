@@ -10,7 +10,8 @@
 //! Once per control tick, from left to right:
 //!
 //! ```text
-//!                                   State ─┐
+//! IMU ─> imu ─┐
+//! poses ──────┴─> estimator ─────── State ─┐
 //! setpoints ─> governor ─┐                 ├─> position ─> attitude_reference ─> path_lifting ─> attitude ─> Wrench
 //! hover, harmonic, … ────┴─> Reference ────┘                                                                   │
 //!                                                                  rotor commands <─ allocation <──────────────┘
@@ -21,8 +22,6 @@
 //! ```text
 //! Vehicle, Limits, Gains, ReferenceBounds (, Rotors, thrust floor) ─> Configuration ─> Certificate ─> Certified ─> Controller
 //! ```
-//!
-//! [`estimator`] makes the state out of poses and of what [`imu`] makes of the IMU's samples; no pilot flies on it yet.
 //!
 //! [`flight`] decides which of this reaches the motors: [`flight::Pilot`] takes measurements and requests, and gives thrusts or
 //! a stop, by a table of [rules](flight::rules). [`controller`] composes the four steps of the law, with an example. A
@@ -78,6 +77,7 @@ pub mod path_lifting;
 pub mod position;
 pub mod projection;
 pub mod reference;
+pub mod rotation;
 pub mod state;
 pub mod vehicle;
 

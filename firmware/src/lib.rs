@@ -29,6 +29,8 @@
 
 #![cfg_attr(target_os = "none", no_std)]
 
+#[cfg(test)]
+mod bench;
 pub mod bmi088;
 pub mod bmi270;
 #[cfg(target_os = "none")]

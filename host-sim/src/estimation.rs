@@ -11,6 +11,7 @@
 //! begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates, by a hand that nobody sees: the
 //! estimator begins to work in motion, too.
 
+use crate::sensors::{noise, single};
 use controller_core::error::ParameterError;
 use controller_core::estimator::{Estimator, EstimatorParameters, Fault, PoseMeasurement, Settings};
 use controller_core::flight::{Pose, Stamped, Velocity};
@@ -19,7 +20,6 @@ use controller_core::state::State;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
-use rand_distr::{Distribution, StandardNormal};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use scenario::reality::estimator::{self, IMU_RATE};
@@ -178,13 +178,4 @@ fn before(state: &BodyState, seconds: f64) -> BodyState {
         attitude: state.attitude * turned.into_inner(),
         ..*state
     }
-}
-
-/// Normal noise on three axes.
-fn noise(random: &mut Xoshiro256PlusPlus, deviation: f64) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| StandardNormal.sample(random)) * deviation
-}
-
-fn single(vector: &Vector3<f64>) -> Vector3<f32> {
-    vector.map(|value| value as f32)
 }

@@ -8,7 +8,7 @@
 //! accelerometer   f_m = R' ((v_k - v_k-1) / T + g e3) + bias + n     the mean since the last tick
 //! ```
 //!
-//! - Attitude: the last pose's, carried on with the gyro as the firmware does ([`PropagatedAttitude`]).
+//! - Attitude: the last pose's, carried on with the gyro ([`PropagatedAttitude`]).
 //! - Velocity, position: where a pose comes at every tick and the velocity is exact (plus noise), the pose and that velocity.
 //!   From an alpha-beta filter otherwise, with a double pole rho = exp(-bandwidth T_p), T_p the time between poses:
 //!
@@ -26,9 +26,11 @@
 //! inertial navigation*, 2007, section 3 (noise and bias of a gyro); P. R. Kalata, *The Tracking Index*, IEEE TAES 20(2), 1984
 //! (the filter).
 
-use controller_core::flight::propagation::PropagatedAttitude;
+mod propagation;
+
 use controller_core::state::State;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use propagation::PropagatedAttitude;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -108,7 +110,7 @@ impl Sensors {
     }
 
     fn noise(&mut self, deviation: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| StandardNormal.sample(&mut self.random)) * deviation
+        noise(&mut self.random, deviation)
     }
 
     /// Brings what is known to this tick.
@@ -151,8 +153,13 @@ impl Sensors {
     }
 }
 
+/// Normal noise of this standard deviation on three axes.
+pub(crate) fn noise(random: &mut Xoshiro256PlusPlus, deviation: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| StandardNormal.sample(random)) * deviation
+}
+
 /// Rounded to single precision.
-fn single(vector: &Vector3<f64>) -> Vector3<f32> {
+pub(crate) fn single(vector: &Vector3<f64>) -> Vector3<f32> {
     vector.map(|value| value as f32)
 }
 

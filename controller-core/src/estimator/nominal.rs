@@ -15,8 +15,8 @@
 //! They act from the left, in world axes: q_true = exp(theta) * q.
 
 use super::history::Increment;
-use crate::flight::propagation::half_rotation;
 use crate::math;
+use crate::rotation::half_rotation;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// p, v, q, b_g and b_a.

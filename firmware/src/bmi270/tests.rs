@@ -1,27 +1,14 @@
 //! The driver against a device that behaves as the data sheet says, or fails.
 
 use super::*;
+use crate::bench::{Jumping, Pin};
 use core::cell::{Cell, RefCell};
 use core::convert::Infallible;
-use core::future::{pending, ready};
+use core::future::pending;
 use embassy_futures::block_on;
 use embedded_hal_async::spi::{ErrorKind, ErrorType};
 use nalgebra::Vector3;
 use std::rc::Rc;
-
-/// A clock on which waiting costs nothing and moves time.
-#[derive(Clone, Default)]
-struct Jumping(Rc<Cell<u64>>);
-
-impl Clock for Jumping {
-    fn now(&self) -> u64 {
-        self.0.get()
-    }
-
-    async fn until(&self, time: u64) {
-        self.0.set(self.0.get().max(time));
-    }
-}
 
 /// The device.
 struct Chip {
@@ -127,35 +114,6 @@ impl OutputPin for Select {
     fn set_high(&mut self) -> Result<(), Infallible> {
         self.0.borrow_mut().selected = false;
         Ok(())
-    }
-}
-
-/// A data-ready pin that rises when asked, or never.
-struct Pin(Rc<Cell<bool>>);
-
-impl embedded_hal::digital::ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl Wait for Pin {
-    async fn wait_for_high(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_low(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_rising_edge(&mut self) -> Result<(), Infallible> {
-        if self.0.get() { ready(Ok(())).await } else { pending().await }
-    }
-
-    async fn wait_for_falling_edge(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_any_edge(&mut self) -> Result<(), Infallible> {
-        pending().await
     }
 }
 

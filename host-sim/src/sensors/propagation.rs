@@ -12,8 +12,8 @@
 //!
 //! Every new pose starts afresh at the time it was true, so the age of a pose on arrival is made up for too.
 
-use crate::math;
-use crate::reference::phase::swing;
+use controller_core::math;
+use controller_core::rotation::half_rotation;
 use nalgebra::{Quaternion, Vector3};
 
 /// An attitude with the time and the body rate it was true at.
@@ -48,21 +48,6 @@ impl PropagatedAttitude {
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }
-}
-
-/// The unit quaternion (cos |x|, sin |x| x/|x|) of the half angle x, rad.
-pub(crate) fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
-    /// Below this, |x|^2 and |x|^4 of the series suffice: the next term is under 2e-9.
-    const SMALL: f32 = 0.01;
-    let square = x.norm_squared();
-    if square < SMALL {
-        let cos = 1.0 - square * (0.5 - square * (1.0 / 24.0));
-        let sinc = 1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0));
-        return Quaternion::from_parts(cos, x * sinc);
-    }
-    let angle = math::sqrt(square);
-    let (sin, cos) = math::sin_cos_turns(swing(angle));
-    Quaternion::from_parts(cos, x * (sin / angle))
 }
 
 #[cfg(test)]
