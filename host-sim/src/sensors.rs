@@ -8,7 +8,7 @@
 //! accelerometer   f_m = R' ((v_k - v_k-1) / T + g e3) + bias + n     the mean since the last tick
 //! ```
 //!
-//! - Attitude: the last pose's, carried on with the gyro ([`PropagatedAttitude`]).
+//! - Attitude: the last pose's, carried on with the gyro (`propagation`).
 //! - Velocity, position: where a pose comes at every tick and the velocity is exact (plus noise), the pose and that velocity.
 //!   From an alpha-beta filter otherwise, with a double pole rho = exp(-bandwidth T_p), T_p the time between poses:
 //!
