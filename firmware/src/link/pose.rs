@@ -6,7 +6,8 @@
 //! | ATT_POS_MOCAP | FRD to NED | nothing |
 //!
 //! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are zero) has its
-//! poses stamped as they arrive. A message whose time does not advance is a repetition, or was overtaken, and is dropped.
+//! poses stamped as they arrive. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was
+//! overtaken, and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
 //! jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless. Velocities and body rates
@@ -65,6 +66,8 @@ struct Source {
     clock: Option<SenderClock>,
     /// When its last message arrived, us.
     arrived: u64,
+    /// When what that said was true, us; none before the first.
+    stamped: Option<u64>,
 }
 
 /// Turns messages into poses.
@@ -100,7 +103,7 @@ impl Poses {
     fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<u64, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
-        let fresh = Source { system, component, message: frame.message, clock: None, arrived: frame.time };
+        let fresh = Source { system, component, message: frame.message, clock: None, arrived: frame.time, stamped: None };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
             if frame.time.saturating_sub(source.arrived) <= SOURCE_SILENCE {
@@ -116,8 +119,10 @@ impl Poses {
                 Some(frame.time)
             }
         };
-        let stamp = stamp.ok_or(PoseRefusal::Repeated)?;
-        source.arrived = frame.time;
+        // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
+        let later = |&stamp: &u64| source.stamped.is_none_or(|last| stamp > last);
+        let stamp = stamp.filter(later).ok_or(PoseRefusal::Repeated)?;
+        (source.arrived, source.stamped) = (frame.time, Some(stamp));
         Ok(stamp)
     }
 }

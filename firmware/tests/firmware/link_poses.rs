@@ -196,6 +196,19 @@ fn a_sender_without_a_clock_is_believed() {
 }
 
 #[test]
+fn a_sender_whose_clock_comes_and_goes_does_not_go_back_in_time() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let mut stamps = Vec::new();
+    // By the clock 5 ms later than the first; by its arrival, without a clock, 10 ms.
+    for (time, now) in [(1_000, 0), (0, 10_000), (6_000, 20_000), (31_000, 30_000)] {
+        fed.message(&odometry(time), now);
+        stamps.extend(newest(&shared).map(|pose| pose.time));
+    }
+    assert_eq!(stamps, [0, 10_000, 30_000]);
+}
+
+#[test]
 fn one_source_is_listened_to_at_a_time() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
