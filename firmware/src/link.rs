@@ -5,6 +5,7 @@
 //! | [`frame`] | frames in a stream of bytes |
 //! | [`receive`] | what comes in, message by message |
 //! | [`pose`], [`setpoint`], [`command`] | what the messages that matter for flight mean |
+//! | [`sender_clock`], [`time_sync`] | when a pose was true, on the vehicle's clock |
 //! | [`transmit`] | what goes out, and when |
 //! | [`telemetry`] | reports, answers and events as messages |
 //! | [`writer`] | messages as frames |
@@ -22,6 +23,7 @@ pub mod receive;
 pub mod sender_clock;
 pub mod setpoint;
 pub mod telemetry;
+pub mod time_sync;
 pub mod transmit;
 pub mod writer;
 

@@ -13,8 +13,8 @@ use mavlink::dialects::common::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 /// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET, COMMAND_LONG,
-/// SET_POSITION_TARGET_LOCAL_NED, ATT_POS_MOCAP, ODOMETRY.
-const LISTENED: [u32; 9] = [0, 4, 20, 21, 23, 76, 84, 138, 331];
+/// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY.
+const LISTENED: [u32; 10] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331];
 
 #[derive(Debug, Arbitrary)]
 enum Event {

@@ -6,7 +6,8 @@
 //! | ATT_POS_MOCAP | FRD to NED | nothing |
 //!
 //! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are zero) has its
-//! poses stamped as they arrive. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was
+//! poses stamped as they arrive. What a pose takes at least, from the camera to here, is known where its sender answers TIMESYNC by
+//! the clock that stamps its poses ([`TimeSync`]); where it does not, parameter POSE_DELAY says it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was
 //! overtaken, and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
@@ -15,14 +16,15 @@
 //! they are positive (NaN means unknown, and zero that nobody has filled it in).
 
 use super::frame::Frame;
-use super::sender_clock::SenderClock;
+use super::sender_clock::{LATE_MAX, SenderClock};
+use super::time_sync::{Offset, TimeSync};
 use crate::frames;
 use controller_core::estimator::PoseMeasurement;
 use controller_core::flight::{Pose, PoseError, Stamped, Velocity};
 use controller_core::math;
 use core::fmt;
 use mavlink::MessageData;
-use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA, TIMESYNC_DATA};
 use nalgebra::{Quaternion, Vector3};
 
 /// How long a source must have been silent before another is listened to, us.
@@ -64,6 +66,7 @@ struct Source {
     message: u32,
     /// None if it has none.
     clock: Option<SenderClock>,
+    sync: TimeSync,
     /// When its last message arrived, us.
     arrived: u64,
     /// When what that said was true, us; none before the first.
@@ -77,11 +80,18 @@ pub struct Poses {
 }
 
 impl Poses {
-    /// The pose in `frame`; none in another message.
+    /// Takes an answer to TIMESYNC, if it comes from the system that is listened to.
+    pub fn synchronise(&mut self, frame: &Frame<'_>, message: &TIMESYNC_DATA) {
+        if let Some(source) = self.source.as_mut().filter(|source| source.system == frame.header.system) {
+            source.sync.take(message, frame.time);
+        }
+    }
+
+    /// The pose in `frame`; none in another message. Where nobody else knows, it took `delay`, us, at least.
     ///
     /// # Errors
     /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
-    pub fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Stamped<PoseMeasurement>>, PoseRefusal> {
+    pub fn take(&mut self, frame: &Frame<'_>, delay: u64) -> Result<Option<Stamped<PoseMeasurement>>, PoseRefusal> {
         let (value, time) = match frame.message {
             ODOMETRY_DATA::ID => {
                 let message = frame.decode().ok_or(PoseRefusal::Frame)?;
@@ -95,15 +105,23 @@ impl Poses {
             }
             _ => return Ok(None),
         };
-        let time = self.listen(frame, time)?;
+        let time = self.listen(frame, time, delay)?;
         Ok(Some(Stamped { value, time }))
     }
 
     /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us.
-    fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<u64, PoseRefusal> {
+    fn listen(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<u64, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
-        let fresh = Source { system, component, message: frame.message, clock: None, arrived: frame.time, stamped: None };
+        let fresh = Source {
+            system,
+            component,
+            message: frame.message,
+            clock: None,
+            sync: TimeSync::default(),
+            arrived: frame.time,
+            stamped: None,
+        };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
             if frame.time.saturating_sub(source.arrived) <= SOURCE_SILENCE {
@@ -121,9 +139,22 @@ impl Poses {
         };
         // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
         let later = |&stamp: &u64| source.stamped.is_none_or(|last| stamp > last);
+        let stamp = stamp.map(|stamp| stamp.saturating_sub(source.delay(time, delay)));
         let stamp = stamp.filter(later).ok_or(PoseRefusal::Repeated)?;
         (source.arrived, source.stamped) = (frame.time, Some(stamp));
         Ok(stamp)
+    }
+}
+
+impl Source {
+    /// What a message that says `time` took at least, us: by TIMESYNC if that is of the clock which stamps the messages; else `known`.
+    fn delay(&self, time: u64, known: u64) -> u64 {
+        let Some(clock) = self.clock.filter(|_| time != 0) else { return known };
+        let Some(Offset { value, error }) = self.sync.offset(self.arrived) else { return known };
+        let delay = clock.offset() - value;
+        // No message is here before it was sent; and one that is too late is none.
+        let plausible = (-i128::from(error)..=i128::from(LATE_MAX)).contains(&delay);
+        if plausible { u64::try_from(delay).unwrap_or(0) } else { known }
     }
 }
 

@@ -18,6 +18,7 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavParamType, MavResult, MavType, ODOMETRY_DATA,
     PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    TIMESYNC_DATA,
 };
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
@@ -105,6 +106,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
             COMMAND_LONG_DATA::ID => self.decoded(frame, Self::command),
+            TIMESYNC_DATA::ID => self.decoded(frame, Self::time_sync),
             Ping::ID => self.decoded(frame, Self::ping),
             PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
             PARAM_REQUEST_READ_DATA::ID => self.decoded(frame, Self::read_parameter),
@@ -149,7 +151,9 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     }
 
     fn pose(&mut self, frame: &Frame<'_>) {
-        match self.poses.take(frame) {
+        // Milliseconds, within 0 and 150, as the table has it.
+        let delay = (self.shared.parameters.get(Name::PoseDelay) * 1e3) as u64;
+        match self.poses.take(frame, delay) {
             Ok(Some(pose)) => {
                 // Where control does not take them, one more or less makes no difference.
                 let _ = self.shared.poses.put(pose);
@@ -225,6 +229,14 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (message.target_system, message.target_component) == (0, 0) {
             let (target_system, target_component) = (frame.header.system, frame.header.component);
             self.shared.reply(Reply::Ping(Ping { target_system, target_component, ..message.clone() }));
+        }
+    }
+
+    /// A question is answered, and an answer says what the clocks differ by.
+    fn time_sync(&mut self, frame: &Frame<'_>, message: &TIMESYNC_DATA) {
+        match message.tc1 {
+            0 => self.shared.reply(Reply::TimeSync { asked: message.ts1 }),
+            _ => self.poses.synchronise(frame, message),
         }
     }
 

@@ -7,7 +7,8 @@
 //! o_k = min(a_k - s_k, o_(k-1) + drift (a_k - a_(k-1)))      drift: 200 ppm, more than two quartz clocks part
 //! ```
 //!
-//! What every message takes at least is not seen that way and stays part of o. A message is never stamped later than it arrived.
+//! What every message takes at least is not seen that way and stays part of o: [`super::time_sync`] may know it, or somebody who
+//! has measured it. A message is never stamped later than it arrived.
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one that would be more
 //! than [`LATE_MAX`] late. A clock that was set back, or stood still, or begins anew, goes on from frame to frame as the vehicle's
@@ -23,7 +24,7 @@ pub const LATE_MAX: u64 = 500_000;
 const SPACING_ERROR: u64 = 20_000;
 
 /// One over the drift between two clocks.
-const DRIFT: u64 = 5_000;
+pub(super) const DRIFT: u64 = 5_000;
 
 /// What is known of a sender's clock.
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +51,12 @@ impl SenderClock {
     #[must_use]
     pub fn new(time: u64, arrived: u64) -> Self {
         Self { offset: difference(arrived, time), last: (time, arrived), trial: None }
+    }
+
+    /// o, with what every message takes at least, us: the vehicle's clock less the sender's.
+    #[must_use]
+    pub fn offset(&self) -> i128 {
+        self.offset
     }
 
     /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time is not a new

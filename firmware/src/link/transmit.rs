@@ -3,6 +3,7 @@
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
 use super::telemetry;
+use super::time_sync;
 use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
@@ -18,7 +19,7 @@ use mavlink::dialects::common::COMMAND_ACK_DATA;
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIME_MAX: u64 = 100_000;
 
-/// Time between heartbeats, us.
+/// Time between heartbeats, and between questions for the time, us.
 pub const HEARTBEAT_INTERVAL: u64 = 1_000_000;
 
 /// Time between the values of a list of parameters, us: slow enough to leave the line to the rest.
@@ -52,6 +53,7 @@ struct Schedule {
     position: u64,
     heartbeat: u64,
     status: u64,
+    sync: u64,
     /// The next of a list of parameters.
     list: Option<(usize, u64)>,
 }
@@ -59,7 +61,7 @@ struct Schedule {
 impl Schedule {
     fn next(&self) -> u64 {
         let list = self.list.map_or(u64::MAX, |(_, time)| time);
-        list.min(self.attitude).min(self.position).min(self.heartbeat).min(self.status)
+        list.min(self.attitude).min(self.position).min(self.heartbeat).min(self.status).min(self.sync)
     }
 }
 
@@ -84,7 +86,7 @@ struct Speaker<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
-        let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, list: None };
+        let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, sync: now, list: None };
         Self { shared, schedule, writer: Writer::new(), told: 0 }
     }
 
@@ -111,6 +113,8 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             self.say(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
         } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
             self.status(report.as_ref(), now);
+        } else if comes(&mut self.schedule.sync, HEARTBEAT_INTERVAL, now) {
+            self.say(&time_sync::question(now));
         } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
             comes(&mut time, LIST_INTERVAL, now);
             let name = Name::from_index(index);
@@ -147,6 +151,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         match reply {
             Reply::Command { command, result } => self.say(&COMMAND_ACK_DATA { command, result }),
             Reply::Ping(ping) => self.say(&ping),
+            Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),
             Reply::AllParameters => {
                 self.schedule.list = Some((0, now));

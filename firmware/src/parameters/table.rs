@@ -64,6 +64,8 @@ pub enum Name {
     /// The voltage at which the rotors' greatest thrust was measured; commands are corrected by the voltage there is. 0 for never.
     /// Taken over at once.
     BatteryNominal,
+    /// What a pose takes at least from the camera to the vehicle, where its sender does not answer TIMESYNC. Taken over at once.
+    PoseDelay,
 }
 
 /// One row.
@@ -98,7 +100,7 @@ const fn row(
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 29] = [
+pub const PARAMETERS: [Row; 30] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    true),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  true),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", false),
@@ -128,6 +130,7 @@ pub const PARAMETERS: [Row; 29] = [
     row(Name::Imu2LevelY,      "IMU2_LEVEL_Y", [-0.09, 0.09], 0.0,  "",      false),
     row(Name::ThrustCurve,     "THR_CURVE",    [0.0, 1.0],    0.0,  "",      false),
     row(Name::BatteryNominal,  "BAT_NOMINAL",  [0.0, 60.0],   0.0,  "V",     false),
+    row(Name::PoseDelay,       "POSE_DELAY",   [0.0, 150.0],  0.0,  "ms",    false),
 ];
 
 impl Name {

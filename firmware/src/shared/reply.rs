@@ -42,6 +42,11 @@ pub enum Reply {
     },
     /// PING, sent back.
     Ping(Ping),
+    /// TIMESYNC: the time of day.
+    TimeSync {
+        /// When it was asked, ns of the asker's clock.
+        asked: i64,
+    },
     /// PARAM_VALUE of one parameter.
     Parameter(Name),
     /// PARAM_VALUE of every parameter, one after the other.

@@ -97,13 +97,13 @@ proptest! {
         let (position, velocity) = (frames::world(&Vector3::new(x, y, z)), frames::world(&Vector3::new(vx, vy, vz)));
         let [w, i, j, k] = q;
         let attitude = frames::attitude(&Quaternion::new(w, i, j, k));
-        let pose = read(&v2(1, &odometry), |frame| Poses::default().take(frame)).unwrap().unwrap();
+        let pose = read(&v2(1, &odometry), |frame| Poses::default().take(frame, 0)).unwrap().unwrap();
         prop_assert_eq!((pose.value.position(), pose.value.velocity()), (position, Some(velocity)));
         prop_assert!((pose.value.attitude() - attitude).norm() < 1e-6);
         // The other message, which has no velocity.
         let mocap = ATT_POS_MOCAP_DATA { time_usec, q, x, y, z };
         for bytes in [v1(1, &mocap), v2(1, &mocap)] {
-            let pose = read(&bytes, |frame| Poses::default().take(frame)).unwrap().unwrap();
+            let pose = read(&bytes, |frame| Poses::default().take(frame, 0)).unwrap().unwrap();
             prop_assert_eq!((pose.value.position(), pose.value.velocity()), (position, None));
             prop_assert!((pose.value.attitude() - attitude).norm() < 1e-6);
         }

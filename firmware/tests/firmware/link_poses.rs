@@ -7,7 +7,8 @@ use controller_core::flight::Stamped;
 use core::f32::consts::FRAC_1_SQRT_2;
 use firmware::link::pose::SOURCE_SILENCE;
 use firmware::link::sender_clock::STEADY;
-use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
+use firmware::parameters::table::Name;
+use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA, TIMESYNC_DATA};
 use nalgebra::{Quaternion, Vector3};
 
 /// Facing east, nose level: in the law's world that is no rotation at all.
@@ -206,6 +207,53 @@ fn a_sender_whose_clock_comes_and_goes_does_not_go_back_in_time() {
         stamps.extend(newest(&shared).map(|pose| pose.time));
     }
     assert_eq!(stamps, [0, 10_000, 30_000]);
+}
+
+/// When poses of a sender were true that is `ahead` us ahead and 30 to 50 ms late, and answers TIMESYNC by a clock that is
+/// `answers` us ahead: the error of each stamp, us.
+fn late_by_30_ms(shared: &Local, ahead: u64, answers: Option<u64>) -> Vec<i64> {
+    let mut fed = Fed::new(shared);
+    let truths = (0..100).map(|count| 1_000_000 + 10_000 * count);
+    let errors = truths.enumerate().map(|(count, truth)| {
+        fed.message(&odometry(truth + ahead), truth + 30_000 + count as u64 % 3 * 3_000);
+        let pose = newest(shared).map(|pose| pose.time as i64 - truth as i64);
+        if let Some(answers) = answers.filter(|_| count % 20 == 0) {
+            // 1 ms there, 3 ms back.
+            let asked = truth + 40_000;
+            let sent = asked + 1_000 + answers;
+            fed.message(&TIMESYNC_DATA { tc1: sent as i64 * 1_000, ts1: asked as i64 * 1_000 }, asked + 4_000);
+        }
+        pose
+    });
+    errors.flatten().collect()
+}
+
+#[test]
+fn a_sender_that_answers_timesync_has_no_delay() {
+    for ahead in [0, 77, 1_800_000_000_000_000] {
+        let errors = late_by_30_ms(&Local::new(), ahead, Some(ahead));
+        assert_eq!(errors[0], 30_000);
+        // While the stamps are set back nothing goes back in time.
+        assert!((95..99).contains(&errors.len()), "{}", errors.len());
+        assert!(errors[1..].iter().all(|error| error.abs() <= 1_050), "{errors:?}");
+    }
+}
+
+#[test]
+fn timesync_of_another_clock_says_nothing_and_a_delay_that_was_measured_does() {
+    for answers in [None, Some(0), Some(10_000_000), Some(4_400_000)] {
+        let shared = Local::new();
+        let plain = late_by_30_ms(&shared, 5_000_000, answers);
+        assert!(plain.iter().all(|error| (30_000..30_200).contains(error)), "{plain:?}");
+        shared.parameters.set(Name::PoseDelay, 30.0).unwrap();
+        let errors = late_by_30_ms(&shared, 5_000_000, answers);
+        assert!(errors.iter().all(|error| (0..200).contains(error)), "{errors:?}");
+    }
+    // A sender without a clock has that delay as well.
+    let shared = Local::new();
+    shared.parameters.set(Name::PoseDelay, 30.0).unwrap();
+    Fed::new(&shared).message(&odometry(0), 100_000);
+    assert_eq!(newest(&shared).unwrap().time, 70_000);
 }
 
 #[test]

@@ -16,7 +16,7 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
     MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA,
-    SYS_STATUS_DATA,
+    SYS_STATUS_DATA, TIMESYNC_DATA,
 };
 use nalgebra::{Quaternion, Vector3};
 
@@ -218,6 +218,18 @@ fn what_is_said_to_an_idle_line_goes_out_at_once() {
         parser.feed(&written.borrow(), 0, &mut |frame| sent.push(frame.message));
         assert_eq!(sent.last(), Some(&message), "{sent:?}");
     }
+}
+
+#[test]
+fn the_time_is_asked_once_a_second_and_told_whoever_asks() {
+    let shared = Local::new();
+    shared.replies.put(Reply::TimeSync { asked: -5 }).unwrap();
+    let messages: Vec<TIMESYNC_DATA> = sent(&transmitted(&shared, 1_900_000, |_| ()));
+    let [answer, first, second] = &messages[..] else { panic!("{messages:?}") };
+    assert_eq!((answer.ts1, first.tc1, second.tc1), (-5, 0, 0));
+    // Nanoseconds.
+    assert!((1_000_000_000 - 10_000_000..=1_000_000_000).contains(&(second.ts1 - first.ts1)), "{messages:?}");
+    assert!((0..100_000_000).contains(&answer.tc1), "{messages:?}");
 }
 
 #[test]

@@ -1,0 +1,122 @@
+//! TIMESYNC: what a sender's clock and the vehicle's differ by, from questions and answers.
+//!
+//! The vehicle asks at t_1 (its clock), the sender answers at s (its own), the answer is here at t_2. If the ways there and back take
+//! as long,
+//!
+//! ```text
+//! o = (t_1 + t_2) / 2 - s          and if they do not, |error| <= (t_2 - t_1) / 2
+//! ```
+//!
+//! The answer with the least error counts. An old one's error grows by what two clocks part. So o holds no delay of the line, which
+//! [`SenderClock`](super::sender_clock::SenderClock) cannot tell from a clock that is behind.
+
+use super::sender_clock::DRIFT;
+use mavlink::dialects::common::TIMESYNC_DATA;
+
+/// The longest that an answer may take, us.
+pub const ANSWER_MAX: u64 = 100_000;
+
+/// What the clocks differ by, the vehicle's less the sender's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Offset {
+    /// o, us.
+    pub value: i128,
+    /// The greatest error, us.
+    pub error: u64,
+}
+
+/// What the answers of one sender have said.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct TimeSync {
+    /// The best answer, and when it came, us.
+    best: Option<(Offset, u64)>,
+}
+
+/// The question, at `now`, us.
+#[must_use]
+pub fn question(now: u64) -> TIMESYNC_DATA {
+    TIMESYNC_DATA { tc1: 0, ts1: nanoseconds(now) }
+}
+
+/// The answer, at `now`, us, to a question that was asked at `ts1` of its sender's clock.
+#[must_use]
+pub fn answer(ts1: i64, now: u64) -> TIMESYNC_DATA {
+    TIMESYNC_DATA { tc1: nanoseconds(now), ts1 }
+}
+
+/// Beyond 292 years it stands still.
+fn nanoseconds(time: u64) -> i64 {
+    i64::try_from(time).unwrap_or(i64::MAX).saturating_mul(1_000)
+}
+
+impl TimeSync {
+    /// Takes an answer that arrived at `arrived`, us. One to a question of a time to come, or of long ago, says nothing.
+    pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
+        let asked = u64::try_from(message.ts1 / 1_000).ok();
+        let Some(took) = asked.and_then(|asked| arrived.checked_sub(asked)).filter(|&took| took <= ANSWER_MAX) else {
+            return;
+        };
+        let value = i128::from(arrived) - i128::from(took / 2) - i128::from(message.tc1 / 1_000);
+        let offset = Offset { value, error: took.div_ceil(2) };
+        if self.offset(arrived).is_none_or(|best| offset.error <= best.error) {
+            self.best = Some((offset, arrived));
+        }
+    }
+
+    /// What is known at `now`, us.
+    #[must_use]
+    pub fn offset(&self, now: u64) -> Option<Offset> {
+        let (offset, arrived) = self.best?;
+        Some(Offset { error: offset.error + now.saturating_sub(arrived).div_ceil(DRIFT), ..offset })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sender whose clock is `ahead` us ahead answers a question of `asked`; its way back takes `back` us.
+    fn exchange(sync: &mut TimeSync, asked: u64, ahead: u64, there: u64, back: u64) {
+        let message = TIMESYNC_DATA { tc1: nanoseconds(asked + there + ahead), ts1: question(asked).ts1 };
+        sync.take(&message, asked + there + back);
+    }
+
+    #[test]
+    fn a_symmetric_line_leaves_no_error_and_another_no_more_than_it_says() {
+        for (there, back) in [(1_000, 1_000), (9_000, 1_000), (100, 19_900), (0, 0)] {
+            for ahead in [0, 7, 1_800_000_000_000_000] {
+                let mut sync = TimeSync::default();
+                exchange(&mut sync, 5_000_000, ahead, there, back);
+                let Offset { value, error } = sync.offset(5_000_000).unwrap();
+                let found = value + i128::from(ahead);
+                assert_eq!(found, (i128::from(back) - i128::from(there)) / 2);
+                assert!(found.unsigned_abs() <= error.into() && error == (there + back).div_ceil(2));
+            }
+        }
+    }
+
+    #[test]
+    fn the_quickest_answer_counts_until_its_clock_has_parted() {
+        let mut sync = TimeSync::default();
+        exchange(&mut sync, 0, 50, 500, 500);
+        exchange(&mut sync, 1_000_000, 9_000, 4_000, 4_000);
+        assert_eq!(sync.offset(1_000_000).unwrap().value, -50);
+        // 200 ppm: after 20 s the first is as doubtful as the second.
+        exchange(&mut sync, 20_000_000, 9_000, 4_000, 4_000);
+        assert_eq!(sync.offset(20_008_000), Some(Offset { value: -9_000, error: 4_000 }));
+    }
+
+    #[test]
+    fn what_was_never_asked_or_long_ago_says_nothing() {
+        let mut sync = TimeSync::default();
+        for (ts1, arrived) in
+            [(2_000_001_000, 2_000_000), (-1_000, 5), (i64::MIN, 5), (i64::MAX, u64::MAX), (0, ANSWER_MAX + 1)]
+        {
+            sync.take(&TIMESYNC_DATA { tc1: i64::MIN, ts1 }, arrived);
+            assert_eq!(sync.offset(arrived), None, "{ts1} {arrived}");
+        }
+        // Numbers at their limits are numbers.
+        sync.take(&TIMESYNC_DATA { tc1: i64::MIN, ts1: 0 }, 0);
+        assert!(sync.offset(u64::MAX).is_some());
+    }
+}
