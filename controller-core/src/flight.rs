@@ -7,6 +7,7 @@
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
+//! - `thrust_check`: whether the rotors give what they should;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
 //! From the first armed tick on thrust is the law's T = m |u|, hover thrust for a vehicle at rest: there is no mode for
@@ -27,6 +28,7 @@ mod permission;
 pub mod pilot;
 pub mod reason;
 pub mod rules;
+mod thrust_check;
 
 pub use crate::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
@@ -112,4 +114,6 @@ pub struct Outcome {
     pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,
+    /// Whether [`Flown::thrust_scale`] has been doubtful for a while, and it is time to say so.
+    pub is_thrust_doubtful: bool,
 }

@@ -141,6 +141,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.complaint.law = refused;
             refused.inspect(|error| self.shared.announce(Event::Input(*error)));
         }
+        if let (true, Some(Ok(flown))) = (outcome.is_thrust_doubtful, &outcome.flown) {
+            self.shared.announce(Event::Thrust(flown.thrust_scale));
+        }
     }
 
     /// Poses that are refused, the estimate's jumps, and its faults, each once in a while.
@@ -172,7 +175,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let report = Report {
             mode: outcome.mode,
             state: outcome.estimated.map(|estimated| estimated.state),
+            health: outcome.health,
             wrench: flown.map(|flown| flown.wrench),
+            thrust_scale: flown.map(|flown| flown.thrust_scale),
             timing: self.timing,
         };
         self.shared.report.put(report, now);

@@ -120,6 +120,18 @@ impl Statistics {
 }
 
 impl Health {
+    /// Of an estimate that there is not.
+    pub const NONE: Self = Self {
+        faults: Faults(0).with(Fault::NotStarted, true).with(Fault::ImuStale, true),
+        pose_age: None,
+        last: None,
+        counts: (0, 0),
+        jumps: 0,
+        deviations: (0.0, 0.0, 0.0),
+        nis: Statistics::NONE.nis,
+        biases: (0.0, 0.0),
+    };
+
     /// No fault.
     #[must_use]
     pub fn is_good(&self) -> bool {
@@ -141,9 +153,8 @@ impl Health {
             last,
             counts,
             jumps,
-            deviations: (0.0, 0.0, 0.0),
             nis,
-            biases: (0.0, 0.0),
+            ..Self::NONE
         };
         let Some(filter) = filter else { return health };
         let deviation = |block: &Matrix3<f32>| math::sqrt(block.m11 + block.m22 + block.m33);

@@ -53,6 +53,8 @@ pub struct Flown {
     pub position_error: Vector3<f32>,
     /// theta~, the modified Rodrigues parameters of the attitude error.
     pub mrp: Vector3<f32>,
+    /// What the rotors are believed to give of what they are asked for; 1 without an estimate.
+    pub thrust_scale: f32,
 }
 
 /// Governor, law and mixer, with what they hand from tick to tick.
@@ -228,6 +230,7 @@ impl<'m> Chain<'m> {
             achieved: allocation.achieved.scaled(scale),
             position_error,
             mrp,
+            thrust_scale: scale,
         })
     }
 

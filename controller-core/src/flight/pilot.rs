@@ -9,6 +9,7 @@ use super::estimate::{Estimate, Estimation};
 use super::permission::{self, MotorTest};
 use super::reason::{Grounded, Refusal, field};
 use super::rules::{self, Condition, Conditions, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, Mode, Transition};
+use super::thrust_check::ThrustCheck;
 use super::{Inputs, Outcome, Output, PERIOD, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::certified::{Certified, Refused};
@@ -26,6 +27,7 @@ pub struct Pilot<'m> {
     since: u64,
     estimation: Estimation<'m>,
     test: MotorTest,
+    thrust_check: ThrustCheck,
 }
 
 impl<'m> Pilot<'m> {
@@ -50,6 +52,7 @@ impl<'m> Pilot<'m> {
             since: 0,
             estimation: Estimation::new(estimator),
             test: MotorTest::NONE,
+            thrust_check: ThrustCheck::default(),
         }
     }
 
@@ -85,7 +88,10 @@ impl<'m> Pilot<'m> {
         let setpoint = inputs.setpoint.map(|setpoint| self.accept(&setpoint));
         let (output, flown) = self.output(estimate);
         let Estimate { state: estimated, health, pose, .. } = *estimate;
-        Outcome { output, mode: self.mode, transition, answer, setpoint, flown, estimated, health, pose }
+        let scale = flown.as_ref().and_then(|flown| flown.as_ref().ok()).map(|flown| flown.thrust_scale);
+        let is_thrust_doubtful = self.thrust_check.is_doubtful(scale, inputs.now);
+        let mode = self.mode;
+        Outcome { output, mode, transition, answer, setpoint, flown, estimated, health, pose, is_thrust_doubtful }
     }
 
     /// Goes along where the estimate has jumped in flight; whether that was possible.

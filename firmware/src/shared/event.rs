@@ -61,6 +61,8 @@ pub enum Event {
     Estimator(Fault),
     /// The law cannot use its input.
     Input(InputError),
+    /// The rotors give this part of what the model says, for a while now.
+    Thrust(f32),
     /// The motors' frames do not go out.
     MotorsLost,
     /// They do again.
@@ -85,7 +87,7 @@ impl Event {
             | Self::Input(_)
             | Self::MotorsLost => Severity::Critical,
             Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
-            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) => Severity::Warning,
+            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) | Self::Thrust(_) => Severity::Warning,
             Self::Words(severity, _) => *severity,
         }
     }
@@ -100,6 +102,7 @@ impl fmt::Display for Event {
             Self::Pose(Err(rejected)) => rejected.fmt(f),
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
+            Self::Thrust(scale) => write!(f, "Thrust x{scale:.2}: check battery, mass, THR_CURVE"),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
             Self::Words(_, text) => f.write_str(text.as_str()),

@@ -1,5 +1,6 @@
 //! What a control tick did and what the line carried, for telemetry and the log.
 
+use controller_core::estimator::Health;
 use controller_core::flight::Mode;
 use controller_core::state::{State, Wrench};
 
@@ -10,10 +11,26 @@ pub struct Report {
     pub mode: Mode,
     /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
+    /// What that is worth.
+    pub health: Health,
     /// What the law asked for; none while it does not fly.
     pub wrench: Option<Wrench>,
+    /// What the rotors are believed to give of it; none while the law does not fly.
+    pub thrust_scale: Option<f32>,
     /// How well the ticks keep time.
     pub timing: Timing,
+}
+
+impl Report {
+    /// Of control that has done nothing yet.
+    pub const NONE: Self = Self {
+        mode: Mode::Disarmed,
+        state: None,
+        health: Health::NONE,
+        wrench: None,
+        thrust_scale: None,
+        timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
+    };
 }
 
 /// How well control keeps time, since boot.

@@ -90,7 +90,7 @@ fn flying(shared: &Local, time: u64) {
         angular_velocity: Vector3::new(0.5, 0.25, 0.125),
     };
     let timing = Timing { worst_duration: 2_500, ..Default::default() };
-    shared.report.put(Report { mode: Mode::Flying, state: Some(state), wrench: None, timing }, time);
+    shared.report.put(Report { mode: Mode::Flying, state: Some(state), timing, ..Report::NONE }, time);
 }
 
 #[test]

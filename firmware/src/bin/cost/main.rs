@@ -21,6 +21,8 @@ mod estimation;
 mod stack;
 #[cfg(target_os = "none")]
 mod target;
+#[cfg(target_os = "none")]
+mod tick;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

@@ -5,6 +5,7 @@ use crate::count::{CLOCKS, Cost};
 use crate::counter::Counter;
 use crate::estimation;
 use crate::stack;
+use crate::tick;
 use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
@@ -82,6 +83,10 @@ fn measure() -> bool {
     governing.print("governor tick");
     if !estimation::measure(&counter) {
         hprintln!("the estimator does not believe an exact pose");
+        return false;
+    }
+    if !tick::measure(&counter, &certified, &circle) {
+        hprintln!("the firmware does not fly an exact body");
         return false;
     }
     hprintln!("times: at one instruction a cycle, which no processor promises");

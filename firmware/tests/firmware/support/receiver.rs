@@ -55,5 +55,5 @@ pub fn newest(shared: &Local) -> Option<Stamped<PoseMeasurement>> {
 
 /// Control's report, in this mode.
 pub fn report(shared: &Local, mode: controller_core::flight::Mode, time: u64) {
-    shared.report.put(Report { mode, state: None, wrench: None, timing: Default::default() }, time);
+    shared.report.put(Report { mode, ..Report::NONE }, time);
 }
