@@ -7,15 +7,18 @@
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
+//! - `watch`: whether it follows, has landed, or lies on its back;
+//! - `fence`: how far it may go;
+//! - [`FlightSettings`]: what an operator may choose about failures;
 //! - `thrust_check`: whether the rotors give what they should;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
 //!
-//! From the first armed tick on thrust is the law's T = m |u|, hover thrust for a vehicle at rest: there is no mode for
-//! taking off, a setpoint above does it. Landing is not detected: a vehicle that has come down must be disarmed, and one set
-//! down by its setpoint keeps turning its rotors until it is.
+//! An armed vehicle idles until it is told to take off or to fly setpoints; then its rotors are brought up to the law's thrusts within a
+//! second. A landing ends with the ground found and the motors stopped. A vehicle set down by its setpoint keeps turning its
+//! rotors until it is told to land.
 //!
 //! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator refuses it, says why,
-//! and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for [`rules::LEVELLING_MAX`], then stops.
+//! and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for [`rules::LEVELLING_MAX`], then goes down.
 //! Poses that are believed again are flown at once. Where the estimate jumps, because the sender says that its frame has moved or
 //! because a lost body was found again, the reference jumps with it, and brakes from there: the vehicle does not lurch.
 
@@ -23,12 +26,17 @@ mod chain;
 mod estimate;
 #[cfg(test)]
 mod example;
+mod fence;
+mod lasting;
 mod lift_off;
 mod permission;
 pub mod pilot;
 pub mod reason;
+mod request;
 pub mod rules;
+mod settings;
 mod thrust_check;
+mod watch;
 
 pub use crate::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
@@ -38,7 +46,9 @@ pub use estimate::SETTLED_AFTER;
 pub use permission::MotorTest;
 pub use pilot::Pilot;
 pub use reason::{Grounded, Reason, Refusal};
+pub use request::{Request, SETPOINT_AGE_MAX};
 pub use rules::{Mode, Transition};
+pub use settings::FlightSettings;
 
 use crate::allocation::Thrusts;
 use crate::error::InputError;
@@ -48,13 +58,18 @@ use crate::governor::Setpoint;
 /// The time between ticks, us.
 pub const PERIOD: u64 = 10_000;
 
-/// What somebody may ask for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Request {
-    /// Arm and hold position.
-    Arm,
-    /// Turn one motor slowly.
-    MotorTest(MotorTest),
+/// What the battery has left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Battery {
+    /// Nobody measures it.
+    #[default]
+    Unknown,
+    /// Enough.
+    Good,
+    /// Time to land.
+    Low,
+    /// Next to nothing.
+    Critical,
 }
 
 /// What a tick is given: what has come since the last. Everything is handed over once, but for the ground station's time.
@@ -70,8 +85,14 @@ pub struct Inputs<'a> {
     pub ground_station: Option<u64>,
     /// What was asked for since the last tick.
     pub request: Option<Request>,
-    /// Whether a disarm command came since the last tick.
+    /// Whether a disarm command with force came since the last tick: it stops motors in the air as well.
     pub disarm: bool,
+    /// Whether the kill switch is on.
+    pub killed: bool,
+    /// What the battery has left.
+    pub battery: Battery,
+    /// Whether the last tick came to its end too late.
+    pub is_late: bool,
     /// The newest setpoint since the last tick.
     pub setpoint: Option<Setpoint>,
 }
@@ -81,6 +102,8 @@ pub struct Inputs<'a> {
 pub enum Output {
     /// Every motor stops.
     Stop,
+    /// Every motor turns as slowly as it reliably does.
+    Idle,
     /// Each rotor's thrust, N, in the rotors' order, within its range.
     Thrusts(Thrusts),
     /// One motor turns, the others stop.
@@ -103,7 +126,11 @@ pub struct Outcome {
     pub transition: Option<Transition>,
     /// The answer to the request.
     pub answer: Option<Result<(), Refusal>>,
-    /// Whether the setpoint was accepted.
+    /// What arming would be answered, while no motor turns.
+    pub ready: Option<Result<(), Refusal>>,
+    /// Whether the vehicle has left the ground where it was armed, and has not landed.
+    pub is_airborne: bool,
+    /// Whether the setpoint was accepted, where setpoints are flown.
     pub setpoint: Option<Result<(), Refusal>>,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,

@@ -12,7 +12,7 @@ use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::estimator::{Estimator, Settings};
-use controller_core::flight::{Memory, Pilot};
+use controller_core::flight::{FlightSettings, Memory, Pilot};
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use static_cell::{ConstStaticCell, StaticCell};
@@ -56,10 +56,18 @@ pub fn start<M: RawMutex>(
         vertical_speed: parameters.get(Name::VerticalSpeed),
         ..GovernorLimits::default()
     };
+    let settings = FlightSettings {
+        take_off_height: parameters.get(Name::TakeOffHeight),
+        landing_speed: parameters.get(Name::LandingSpeed),
+        ground_station_patience: parameters.get(Name::GroundStationPatience),
+        fence_radius: parameters.get(Name::FenceRadius),
+        fence_height: parameters.get(Name::FenceHeight),
+        tracking_error_max: parameters.get(Name::TrackingErrorMax),
+    };
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
     let certification = certify(place, configuration);
     log(certification);
-    Ok((pilot(place, certification.as_ref(), &limits, estimator), outputs))
+    Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
 }
 
 // Configuration, estimator, certificate and pilot need most of the stack, one after the other: none may become part of another's frame.
@@ -80,10 +88,11 @@ fn pilot(
     place: &'static Place,
     certification: Result<&Certified, &Refused>,
     limits: &GovernorLimits,
+    settings: &FlightSettings,
     estimator: &'static mut Estimator,
 ) -> &'static mut Pilot<'static> {
     let memory = place.memory.take();
-    place.pilot.init_with(|| Pilot::new(certification, limits, estimator, memory))
+    place.pilot.init_with(|| Pilot::new(certification, limits, settings, estimator, memory))
 }
 
 /// The numbers of every inequality that decides, and the verdict. `host-sim certify` says what they mean.

@@ -17,13 +17,16 @@ use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use controller_core::flight::{Inputs, Outcome, PERIOD, Pilot, Refusal};
+use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Refusal};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
 
 /// How long the motors' frame may take to write, us.
 const WRITING_MAX: u64 = 2_000;
+
+/// The greatest age of a voltage that counts, us.
+const VOLTAGE_AGE_MAX: u64 = 1_000_000;
 
 /// How often poses that are refused, and faults of the estimator, are told, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
@@ -34,6 +37,8 @@ pub struct Control<'a, M: RawMutex> {
     pilot: &'a mut Pilot<'static>,
     outputs: Outputs,
     timing: Timing,
+    /// Whether the last tick ended too late.
+    is_late: bool,
     /// Whether sensors and motors are a simulator's, as the last tick found it.
     simulated: bool,
     /// When the last IMU increment ended, us.
@@ -61,6 +66,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             pilot,
             outputs,
             timing: Timing::default(),
+            is_late: false,
             simulated: false,
             integrated: None,
             complaint: Complaint::default(),
@@ -76,7 +82,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
             let command = self.tick(start);
             let written = within(clock, WRITING_MAX, motors.write(command)).await.unwrap_or(Err(Fault));
             let end = clock.now();
-            if self.timing.record(due, start, end) && written.is_ok() {
+            let in_time = self.timing.record(due, start, end);
+            self.is_late |= !in_time;
+            if in_time && written.is_ok() {
                 watchdog.feed();
             }
             self.complain_about_writing(written);
@@ -96,8 +104,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.tell(&outcome, asked);
         self.tell_of_the_estimate(&outcome, now);
         self.report(now, &outcome);
-        let nominal = self.shared.parameters.get(Name::BatteryNominal);
-        self.outputs.command(&outcome.output, voltage_ratio(nominal, self.shared.voltage.get(), now))
+        let parameters = &self.shared.parameters;
+        let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), self.shared.voltage.get(), now);
+        self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle))
     }
 
     /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.
@@ -116,8 +125,22 @@ impl<'a, M: RawMutex> Control<'a, M> {
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
+            battery: self.battery(now),
+            is_late: mem::take(&mut self.is_late),
             setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),
             ..Inputs::default()
+        }
+    }
+
+    /// What the battery has left, by its voltage; nobody knows without a recent reading.
+    fn battery(&self, now: u64) -> Battery {
+        let parameters = &self.shared.parameters;
+        let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
+        match self.shared.voltage.get().filter(|voltage| voltage.age(now) <= VOLTAGE_AGE_MAX) {
+            None => Battery::Unknown,
+            Some(voltage) if voltage.value < critical => Battery::Critical,
+            Some(voltage) if voltage.value < low => Battery::Low,
+            Some(_) => Battery::Good,
         }
     }
 
@@ -174,6 +197,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
         let report = Report {
             mode: outcome.mode,
+            ready: outcome.ready == Some(Ok(())),
+            is_airborne: outcome.is_airborne,
             state: outcome.estimated.map(|estimated| estimated.state),
             health: outcome.health,
             wrench: flown.map(|flown| flown.wrench),

@@ -28,11 +28,12 @@ impl Outputs {
         }
     }
 
-    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`].
+    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they idle at.
     #[must_use]
-    pub fn command(&self, output: &Output, ratio: f32) -> MotorCommand {
+    pub fn command(&self, output: &Output, ratio: f32, idle: f32) -> MotorCommand {
         match output {
             Output::Stop => MotorCommand::Stop,
+            Output::Idle => MotorCommand::Run([idle; MOTORS]),
             Output::Test { rotor, level } => MotorCommand::One { motor: *rotor, level: *level },
             Output::Thrusts(thrusts) => {
                 let mut commands = [0.0; MOTORS];
@@ -69,15 +70,16 @@ mod tests {
     #[test]
     fn half_the_greatest_speed_is_half_a_command() {
         let thrusts = Thrusts::from_slice(&[5.57e-6 * 400.0 * 400.0; 4]).unwrap();
-        let MotorCommand::Run(commands) = outputs().command(&Output::Thrusts(thrusts), 1.0) else { panic!() };
+        let MotorCommand::Run(commands) = outputs().command(&Output::Thrusts(thrusts), 1.0, 0.03) else { panic!() };
         assert!(commands.iter().all(|command| (command - 0.5).abs() < 1e-6), "{commands:?}");
     }
 
     #[test]
     fn a_motor_test_turns_one_motor_and_a_stop_none() {
         let test = Output::Test { rotor: 2, level: 0.1 };
-        assert_eq!(outputs().command(&test, 1.0), MotorCommand::One { motor: 2, level: 0.1 });
-        assert_eq!(outputs().command(&Output::Stop, 1.0), MotorCommand::Stop);
+        assert_eq!(outputs().command(&test, 1.0, 0.03), MotorCommand::One { motor: 2, level: 0.1 });
+        assert_eq!(outputs().command(&Output::Stop, 1.0, 0.03), MotorCommand::Stop);
+        assert_eq!(outputs().command(&Output::Idle, 1.0, 0.03), MotorCommand::Run([0.03; MOTORS]));
     }
 
     #[test]
@@ -94,7 +96,7 @@ mod tests {
             assert_eq!(voltage_ratio(nominal, voltage, now), 1.0, "{nominal} {voltage:?}");
         }
         let thrusts = Thrusts::from_slice(&[1.0; 4]).unwrap();
-        let at = |ratio| match outputs().command(&Output::Thrusts(thrusts.clone()), ratio) {
+        let at = |ratio| match outputs().command(&Output::Thrusts(thrusts.clone()), ratio, 0.03) {
             MotorCommand::Run(commands) => commands[0],
             _ => panic!(),
         };

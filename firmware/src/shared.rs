@@ -78,7 +78,7 @@ pub struct Shared<M: RawMutex> {
     pub setpoint: Latest<M, Setpoint>,
     /// Requests for control, in the order they came. Put them in with [`Self::request`].
     pub requests: Queue<M, Asked, REQUESTS>,
-    /// Raised by a disarm command, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
+    /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
     pub disarm: Flag,
     /// Answers to requests. Put them in with [`Self::answer`].
     pub answers: Queue<M, Reply, REPLIES>,
@@ -155,7 +155,7 @@ impl<M: RawMutex> Shared<M> {
         self.requests.put(asked)
     }
 
-    /// Disarms within one tick. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
+    /// Disarms within one tick, in the air as well. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
     pub fn request_disarm(&self) {
         while let Some(Asked { command, .. }) = self.requests.take() {
             self.answer(command, Err(Refusal::DisarmCommanded));

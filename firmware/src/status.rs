@@ -4,9 +4,10 @@
 //! |---|---|
 //! | a short flash once a second | disarmed |
 //! | two short flashes once a second | motor test |
+//! | three short flashes once a second | stopped or locked: somebody has to look |
+//! | slow blinking (1 Hz) | armed, on the ground |
 //! | on | flying |
-//! | slow blinking (1 Hz) | flying, ground station lost |
-//! | fast blinking (5 Hz) | levelling: the pose is lost |
+//! | fast blinking (5 Hz) | going down without a pose |
 //! | flickering (10 Hz) | no report from control for [`REPORT_AGE_MAX`] |
 
 mod euler;
@@ -45,11 +46,12 @@ pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
     // Steps into the present second, 0 to 19.
     let step = now % 1_000_000 / STEP;
     match mode {
-        Some(Mode::Disarmed) => step == 0,
+        Some(Mode::Boot | Mode::Checks | Mode::Ready) => step == 0,
         Some(Mode::MotorTest) => step == 0 || step == 4,
-        Some(Mode::Flying) => true,
-        Some(Mode::Holding) => step < 10,
-        Some(Mode::Levelling) => step % 4 < 2,
+        Some(Mode::Stopped | Mode::Locked) => step == 0 || step == 4 || step == 8,
+        Some(Mode::Idling) => step < 10,
+        Some(Mode::TakingOff | Mode::Flying | Mode::Holding | Mode::Landing) => true,
+        Some(Mode::Descending) => step % 4 < 2,
         None => step.is_multiple_of(2),
     }
 }

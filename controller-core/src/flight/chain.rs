@@ -4,27 +4,41 @@
 //! every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach, and
 //! takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and the
 //! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
-//! that it is where it should be (position and velocity errors zero); then z_1 = z_2 = 0, the filters stay at zero, and
-//! u = g e3 exactly: level at hover thrust at once, with the attitude law as it is proven, about the heading it had. The extended
-//! law keeps what it knows of the vehicle, its torque bias and thrust scale, and learns nothing meanwhile.
+//! that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had. The vertical
+//! speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to that of the descent.
+//! The extended law keeps what it knows of the vehicle, its torque bias and thrust scale, and learns nothing meanwhile.
 //!
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
 //! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
+//!
+//! **Why the rotors may be brought up slowly.** For [`SPOOL_TICKS`] after the rotors' idle a rotor is given a growing part of the way from
+//! its least thrust to the law's: no rotor leaves the range in which the law's own commands are. The reference waits at rest.
 
 use super::lift_off::LiftOff;
 use super::permission::heading;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
+use super::watch::up;
 use crate::allocation::{Mixer, Thrusts};
 use crate::certificate::certified::Certified;
 use crate::controller::Command;
 use crate::error::InputError;
-use crate::governor::{self, Governor, GovernorLimits, Setpoint};
+use crate::estimator::EstimatedState;
+use crate::governor::{self, Governor, GovernorLimits, Motion, Setpoint, Turn};
 use crate::heading::Heading;
 use crate::law::Law;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
-use nalgebra::{Quaternion, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
+
+/// Ticks from the rotors' idle to the law's thrusts.
+const SPOOL_TICKS: u32 = 100;
+
+/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
+const DRIFT: f32 = 0.05;
+
+/// The least speed of a descent by the IMU alone, m/s.
+const DESCENT: f32 = 0.7;
 
 /// Where a chain's governor and mixer lie, 7 KB and 6 KB. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,9 +80,22 @@ pub(super) struct Chain<'m> {
     rotors: usize,
     /// The greatest horizontal speed of a reference, m/s.
     speed: f32,
+    /// The vehicle's mass, kg, and gravity, m/s^2.
+    mass: f32,
+    gravity: f32,
+    /// Each rotor's least thrust, N.
+    least: Thrusts,
+    period: f32,
     /// The last tick's.
     reference: Reference,
     thrusts: Option<Thrusts>,
+    flown: Option<Flown>,
+    /// Whether the rotors give what the law asked for.
+    is_exact: bool,
+    /// Ticks since the rotors' idle.
+    spooled: u32,
+    /// By the accelerometer alone, m/s, while there is no pose; and for how long, s.
+    sinking: (f32, f32),
     /// Ticks in a row without new thrusts.
     refusals: u32,
     lift_off: LiftOff,
@@ -103,6 +130,7 @@ impl<'m> Chain<'m> {
     ) -> Result<Self, Grounded> {
         let configuration = certified.configuration();
         let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
+        let vehicle = configuration.vehicle();
         let Memory { governor, mixer } = memory;
         mixer.prepare(rotors);
         Ok(Self {
@@ -111,8 +139,16 @@ impl<'m> Chain<'m> {
             mixer,
             rotors: rotors.len(),
             speed: configuration.bounds().horizontal_speed,
+            mass: vehicle.mass,
+            gravity: vehicle.gravity,
+            least: rotors.iter().map(|rotor| rotor.thrust_min).collect(),
+            period,
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
+            flown: None,
+            is_exact: true,
+            spooled: 0,
+            sinking: (0.0, 0.0),
             refusals: 0,
             lift_off: LiftOff::DONE,
         })
@@ -132,14 +168,35 @@ impl<'m> Chain<'m> {
         self.law.reset();
         self.reference = resting(position, heading);
         self.thrusts = None;
+        self.flown = None;
+        self.is_exact = true;
+        self.spooled = 0;
         self.refusals = 0;
         self.lift_off = LiftOff::from(position);
         Ok(())
     }
 
-    /// Turns to levelling: a hover at the last heading, the law restarted.
-    pub fn level(&mut self) {
+    /// Makes for a place `height` above the one it is at, m.
+    ///
+    /// # Errors
+    /// Names the field the governor refuses.
+    pub fn rise(&mut self, height: f32) -> Result<(), &'static str> {
+        let mut position = self.reference.position;
+        position.z += height;
+        self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep })
+    }
+
+    /// Goes down at `speed`, m/s; to be said again each tick.
+    pub fn sink(&mut self, speed: f32) {
+        let motion = Motion::Velocity(Vector3::new(0.0, 0.0, -speed));
+        // A number within its range, as the settings have it; refused, the reference stops.
+        let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
+    }
+
+    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s.
+    pub fn level(&mut self, sinking: f32) {
         self.reference = resting(&self.reference.position, &self.reference.heading);
+        self.sinking = (sinking, 0.0);
         self.law.restart();
     }
 
@@ -190,26 +247,29 @@ impl<'m> Chain<'m> {
     /// # Errors
     /// What the law or the allocation cannot use.
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
-        self.reference = self.governor.tick();
+        if self.spooled >= SPOOL_TICKS {
+            self.reference = self.governor.tick();
+        }
         if self.lift_off.stands(state) {
             self.law.hold_estimates();
         }
         self.step(state)
     }
 
-    /// One tick of levelling, after [`Self::level`].
+    /// One tick of levelling, after [`Self::level`], or of going down.
     ///
     /// # Errors
     /// As [`Self::fly`].
-    pub fn fly_level(
-        &mut self,
-        attitude: Quaternion<f32>,
-        angular_velocity: Vector3<f32>,
-    ) -> Result<Flown, InputError> {
-        let Reference { position, velocity, .. } = self.reference;
-        // Without a velocity there is nothing to learn from.
+    pub fn fly_level(&mut self, estimated: &EstimatedState, descends: bool) -> Result<Flown, InputError> {
+        let State { attitude, angular_velocity, .. } = estimated.state;
+        let (speed, time) = &mut self.sinking;
+        *speed += estimated.acceleration.z * self.period;
+        *time += self.period;
+        self.reference.velocity.z = if descends { -(DESCENT + DRIFT * *time) } else { 0.0 };
+        let velocity = Vector3::new(0.0, 0.0, *speed);
+        // Without a pose there is nothing to learn from.
         self.law.hold_estimates();
-        self.step(&State { position, velocity, attitude, angular_velocity })
+        self.step(&State { position: self.reference.position, velocity, attitude, angular_velocity })
     }
 
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
@@ -218,12 +278,14 @@ impl<'m> Chain<'m> {
         let position_error = state.position - self.reference.position;
         let scale = self.law.thrust_scale();
         let allocation = self.mixer.allocate(&wrench.scaled(1.0 / scale))?;
-        if !allocation.is_exact() {
+        self.is_exact = allocation.is_exact();
+        if !self.is_exact {
             self.law.hold_estimates();
         }
         self.refusals = 0;
-        self.thrusts = Some(allocation.thrusts);
-        Ok(Flown {
+        self.spooled = self.spooled.saturating_add(1).min(SPOOL_TICKS);
+        self.thrusts = Some(self.spool(allocation.thrusts));
+        let flown = Flown {
             state: *state,
             reference: self.reference,
             wrench,
@@ -231,7 +293,43 @@ impl<'m> Chain<'m> {
             position_error,
             mrp,
             thrust_scale: scale,
-        })
+        };
+        self.flown = Some(flown);
+        Ok(flown)
+    }
+
+    /// The part of the way to `thrusts`, N, that the rotors have come.
+    fn spool(&self, mut thrusts: Thrusts) -> Thrusts {
+        if self.spooled < SPOOL_TICKS {
+            let part = self.spooled as f32 / SPOOL_TICKS as f32;
+            thrusts.iter_mut().zip(&self.least).for_each(|(thrust, least)| *thrust = least + part * (*thrust - least));
+        }
+        thrusts
+    }
+
+    /// What was flown last; none before the first tick.
+    pub fn flown(&self) -> Option<&Flown> {
+        self.flown.as_ref()
+    }
+
+    /// Whether the rotors gave what the law asked for last.
+    pub fn is_exact(&self) -> bool {
+        self.is_exact
+    }
+
+    /// Whether the vehicle still stands where it started.
+    pub fn is_standing(&self) -> bool {
+        self.lift_off.is_standing()
+    }
+
+    /// Where the reference is.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// The vertical acceleration that a thrust means, m/s^2.
+    pub fn asked_acceleration(&self, flown: &Flown) -> f32 {
+        flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity
     }
 
     /// This tick's thrusts, N, in the rotors' order; the last ones if it was refused, none before the first.

@@ -2,7 +2,7 @@
 //!
 //! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are held until
 //! the vehicle is [`CLEAR`] above where it was armed or faster than [`MOVING`] in any direction. A vehicle armed in the air
-//! falls faster than that within a few ticks if anything is left to be learnt. A later landing is not noticed here.
+//! falls faster than that within a few ticks if anything is left to be learnt. A later landing is `watch`'s to notice.
 
 use crate::state::State;
 use nalgebra::Vector3;
@@ -31,6 +31,11 @@ impl LiftOff {
     /// The same vehicle is found to be at `position`, m, world: it has not moved there.
     pub fn displace(&mut self, position: &Vector3<f32>) {
         self.standing_at = self.standing_at.map(|_| position.z);
+    }
+
+    /// Whether it stood when it was looked at last.
+    pub fn is_standing(&self) -> bool {
+        self.standing_at.is_some()
     }
 
     /// Whether the vehicle still stands in `state`; once it has left the ground it stands no more.

@@ -1,8 +1,9 @@
-//! What arming and a motor test need, and why they are refused.
+//! What arming, a motor test and the ways of flying need, and why they are refused.
 
 use super::estimate::Estimate;
 use super::reason::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode};
+use super::watch::up;
 use crate::estimator::{EstimatedState, Fault};
 use crate::heading::Heading;
 use crate::math;
@@ -40,13 +41,25 @@ pub(super) struct Start {
     pub heading: Heading,
 }
 
-/// Only a disarmed vehicle takes requests, and none against a disarm command.
-pub(super) fn to_leave(mode: Mode, disarm: bool) -> Result<(), Refusal> {
+/// Only where no motor turns, and nobody has to look first, may one begin to.
+pub(super) fn to_turn_motors(mode: Mode) -> Result<(), Refusal> {
     match mode {
-        _ if disarm => Err(Refusal::DisarmCommanded),
-        Mode::Disarmed => Ok(()),
+        Mode::Checks | Mode::Ready | Mode::Locked => Ok(()),
+        // There the IMU has not been heard.
+        Mode::Boot => Err(Refusal::ImuStale),
         Mode::MotorTest => Err(Refusal::MotorTestRunning),
-        Mode::Flying | Mode::Holding | Mode::Levelling => Err(Refusal::AlreadyArmed),
+        Mode::Stopped => Err(Refusal::Stopped),
+        Mode::Idling | Mode::TakingOff | Mode::Flying | Mode::Holding | Mode::Landing | Mode::Descending => {
+            Err(Refusal::AlreadyArmed)
+        }
+    }
+}
+
+/// Holding, or flying to a point: in the air, with an estimate, unless the vehicle must land.
+pub(super) fn to_hold(mode: Mode, must_land: bool) -> Result<(), Refusal> {
+    match mode {
+        Mode::Landing if must_land => Err(Refusal::MustLand),
+        _ => require(mode.is_guided(), Refusal::NotInTheAir),
     }
 }
 
@@ -64,7 +77,7 @@ pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result
     require(still, Refusal::Moving)?;
     require(acceleration.norm_squared() < GRAVITY_ERROR * GRAVITY_ERROR, Refusal::Gravity)?;
     require(estimate.settled, Refusal::PosesUnsettled)?;
-    require(upright(&state.attitude) > TILT_COSINE, Refusal::Tilted)?;
+    require(up(&state.attitude) > TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
     let heading = heading(&state.attitude).ok_or(Refusal::Tilted)?;
     Ok(Start { position: state.position, heading })
@@ -77,13 +90,8 @@ pub(super) fn to_test(test: &MotorTest, rotors: usize) -> Result<(), Refusal> {
     require(test.duration > 0 && test.duration <= MOTOR_TEST_MAX, Refusal::MotorTestDuration)
 }
 
-fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {
+pub(super) fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {
     if condition { Ok(()) } else { Err(refusal) }
-}
-
-/// e3 . R e3: the cosine of the tilt.
-fn upright(q: &Quaternion<f32>) -> f32 {
-    1.0 - 2.0 * (q.i * q.i + q.j * q.j)
 }
 
 /// Which way body x points, seen from above; none straight up or down.

@@ -14,65 +14,194 @@ pub const TEXT_MAX: usize = 50;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reason {
-    /// Arming was requested and permitted.
-    ArmCommanded,
-    /// A disarm command.
-    DisarmCommanded,
-    /// A motor test was requested and permitted.
+    /// The IMU was heard for the first time.
+    Started,
+    /// The configuration is not certified.
+    NotCertified,
+    /// Everything that arming needs is there.
+    Ready,
+    /// Something of it is missing again.
+    NotReady,
+    /// Arming was requested and granted.
+    Armed,
+    /// A disarm command was granted.
+    Disarmed,
+    /// The kill switch is on.
+    Killed,
+    /// A motor test was requested and granted.
     MotorTestRequested,
     /// Another request arrived during a motor test.
     MotorTestInterrupted,
     /// The motor test has had its time.
     MotorTestOver,
-    /// No IMU increment for [`super::rules::IMU_AGE_MAX`] in flight, or the estimator lost its state.
+    /// Nobody wanted to fly for [`super::rules::IDLING_MAX`].
+    IdlingOver,
+    /// A take-off was requested and granted.
+    TakeOffCommanded,
+    /// The take-off has reached its height.
+    TakenOff,
+    /// Flight by setpoints was requested and granted.
+    SetpointsCommanded,
+    /// Holding was requested and granted.
+    HoldCommanded,
+    /// Landing was requested and granted.
+    LandCommanded,
+    /// The vehicle stands on the ground.
+    Landed,
+    /// The vehicle lies on its back or its side.
+    Crashed,
+    /// No IMU increment for [`super::rules::IMU_AGE_MAX`], or the estimator lost its state.
     ImuLost,
     /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
     ThrustsRefused,
     /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
     PoseLost,
-    /// Poses are believed again while levelling.
+    /// The same, while idling.
+    PoseLostOnGround,
+    /// Poses are believed again.
     PoseRegained,
-    /// None was in [`super::rules::LEVELLING_MAX`] of levelling.
-    PoseLostForLong,
+    /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
+    DescendingOver,
     /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
     GroundStationLost,
-    /// The ground station was heard again.
-    GroundStationRegained,
+    /// The same, while idling.
+    GroundStationLostOnGround,
+    /// The ground station stayed silent while the vehicle held.
+    GroundStationGone,
+    /// A setpoint that must be renewed was not.
+    SetpointsLost,
+    /// The battery is low.
+    BatteryLow,
+    /// The battery is critical.
+    BatteryCritical,
+    /// The vehicle is outside the fence.
+    FenceBreached,
+    /// The vehicle does not follow its reference.
+    TrackingLost,
+    /// The rotors do not give what the law asks for.
+    Saturated,
+    /// Control is late.
+    Overrun,
 }
 
 impl Reason {
     /// Every reason.
-    pub const ALL: [Self; 12] = [
-        Self::ArmCommanded,
-        Self::DisarmCommanded,
+    pub const ALL: [Self; 34] = [
+        Self::Started,
+        Self::NotCertified,
+        Self::Ready,
+        Self::NotReady,
+        Self::Armed,
+        Self::Disarmed,
+        Self::Killed,
         Self::MotorTestRequested,
         Self::MotorTestInterrupted,
         Self::MotorTestOver,
+        Self::IdlingOver,
+        Self::TakeOffCommanded,
+        Self::TakenOff,
+        Self::SetpointsCommanded,
+        Self::HoldCommanded,
+        Self::LandCommanded,
+        Self::Landed,
+        Self::Crashed,
         Self::ImuLost,
         Self::ThrustsRefused,
         Self::PoseLost,
+        Self::PoseLostOnGround,
         Self::PoseRegained,
-        Self::PoseLostForLong,
+        Self::DescendingOver,
         Self::GroundStationLost,
-        Self::GroundStationRegained,
+        Self::GroundStationLostOnGround,
+        Self::GroundStationGone,
+        Self::SetpointsLost,
+        Self::BatteryLow,
+        Self::BatteryCritical,
+        Self::FenceBreached,
+        Self::TrackingLost,
+        Self::Saturated,
+        Self::Overrun,
     ];
+
+    /// Whether the vehicle acts on its own because something is wrong.
+    #[must_use]
+    pub const fn is_own_doing(self) -> bool {
+        match self {
+            Self::Started
+            | Self::Ready
+            | Self::NotReady
+            | Self::Armed
+            | Self::Disarmed
+            | Self::MotorTestRequested
+            | Self::MotorTestInterrupted
+            | Self::MotorTestOver
+            | Self::IdlingOver
+            | Self::TakeOffCommanded
+            | Self::TakenOff
+            | Self::SetpointsCommanded
+            | Self::HoldCommanded
+            | Self::LandCommanded
+            | Self::Landed
+            | Self::PoseRegained => false,
+            Self::NotCertified
+            | Self::Killed
+            | Self::Crashed
+            | Self::ImuLost
+            | Self::ThrustsRefused
+            | Self::PoseLost
+            | Self::PoseLostOnGround
+            | Self::DescendingOver
+            | Self::GroundStationLost
+            | Self::GroundStationLostOnGround
+            | Self::GroundStationGone
+            | Self::SetpointsLost
+            | Self::BatteryLow
+            | Self::BatteryCritical
+            | Self::FenceBreached
+            | Self::TrackingLost
+            | Self::Saturated
+            | Self::Overrun => true,
+        }
+    }
 
     /// The reason in words.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
-            Self::ArmCommanded => "Armed",
-            Self::DisarmCommanded => "Disarmed by command",
+            Self::Started => "Boot over: checking",
+            Self::NotCertified => "Locked: not certified to fly",
+            Self::Ready => "Ready to arm",
+            Self::NotReady => "No longer ready to arm",
+            Self::Armed => "Armed: idling",
+            Self::Disarmed => "Disarmed by command",
+            Self::Killed => "Stopped: kill switch",
             Self::MotorTestRequested => "Motor test begins",
             Self::MotorTestInterrupted => "Motor test stopped by another request",
             Self::MotorTestOver => "Motor test over",
+            Self::IdlingOver => "Disarmed: nothing commanded for 10 s",
+            Self::TakeOffCommanded => "Taking off",
+            Self::TakenOff => "Take-off over: holding position",
+            Self::SetpointsCommanded => "Flying setpoints",
+            Self::HoldCommanded => "Holding position by command",
+            Self::LandCommanded => "Landing by command",
+            Self::Landed => "Landed: disarmed",
+            Self::Crashed => "Stopped: lying on its back or side",
             Self::ImuLost => "Stopped: no IMU for 20 ms, or its data broke off",
             Self::ThrustsRefused => "Stopped: the law refused its input for 50 ms",
-            Self::PoseLost => "Pose lost: levelling for at most 1 s",
+            Self::PoseLost => "Pose lost: levelling for 1 s, then going down",
+            Self::PoseLostOnGround => "Disarmed: pose lost",
             Self::PoseRegained => "Pose regained: braking to hold position",
-            Self::PoseLostForLong => "Stopped: no believable pose in 1 s of levelling",
+            Self::DescendingOver => "Stopped: neither pose nor ground found in 30 s",
             Self::GroundStationLost => "Ground station lost: holding position",
-            Self::GroundStationRegained => "Ground station regained",
+            Self::GroundStationLostOnGround => "Disarmed: ground station lost",
+            Self::GroundStationGone => "Ground station still lost: landing",
+            Self::SetpointsLost => "Setpoints lost: holding position",
+            Self::BatteryLow => "Battery low: landing",
+            Self::BatteryCritical => "Battery critical: landing",
+            Self::FenceBreached => "Outside the fence: landing",
+            Self::TrackingLost => "Far from where it should be for 5 s: landing",
+            Self::Saturated => "Rotors at their limits for 1 s: landing",
+            Self::Overrun => "Control late for 100 ms: landing",
         }
     }
 }
@@ -141,6 +270,26 @@ pub enum Refusal {
     Grounded(Grounded),
     /// The motors turn already.
     AlreadyArmed,
+    /// The vehicle was stopped in flight or crashed, and nobody has disarmed it since.
+    Stopped,
+    /// The kill switch is on.
+    Killed,
+    /// The battery is low.
+    BatteryLow,
+    /// Motors stop in the air by force only.
+    InTheAir,
+    /// Only an armed vehicle on the ground takes off.
+    NotIdling,
+    /// Only in the air there is somewhere to hold or land.
+    NotInTheAir,
+    /// What made it land is still so.
+    MustLand,
+    /// No setpoint came in the last second.
+    NoSetpoints,
+    /// A height of no take-off: not in 0.5 m to 50 m.
+    TakeOffHeight,
+    /// The point is outside the fence.
+    OutsideFence,
     /// A motor test was running; the request has ended it.
     MotorTestRunning,
     /// A disarm command came in the same tick.
@@ -167,8 +316,6 @@ pub enum Refusal {
     MotorTestLevel,
     /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
     MotorTestDuration,
-    /// Setpoints are accepted in flight with a ground station and an estimate, and at no other time.
-    NotFlying,
     /// A setpoint with a field that is not finite or out of range.
     Setpoint(&'static str),
 }
@@ -180,6 +327,16 @@ impl fmt::Display for Refusal {
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
             Self::AlreadyArmed => "Refused: armed already",
+            Self::Stopped => "Refused: stopped in flight; disarm first",
+            Self::Killed => "Refused: the kill switch is on",
+            Self::BatteryLow => "Refused: the battery is low",
+            Self::InTheAir => "Refused: in the air; land, or disarm by force",
+            Self::NotIdling => "Refused: arm on the ground first",
+            Self::NotInTheAir => "Refused: not in the air",
+            Self::MustLand => "Refused: what made it land is still so",
+            Self::NoSetpoints => "Refused: no setpoint in the last second",
+            Self::TakeOffHeight => "Refused: take-off height not in 0.5 to 50 m",
+            Self::OutsideFence => "Refused: outside the fence",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
             Self::ImuStale => "Refused: no IMU sample for 20 ms",
@@ -192,7 +349,6 @@ impl fmt::Display for Refusal {
             Self::NoSuchRotor => "Motor test refused: no such rotor",
             Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
             Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
-            Self::NotFlying => "Setpoint refused: not flying",
         })
     }
 }

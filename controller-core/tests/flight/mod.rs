@@ -14,7 +14,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::flight::{
-    Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
+    Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
@@ -76,7 +76,7 @@ pub fn estimator() -> &'static mut Estimator {
 /// A new pilot; certified once for all, since that takes longer than most flights here.
 pub fn pilot() -> Pilot<'static> {
     static CERTIFIED: LazyLock<Certified> = LazyLock::new(certified);
-    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), estimator(), memory())
+    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator(), memory())
 }
 
 /// A pose as sources give it, at rest.
@@ -93,12 +93,15 @@ pub struct Handed {
     pub ground_station: Option<u64>,
     pub request: Option<Request>,
     pub disarm: bool,
+    pub killed: bool,
+    pub battery: Battery,
+    pub is_late: bool,
     pub setpoint: Option<Setpoint>,
 }
 
 impl Handed {
     pub fn to(&self, pilot: &mut Pilot) -> Outcome {
-        let Self { now, increments, poses, ground_station, request, disarm, setpoint } = self;
+        let Self { now, increments, poses, ground_station, request, disarm, killed, battery, is_late, setpoint } = self;
         pilot.tick(&Inputs {
             now: *now,
             increments,
@@ -106,6 +109,9 @@ impl Handed {
             ground_station: *ground_station,
             request: *request,
             disarm: *disarm,
+            killed: *killed,
+            battery: *battery,
+            is_late: *is_late,
             setpoint: *setpoint,
         })
     }
@@ -144,6 +150,9 @@ pub fn settled(now: u64) -> Pilot<'static> {
     pilot
 }
 
+/// Ticks from idling to the law's thrusts.
+pub const SPOOLING: u64 = 100;
+
 /// Ticks after which a vehicle at rest may be armed: half a second for the estimate to begin, and a second.
 pub const SETTLING: u64 = 160;
 
@@ -179,8 +188,8 @@ pub struct Flight {
     pub told: Told,
     /// What becomes of the IMU's increments.
     pub imu: Box<dyn FnMut(&mut Increment)>,
-    /// Whether something holds the body where it is.
-    pub held: bool,
+    /// Where the ground is, m: a body there does not fall, slide or tilt.
+    pub ground: f64,
     /// Whether something carries its weight.
     pub weightless: bool,
     mixer: Mixer,
@@ -190,7 +199,7 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A disarmed vehicle held at rest, level, 1 m up, heading along x.
+    /// A disarmed vehicle at rest, level, on ground that is 1 m up, heading along x.
     pub fn new() -> Self {
         let body = Body::resting(Vector3::new(0.0, 0.0, 1.0), Quaternion::new(1.0, 0.0, 0.0, 0.0));
         let inputs = Handed { now: 1_000_000, ..Handed::default() };
@@ -201,7 +210,7 @@ impl Flight {
             inputs,
             told: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
             imu: Box::new(|_| {}),
-            held: true,
+            ground: 1.0,
             weightless: false,
             mixer: Mixer::new(&rotors()),
             certified: certified(),
@@ -217,11 +226,22 @@ impl Flight {
         flight
     }
 
-    /// The same, armed and let go.
-    pub fn armed() -> Self {
+    /// The same, armed and idling.
+    pub fn idling() -> Self {
         let mut flight = Self::settled();
         flight.inputs.request = Some(Request::Arm);
         assert_eq!(flight.tick().answer, Some(Ok(())));
+        flight
+    }
+
+    /// The same, flying setpoints, the first of which is where it is; the ground gone from under it.
+    pub fn armed() -> Self {
+        let mut flight = Self::idling();
+        flight.inputs.request = Some(Request::FlySetpoints);
+        flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
+        flight.until(Reason::SetpointsCommanded, 1);
+        flight.ticks(SPOOLING);
+        flight.ground = f64::NEG_INFINITY;
         flight
     }
 
@@ -245,7 +265,7 @@ impl Flight {
 
         let wrench = match &outcome.output {
             Output::Thrusts(thrusts) => self.mixer.wrench(thrusts),
-            Output::Stop | Output::Test { .. } => Wrench { thrust: 0.0, torque: Vector3::zeros() },
+            Output::Stop | Output::Idle | Output::Test { .. } => Wrench { thrust: 0.0, torque: Vector3::zeros() },
         };
         if let Some(Ok(flown)) = &outcome.flown {
             let proven = self.certified.certificate().paper().unwrap().sharp;
@@ -254,7 +274,6 @@ impl Flight {
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
             assert!(torque.x <= proven.torque.x && torque.y <= proven.torque.y && torque.z <= proven.torque.z);
         }
-        self.held &= !matches!(outcome.output, Output::Thrusts(_));
         for start in [now, now + PERIOD / 2] {
             let increment = self.move_on(&wrench, start, start + PERIOD / 2);
             self.increments.push(increment);
@@ -268,8 +287,9 @@ impl Flight {
         let (before, seconds) = (self.body, (end - start) as f64 * 1e-6);
         if self.weightless {
             self.body.position += self.body.velocity * seconds;
-        } else if !self.held {
+        } else {
             self.body.advance(vehicle, wrench, seconds, 5);
+            self.stay_above_ground(&before);
         }
         let attitude = UnitQuaternion::new_normalize(before.attitude);
         let gravity = Vector3::new(0.0, 0.0, f64::from(vehicle.gravity));
@@ -281,6 +301,14 @@ impl Flight {
             delta_angle: turned.scaled_axis().cast(),
             delta_velocity: attitude.inverse_transform_vector(&gained).cast(),
             angular_velocity: self.body.angular_velocity.cast(),
+        }
+    }
+
+    /// What the ground holds up stays as it was `before`, but for a height at which it comes down.
+    fn stay_above_ground(&mut self, before: &Body) {
+        if self.body.position.z <= self.ground {
+            let height = before.position.z.max(self.ground);
+            self.body = Body::resting(Vector3::new(before.position.x, before.position.y, height), before.attitude);
         }
     }
 

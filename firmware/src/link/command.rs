@@ -2,9 +2,11 @@
 //!
 //! | command | does |
 //! |---|---|
-//! | 400 COMPONENT_ARM_DISARM | 1 asks the flight rules to arm, 0 disarms at once; forcing (parameter 2) is not listened to |
+//! | 400 COMPONENT_ARM_DISARM | asks the flight rules to arm (1) or disarm (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
+//! | 22 NAV_TAKEOFF | asks to take off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT` says |
+//! | 21 NAV_LAND | asks to land here |
+//! | 176 DO_SET_MODE | PX4's custom modes: asks to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
-//! | 176 DO_SET_MODE | guided flight is the only mode there is; with the HIL flag, while disarmed: sensors from a simulator |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | any other of the dialect | is answered as unsupported |
 
@@ -14,8 +16,15 @@ use crate::shared::Procedure;
 use controller_core::flight::{MotorTest, Request};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavModeFlag, MavResult, MotorTestThrottleType};
 
-/// The custom main mode by which PX4's clients ask for flight by setpoints (OFFBOARD).
-const CUSTOM_OFFBOARD: f32 = 6.0;
+/// The number that forces (MAVLink's, in parameter 2 of an arm command).
+const FORCE: f32 = 21196.0;
+
+/// PX4's custom main modes, and what AUTO is divided into.
+const AUTO: f32 = 4.0;
+const OFFBOARD: f32 = 6.0;
+const AUTO_TAKEOFF: f32 = 2.0;
+const AUTO_LOITER: f32 = 3.0;
+const AUTO_LAND: f32 = 6.0;
 
 /// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
 const REPETITION: u64 = 1_000_000;
@@ -25,8 +34,8 @@ const REPETITION: u64 = 1_000_000;
 pub enum Action {
     /// Put it to the flight rules, which answer.
     Ask(Request),
-    /// Disarm, and say so.
-    Disarm,
+    /// Disarm at once, in the air as well, and say so.
+    ForceDisarm,
     /// Take sensors from a simulator from now on, and say so.
     EnterHil,
     /// Calibrate, or end a calibration; the IMU task answers.
@@ -39,13 +48,22 @@ pub enum Action {
 #[must_use]
 pub fn action(command: &COMMAND_LONG_DATA, armed: bool) -> Action {
     match command.command {
-        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM if command.param1 == 0.0 => Action::Disarm,
-        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM if command.param1 == 1.0 => Action::Ask(Request::Arm),
-        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => DENIED,
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match command.param1 {
+            0.0 if command.param2 == FORCE => Action::ForceDisarm,
+            0.0 => Action::Ask(Request::Disarm),
+            1.0 => Action::Ask(Request::Arm),
+            _ => DENIED,
+        },
+        MavCmd::MAV_CMD_NAV_TAKEOFF => {
+            // Most clients that name no height send NaN, some zero.
+            let height = Some(command.param7).filter(|height| !height.is_nan() && *height != 0.0);
+            Action::Ask(Request::TakeOff(height))
+        }
+        MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
         MavCmd::MAV_CMD_DO_MOTOR_TEST => {
             motor_test(command).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test)))
         }
-        MavCmd::MAV_CMD_DO_SET_MODE => set_mode(command.param1, command.param2, armed),
+        MavCmd::MAV_CMD_DO_SET_MODE => set_mode(command, armed),
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(command),
         _ => Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
     }
@@ -83,20 +101,28 @@ fn calibration(command: &COMMAND_LONG_DATA) -> Action {
     Action::Calibrate(procedure)
 }
 
-fn set_mode(base: f32, custom: f32, armed: bool) -> Action {
+/// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a simulator and the
+/// guided flag for flight by setpoints.
+fn set_mode(command: &COMMAND_LONG_DATA, armed: bool) -> Action {
+    let COMMAND_LONG_DATA { param1: base, param2: main, param3: sub, .. } = *command;
     if !(0.0..=255.0).contains(&base) {
         return DENIED;
     }
     let base = MavModeFlag::from_bits_retain(base as u8);
+    if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
+        return match (main, sub) {
+            (OFFBOARD, _) => Action::Ask(Request::FlySetpoints),
+            (AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
+            (AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
+            (AUTO, AUTO_LAND) => Action::Ask(Request::Land),
+            _ => DENIED,
+        };
+    }
     if base.contains(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED) {
         return if armed { DENIED } else { Action::EnterHil };
     }
-    let guided = if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
-        custom == CUSTOM_OFFBOARD
-    } else {
-        base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED)
-    };
-    if guided { Action::Answer(MavResult::MAV_RESULT_ACCEPTED) } else { DENIED }
+    let guided = base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED);
+    if guided { Action::Ask(Request::FlySetpoints) } else { DENIED }
 }
 
 /// Knows a command that was delivered twice.

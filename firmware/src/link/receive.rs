@@ -193,7 +193,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 Ok(()) => return,
                 Err(_) => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
             },
-            Action::Disarm => {
+            Action::ForceDisarm => {
                 self.shared.request_disarm();
                 MavResult::MAV_RESULT_ACCEPTED
             }

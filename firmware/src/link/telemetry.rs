@@ -13,17 +13,29 @@ use mavlink::dialects::common::{
 /// The version of the protocol that HEARTBEAT names.
 const PROTOCOL: u8 = 3;
 
-/// What the vehicle is and how it does; no mode without a fresh report. The custom mode counts the flight rules' modes
-/// from 1.
+/// Main and sub-modes by which PX4's clients know what a vehicle does.
+const AUTO: u32 = 4 << 16;
+const AUTO_READY: u32 = AUTO | 1 << 24;
+const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
+const AUTO_LOITER: u32 = AUTO | 3 << 24;
+const AUTO_LAND: u32 = AUTO | 6 << 24;
+const OFFBOARD: u32 = 6 << 16;
+
+/// What the vehicle is and how it does; no mode without a fresh report. The custom mode is PX4's for what comes nearest.
 #[must_use]
 pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
     let (custom_mode, system_status) = match mode {
         None => (0, MavState::MAV_STATE_BOOT),
-        Some(Mode::Disarmed) => (1, MavState::MAV_STATE_STANDBY),
-        Some(Mode::MotorTest) => (2, MavState::MAV_STATE_STANDBY),
-        Some(Mode::Flying) => (3, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::Holding) => (4, MavState::MAV_STATE_CRITICAL),
-        Some(Mode::Levelling) => (5, MavState::MAV_STATE_EMERGENCY),
+        Some(Mode::Boot) => (AUTO_READY, MavState::MAV_STATE_BOOT),
+        Some(Mode::Checks) => (AUTO_READY, MavState::MAV_STATE_CALIBRATING),
+        Some(Mode::Ready | Mode::MotorTest) => (AUTO_READY, MavState::MAV_STATE_STANDBY),
+        Some(Mode::Idling) => (AUTO_READY, MavState::MAV_STATE_ACTIVE),
+        Some(Mode::TakingOff) => (AUTO_TAKEOFF, MavState::MAV_STATE_ACTIVE),
+        Some(Mode::Flying) => (OFFBOARD, MavState::MAV_STATE_ACTIVE),
+        Some(Mode::Holding) => (AUTO_LOITER, MavState::MAV_STATE_ACTIVE),
+        Some(Mode::Landing) => (AUTO_LAND, MavState::MAV_STATE_ACTIVE),
+        Some(Mode::Descending) => (AUTO_LAND, MavState::MAV_STATE_EMERGENCY),
+        Some(Mode::Stopped | Mode::Locked) => (AUTO_READY, MavState::MAV_STATE_EMERGENCY),
     };
     let mut base_mode = MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED
         | MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED

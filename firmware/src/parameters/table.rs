@@ -13,7 +13,7 @@ pub enum Name {
     HorizontalSpeed,
     /// The governor's vertical speed limit. Taken over at the next boot.
     VerticalSpeed,
-    /// Below this voltage the vehicle warns; 0 never does. Taken over at once.
+    /// Below this voltage the vehicle warns, and lands once; 0 never does. Taken over at once.
     BatteryLow,
     /// Along x: gyro bias of the first IMU. Rows of an IMU are taken over at the next boot.
     Imu1GyroX,
@@ -66,6 +66,22 @@ pub enum Name {
     BatteryNominal,
     /// What a pose takes at least from the camera to the vehicle, where its sender does not answer TIMESYNC. Taken over at once.
     PoseDelay,
+    /// Below this voltage the vehicle lands, whoever would like to fly on; 0 never does. Taken over at once.
+    BatteryCritical,
+    /// What the motors idle at, as a part of the command's range. Taken over at once.
+    MotorIdle,
+    /// How high a take-off goes that names no height. Rows of flight settings are taken over at the next boot.
+    TakeOffHeight,
+    /// How fast a landing goes down.
+    LandingSpeed,
+    /// How long the ground station may be silent before a vehicle that holds lands.
+    GroundStationPatience,
+    /// The fence: how far from where it was armed the vehicle may go.
+    FenceRadius,
+    /// The fence: how high above that place.
+    FenceHeight,
+    /// How far from its reference the vehicle may be for longer than 5 s before it lands.
+    TrackingErrorMax,
 }
 
 /// One row.
@@ -100,7 +116,7 @@ const fn row(
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 30] = [
+pub const PARAMETERS: [Row; 38] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    true),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  true),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", false),
@@ -131,6 +147,14 @@ pub const PARAMETERS: [Row; 30] = [
     row(Name::ThrustCurve,     "THR_CURVE",    [0.0, 1.0],    0.0,  "",      false),
     row(Name::BatteryNominal,  "BAT_NOMINAL",  [0.0, 60.0],   0.0,  "V",     false),
     row(Name::PoseDelay,       "POSE_DELAY",   [0.0, 150.0],  0.0,  "ms",    false),
+    row(Name::BatteryCritical, "BAT_CRIT",     [0.0, 60.0],   0.0,  "V",     false),
+    row(Name::MotorIdle,       "MOT_IDLE",     [0.0, 0.1],    0.03, "",      false),
+    row(Name::TakeOffHeight,   "TKO_ALT",      [0.5, 50.0],   1.5,  "m",     false),
+    row(Name::LandingSpeed,    "LAND_SPEED",   [0.1, 2.0],    0.5,  "m/s",   false),
+    row(Name::GroundStationPatience, "GCS_WAIT", [2.5, 600.0], 10.0, "s",    false),
+    row(Name::FenceRadius,     "FENCE_RADIUS", [2.0, 10_000.0], 100.0, "m",  false),
+    row(Name::FenceHeight,     "FENCE_HEIGHT", [2.0, 10_000.0], 50.0, "m",   false),
+    row(Name::TrackingErrorMax, "TRACK_ERR",   [0.5, 100.0],  3.0,  "m",     false),
 ];
 
 impl Name {

@@ -81,11 +81,9 @@ impl Event {
     /// What the vehicle does on its own is critical; what it was told to, or recovers from, is good to know.
     #[must_use]
     pub fn severity(&self) -> Severity {
-        use Reason::{GroundStationLost, ImuLost, PoseLost, PoseLostForLong, ThrustsRefused};
         match self {
-            Self::Mode(ImuLost | ThrustsRefused | PoseLost | PoseLostForLong | GroundStationLost)
-            | Self::Input(_)
-            | Self::MotorsLost => Severity::Critical,
+            Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
+            Self::Input(_) | Self::MotorsLost => Severity::Critical,
             Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
             Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) | Self::Thrust(_) => Severity::Warning,
             Self::Words(severity, _) => *severity,

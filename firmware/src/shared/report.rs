@@ -9,6 +9,10 @@ use controller_core::state::{State, Wrench};
 pub struct Report {
     /// Which state of the flight rules the tick left the vehicle in.
     pub mode: Mode,
+    /// Whether an arm command would be granted.
+    pub ready: bool,
+    /// Whether the vehicle has left the ground.
+    pub is_airborne: bool,
     /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
     /// What that is worth.
@@ -24,7 +28,9 @@ pub struct Report {
 impl Report {
     /// Of control that has done nothing yet.
     pub const NONE: Self = Self {
-        mode: Mode::Disarmed,
+        mode: Mode::Boot,
+        ready: false,
+        is_airborne: false,
         state: None,
         health: Health::NONE,
         wrench: None,

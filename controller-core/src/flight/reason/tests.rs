@@ -25,7 +25,16 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::NoSuchRotor,
         Refusal::MotorTestLevel,
         Refusal::MotorTestDuration,
-        Refusal::NotFlying,
+        Refusal::Stopped,
+        Refusal::Killed,
+        Refusal::BatteryLow,
+        Refusal::InTheAir,
+        Refusal::NotIdling,
+        Refusal::NotInTheAir,
+        Refusal::MustLand,
+        Refusal::NoSetpoints,
+        Refusal::TakeOffHeight,
+        Refusal::OutsideFence,
         Refusal::Setpoint(LONG),
     ];
     let reasons = Reason::ALL.iter().map(ToString::to_string);

@@ -1,0 +1,67 @@
+//! The fence: a cylinder about the place where the vehicle was armed.
+
+use super::settings::FlightSettings;
+use crate::governor::{Motion, Setpoint};
+use nalgebra::Vector3;
+
+/// How far one may go from where, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fence {
+    home: Vector3<f32>,
+    radius: f32,
+    height: f32,
+}
+
+impl Fence {
+    pub fn new(settings: &FlightSettings) -> Self {
+        Self { home: Vector3::zeros(), radius: settings.fence_radius, height: settings.fence_height }
+    }
+
+    /// Puts it about `home`, m, world.
+    pub fn place(&mut self, home: &Vector3<f32>) {
+        self.home = *home;
+    }
+
+    /// Whether `position`, m, world, is inside. One that is made of no numbers is not.
+    pub fn contains(&self, position: &Vector3<f32>) -> bool {
+        let away = position - self.home;
+        away.xy().norm_squared() <= self.radius * self.radius && away.z <= self.height
+    }
+
+    /// Whether a setpoint leads to a place inside, as far as it names one.
+    pub fn allows(&self, setpoint: &Setpoint) -> bool {
+        match &setpoint.motion {
+            Motion::Position(position) | Motion::PositionVelocityAcceleration { position, .. } => {
+                self.contains(position)
+            }
+            Motion::Velocity(_) => true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::governor::Turn;
+
+    #[test]
+    fn it_is_a_cylinder_about_home_without_a_floor() {
+        let mut fence = Fence::new(&FlightSettings { fence_radius: 5.0, fence_height: 3.0, ..FlightSettings::DEFAULT });
+        fence.place(&Vector3::new(10.0, 0.0, 1.0));
+        for (x, y, z, inside) in [
+            (10.0, 0.0, 1.0, true),
+            (13.0, 4.0, 4.0, true),
+            (13.0, 4.1, 1.0, false),
+            (10.0, 0.0, 4.1, false),
+            (10.0, 0.0, -9.0, true),
+            (f32::NAN, 0.0, 1.0, false),
+            (10.0, 0.0, f32::NAN, false),
+        ] {
+            let position = Vector3::new(x, y, z);
+            assert_eq!(fence.contains(&position), inside, "{position}");
+            let setpoint = Setpoint { motion: Motion::Position(position), turn: Turn::Keep };
+            assert_eq!(fence.allows(&setpoint), inside);
+        }
+        assert!(fence.allows(&Setpoint { motion: Motion::Velocity(Vector3::repeat(9.0)), turn: Turn::Keep }));
+    }
+}

@@ -1,0 +1,72 @@
+//! What somebody may ask for, and the setpoints that come beside it.
+
+use super::permission::MotorTest;
+use crate::governor::{Motion, Setpoint};
+
+/// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
+pub const SETPOINT_AGE_MAX: u64 = 1_000_000;
+
+/// What somebody may ask for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Request {
+    /// Arm and idle.
+    Arm,
+    /// Stop the motors of a vehicle on the ground.
+    Disarm,
+    /// Go up so high, m, or as high as the settings say; then hold.
+    TakeOff(Option<f32>),
+    /// Fly the setpoints that come. While disarmed: from arming on.
+    FlySetpoints,
+    /// Come to rest and hold position.
+    Hold,
+    /// Fly to a setpoint and hold it.
+    GoTo(Setpoint),
+    /// Land and disarm.
+    Land,
+    /// Turn one motor slowly.
+    MotorTest(MotorTest),
+}
+
+/// The newest setpoint.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Newest(Option<(Setpoint, u64)>);
+
+impl Newest {
+    /// Keeps one that came at `now`, us.
+    pub fn keep(&mut self, setpoint: &Setpoint, now: u64) {
+        self.0 = Some((*setpoint, now));
+    }
+
+    /// It, if it is fresh at `now`, us.
+    pub fn fresh(&self, now: u64) -> Option<&Setpoint> {
+        self.0.as_ref().filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX).map(|(setpoint, _)| setpoint)
+    }
+
+    /// Whether it has ended: it moved and was not renewed. A point is flown to for as long as it takes.
+    pub fn has_ended(&self, now: u64) -> bool {
+        let rests = matches!(self.0, Some((Setpoint { motion: Motion::Position(_), .. }, _)));
+        !rests && self.fresh(now).is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::governor::Turn;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn what_moves_ends_and_what_rests_does_not() {
+        let mut newest = Newest::default();
+        assert!(newest.has_ended(5) && newest.fresh(5).is_none());
+        let zero = Vector3::zeros();
+        let moving = Motion::PositionVelocityAcceleration { position: zero, velocity: zero, acceleration: zero };
+        for (motion, ends) in [(Motion::Position(zero), false), (Motion::Velocity(zero), true), (moving, true)] {
+            let setpoint = Setpoint { motion, turn: Turn::Keep };
+            newest.keep(&setpoint, 7);
+            assert_eq!(newest.fresh(6 + SETPOINT_AGE_MAX), Some(&setpoint));
+            assert!(!newest.has_ended(6 + SETPOINT_AGE_MAX));
+            assert_eq!((newest.fresh(7 + SETPOINT_AGE_MAX), newest.has_ended(7 + SETPOINT_AGE_MAX)), (None, ends));
+        }
+    }
+}
