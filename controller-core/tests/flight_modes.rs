@@ -6,7 +6,7 @@ use controller_core::flight::rules::{COASTING_MAX, GROUND_STATION_SILENCE_MAX, L
 use controller_core::flight::{Mode, MotorTest, Output, PERIOD, Reason, Refusal, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::{Flight, go_to};
+use flight::{Flight, GROUND, go_to};
 
 /// On its way to a far point, turning.
 fn under_way() -> Flight {
@@ -33,7 +33,7 @@ fn armed_it_holds_its_place_and_reaches_a_setpoint_within_five_seconds() {
 }
 
 #[test]
-fn without_a_pose_it_flies_on_for_a_second_levels_at_hover_thrust_for_another_and_stops_for_good() {
+fn without_a_pose_it_flies_on_for_a_second_levels_for_another_and_comes_down_by_the_imu() {
     let mut flight = under_way();
     flight.present.pose = false;
     // By IMU alone it goes on as if nothing had happened, for as long as a second exactly.
@@ -44,31 +44,47 @@ fn without_a_pose_it_flies_on_for_a_second_levels_at_hover_thrust_for_another_an
     }
     let (ticks, entry) = flight.until(Reason::PoseLost, 20);
     assert_eq!(ticks, 1);
-    assert_eq!(entry.mode, Mode::Levelling);
-    let yaw = flight.yaw();
-    let hover = hover_thrust();
+    assert_eq!(entry.mode, Mode::Descending);
+    let (yaw, height) = (flight.yaw(), flight.body.position.z);
+    flight.ground = height - 3.0;
     for tick in 1..LEVELLING_MAX / PERIOD {
-        let outcome = flight.tick();
-        let flown = outcome.flown.unwrap().unwrap();
-        assert!((f64::from(flown.wrench.thrust) - hover).abs() < 1e-5, "{}", flown.wrench.thrust);
+        let flown = flight.tick().flown.unwrap().unwrap();
         assert_eq!(flown.reference.acceleration, Vector3::zeros());
         assert!(tick < 40 || flight.tilt() < 0.07, "tick {tick}: {} rad", flight.tilt());
         assert!((flight.yaw() - yaw).abs() < 0.1, "tick {tick}: {} rad", flight.yaw() - yaw);
     }
     assert!(flight.tilt() < 0.04, "{} rad", flight.tilt());
-    let end = flight.tick();
-    assert_eq!(end.transition.map(|transition| transition.reason), Some(Reason::PoseLostForLong));
-    assert_eq!((end.output, end.mode), (Output::Stop, Mode::Disarmed));
+    assert!(flight.body.velocity.z.abs() < 0.3 && (flight.body.position.z - height).abs() < 0.5);
+    // Then down, at a speed that does no harm, until the ground is found.
+    let mut fastest = 0.0_f64;
+    let landed = (1..1_500).find_map(|tick| {
+        fastest = fastest.max(-flight.body.velocity.z);
+        let outcome = flight.tick();
+        outcome.transition.map(|transition| (tick, transition.reason, outcome.output))
+    });
+    let (ticks, reason, output) = landed.unwrap();
+    assert_eq!((reason, output), (Reason::Landed, Output::Stop));
+    assert!(fastest < 1.2 && (200..800).contains(&ticks), "{fastest} m/s, {ticks} ticks");
+    assert_eq!(flight.body.position.z, flight.ground);
+    // For good, poses or not.
     flight.present.pose = true;
-    for _ in 0..100 {
+    for _ in 0..300 {
         assert_eq!(flight.tick().output, Output::Stop);
     }
 }
 
-/// m g, N.
-fn hover_thrust() -> f64 {
-    let configuration = flight::configuration();
-    f64::from(configuration.vehicle().mass * configuration.vehicle().gravity)
+#[test]
+fn without_a_pose_and_without_a_ground_it_stops_in_the_end() {
+    let mut flight = under_way();
+    flight.present.pose = false;
+    flight.until(Reason::PoseLost, 120);
+    let (ticks, outcome) = flight.until(Reason::DescendingOver, 3_100);
+    assert_eq!((ticks, outcome.output, outcome.mode), (3_000, Output::Stop, Mode::Stopped));
+    // And stays so until somebody disarms it.
+    flight.inputs.request = Some(Request::Arm);
+    assert_eq!(flight.tick().answer, Some(Err(Refusal::Stopped)));
+    flight.inputs.request = Some(Request::Disarm);
+    assert_eq!(flight.tick().mode, Mode::Checks);
 }
 
 #[test]
@@ -80,16 +96,18 @@ fn a_pose_regained_within_the_second_is_flown_from_and_the_vehicle_brakes_and_ho
     flight.present.pose = true;
     let regained = flight.tick();
     assert_eq!(regained.transition.map(|transition| transition.reason), Some(Reason::PoseRegained));
-    assert_eq!(regained.mode, Mode::Flying);
+    assert_eq!(regained.mode, Mode::Holding);
     // The reference starts where the vehicle is.
     assert!(regained.flown.unwrap().unwrap().position_error.norm() < 0.1);
     let last = flight.ticks(1_500).flown.unwrap().unwrap();
     assert_eq!(last.reference.velocity, Vector3::zeros());
     assert!(last.position_error.norm() < 0.02, "{}", last.position_error);
     assert!(flight.body.velocity.norm() < 0.02);
-    // And takes setpoints again.
+    // And takes setpoints again, when somebody says so.
     flight.inputs.setpoint = Some(go_to(0.0, 0.0, 2.0));
-    assert_eq!(flight.tick().setpoint, Some(Ok(())));
+    assert_eq!(flight.tick().setpoint, None);
+    flight.inputs.request = Some(Request::FlySetpoints);
+    assert_eq!(flight.tick().mode, Mode::Flying);
 }
 
 #[test]
@@ -111,29 +129,39 @@ fn attitudes_between_poses_are_carried_on_by_the_gyro() {
 }
 
 #[test]
-fn without_a_ground_station_it_stops_and_holds_as_long_as_the_pose_lasts() {
+fn without_a_ground_station_it_holds_for_ten_seconds_and_lands() {
     let mut flight = under_way();
     flight.present.ground_station = false;
     let (ticks, _) = flight.until(Reason::GroundStationLost, 300);
     assert_eq!(ticks, GROUND_STATION_SILENCE_MAX / PERIOD);
     flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
-    assert_eq!(flight.tick().setpoint, Some(Err(Refusal::NotFlying)));
-    let still = flight.ticks(1_000).flown.unwrap().unwrap().reference;
-    let later = flight.ticks(6_000);
-    assert_eq!(later.mode, Mode::Holding);
-    assert_eq!(later.flown.unwrap().unwrap().reference, still);
-    assert!((flight.body.position - still.position.cast()).norm() < 0.02);
+    assert_eq!(flight.tick().setpoint, None);
+    let still = flight.ticks(700).flown.unwrap().unwrap().reference;
+    assert!(still.velocity.norm() < 1e-6 && (flight.body.position - still.position.cast()).norm() < 0.02);
     assert!(still.position.x < 25.0, "it went on to the setpoint: {}", still.position);
+    flight.ground = flight.body.position.z - 2.0;
+    let (ticks, landing) = flight.until(Reason::GroundStationGone, 60);
+    assert_eq!(landing.mode, Mode::Landing);
+    assert_eq!(ticks + 701 + GROUND_STATION_SILENCE_MAX / PERIOD, 1_000);
+    let (_, landed) = flight.until(Reason::Landed, 900);
+    assert_eq!((landed.output, landed.mode), (Output::Stop, Mode::Checks));
+    assert_eq!(flight.body.position.z, flight.ground);
+}
 
-    flight.present.ground_station = true;
-    let back = flight.tick();
-    assert_eq!(back.transition.map(|transition| transition.reason), Some(Reason::GroundStationRegained));
-    assert_eq!(back.flown.unwrap().unwrap().reference, still);
+#[test]
+fn a_ground_station_that_comes_back_finds_it_holding_and_may_fly_on() {
+    let mut flight = under_way();
     flight.present.ground_station = false;
     flight.until(Reason::GroundStationLost, 300);
-    flight.present.pose = false;
-    flight.until(Reason::PoseLost, 120);
-    flight.until(Reason::PoseLostForLong, 120);
+    flight.present.ground_station = true;
+    assert_eq!(flight.ticks(1_200).mode, Mode::Holding);
+    flight.inputs.request = Some(Request::FlySetpoints);
+    assert_eq!(flight.tick().answer, Some(Err(Refusal::NoSetpoints)));
+    flight.inputs.setpoint = Some(go_to(0.0, 0.0, 2.0));
+    flight.inputs.request = Some(Request::FlySetpoints);
+    flight.until(Reason::SetpointsCommanded, 1);
+    flight.ticks(3_000);
+    assert!((flight.body.position - Vector3::new(0.0, 0.0, 2.0)).norm() < 0.1, "{}", flight.body.position);
 }
 
 #[test]
@@ -142,22 +170,46 @@ fn a_gyro_that_falls_silent_in_flight_stops_the_motors_within_three_ticks() {
     flight.present.imu = false;
     let (ticks, outcome) = flight.until(Reason::ImuLost, 10);
     assert_eq!(ticks, 3);
-    assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Disarmed));
+    assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Stopped));
+}
+
+/// A flight in each mode that a pilot with a certificate can be in.
+fn one_in_each_mode() -> Vec<Flight> {
+    let mut testing = Flight::settled();
+    testing.inputs.request = Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 1_000_000 }));
+    testing.tick();
+    let mut checks = Flight::new();
+    checks.ticks(5);
+    let mut rising = Flight::idling();
+    rising.inputs.request = Some(Request::TakeOff(None));
+    rising.ticks(300);
+    let [mut holding, mut landing, mut descending, mut stopped] = [(); 4].map(|()| under_way());
+    holding.inputs.request = Some(Request::Hold);
+    holding.tick();
+    landing.inputs.request = Some(Request::Land);
+    landing.tick();
+    descending.present.pose = false;
+    descending.until(Reason::PoseLost, 120);
+    stopped.present.imu = false;
+    stopped.until(Reason::ImuLost, 10);
+    vec![
+        Flight::new(),
+        checks,
+        Flight::settled(),
+        testing,
+        Flight::idling(),
+        rising,
+        under_way(),
+        holding,
+        landing,
+        descending,
+        stopped,
+    ]
 }
 
 #[test]
-fn a_disarm_command_stops_the_motors_in_its_tick_from_any_mode() {
-    let mut holding = under_way();
-    holding.present.ground_station = false;
-    holding.until(Reason::GroundStationLost, 300);
-    let mut levelling = under_way();
-    levelling.present.pose = false;
-    levelling.until(Reason::PoseLost, 120);
-    let mut testing = Flight::new();
-    testing.inputs.request = Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 1_000_000 }));
-    testing.tick();
-    let flights = [Flight::new(), testing, under_way(), holding, levelling];
-    for (mode, mut flight) in Mode::ALL.into_iter().zip(flights) {
+fn a_disarm_command_with_force_stops_the_motors_in_its_tick_from_any_mode() {
+    for (mode, mut flight) in Mode::ALL.into_iter().zip(one_in_each_mode()) {
         assert_eq!(flight.pilot.mode(), mode);
         // Against everything else at once.
         flight.inputs.disarm = true;
@@ -165,10 +217,40 @@ fn a_disarm_command_stops_the_motors_in_its_tick_from_any_mode() {
         flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
         flight.present = flight::Present { imu: true, pose: true, ground_station: true };
         let outcome = flight.tick();
-        assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Disarmed));
+        assert_eq!(outcome.output, Output::Stop, "{mode:?}");
         assert_eq!(outcome.answer, Some(Err(Refusal::DisarmCommanded)));
-        assert_eq!(outcome.transition.map(|t| t.reason), (mode != Mode::Disarmed).then_some(Reason::DisarmCommanded));
+        let stops = mode.is_armed() || matches!(mode, Mode::MotorTest | Mode::Stopped);
+        let reason = outcome.transition.map(|transition| transition.reason);
+        assert_eq!(reason == Some(Reason::Disarmed), stops, "{mode:?}: {reason:?}");
         assert_eq!(flight.ticks(10).output, Output::Stop);
+    }
+}
+
+#[test]
+fn the_kill_switch_stops_the_motors_in_its_tick_and_keeps_them_so() {
+    for (mode, mut flight) in Mode::ALL.into_iter().zip(one_in_each_mode()) {
+        for _ in 0..5 {
+            flight.inputs.killed = true;
+            flight.inputs.request = Some(Request::Arm);
+            let outcome = flight.tick();
+            assert_eq!(outcome.output, Output::Stop, "{mode:?}");
+            assert!(matches!(outcome.answer, Some(Err(_))), "{mode:?}");
+        }
+        assert_eq!(flight.pilot.mode() == Mode::Stopped, mode.is_armed() || mode == Mode::Stopped, "{mode:?}");
+    }
+}
+
+#[test]
+fn a_plain_disarm_command_stops_motors_on_the_ground_and_none_in_the_air() {
+    for (mode, mut flight) in Mode::ALL.into_iter().zip(one_in_each_mode()) {
+        flight.inputs.request = Some(Request::Disarm);
+        let outcome = flight.tick();
+        if mode.flies() {
+            assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::InTheAir)), mode));
+            assert!(matches!(outcome.output, Output::Thrusts(_)));
+        } else {
+            assert_eq!((outcome.answer, outcome.output), (Some(Ok(())), Output::Stop), "{mode:?}");
+        }
     }
 }
 
@@ -178,13 +260,14 @@ fn a_new_flight_starts_as_the_first_did() {
         flight.inputs.request = Some(Request::Arm);
         let outcome = flight.tick();
         assert_eq!(outcome.answer, Some(Ok(())));
-        outcome.flown.unwrap().unwrap()
+        flight.inputs.request = Some(Request::TakeOff(None));
+        flight.tick().flown.unwrap().unwrap()
     };
     let mut flight = under_way();
     flight.inputs.disarm = true;
     flight.tick();
     // Caught in the air and put back: poses leap, the IMU felt nothing of it. On the ground the estimate follows.
-    (flight.body, flight.held) = (Flight::new().body, true);
+    (flight.body, flight.ground) = (Flight::new().body, GROUND);
     flight.ticks(250);
     let (again, first) = (arm(&mut flight), arm(&mut Flight::settled()));
     assert!((again.reference.position - first.reference.position).norm() < 1e-3, "{again:?}");
@@ -195,7 +278,7 @@ fn a_new_flight_starts_as_the_first_did() {
 #[test]
 fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
     let test = MotorTest { rotor: 2, level: 0.15, duration: 500_000 };
-    let mut flight = Flight::new();
+    let mut flight = Flight::settled();
     flight.inputs.request = Some(Request::MotorTest(test));
     let begin = flight.tick();
     assert_eq!((begin.answer, begin.mode), (Some(Ok(())), Mode::MotorTest));
@@ -212,7 +295,8 @@ fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
         flight.inputs.request = Some(request);
         let interrupted = flight.tick();
         assert_eq!(interrupted.answer, Some(Err(Refusal::MotorTestRunning)));
-        assert_eq!((interrupted.output, interrupted.mode), (Output::Stop, Mode::Disarmed));
+        assert_eq!((interrupted.output, interrupted.mode), (Output::Stop, Mode::Checks));
+        flight.tick();
     }
 }
 

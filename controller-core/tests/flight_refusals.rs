@@ -5,8 +5,10 @@ mod flight;
 use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::estimator::{Fault, Increment};
-use controller_core::flight::{Grounded, Mode, MotorTest, Output, PERIOD, Pilot, Refusal, Request};
-use controller_core::governor::{GovernorLimits, Setpoint, Turn};
+use controller_core::flight::{
+    Battery, FlightSettings, Grounded, Mode, MotorTest, Output, PERIOD, Pilot, Refusal, Request,
+};
+use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{
     Flight, Handed, SETTLING, at_rest, at_rest_with, certified, configuration, displaced, estimator, go_to, memory,
@@ -25,12 +27,12 @@ fn refuses(handed: Handed, refusal: Refusal) {
     let mut pilot = settled(NOW - PERIOD);
     let outcome = arm(handed).to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(refusal)));
-    assert_eq!((outcome.output, outcome.mode, outcome.transition), (Output::Stop, Mode::Disarmed, None));
+    assert!(outcome.output == Output::Stop && !outcome.mode.is_armed(), "{outcome:?}");
     for tick in 1..=SETTLING {
         at_rest(NOW + tick * PERIOD).to(&mut pilot);
     }
     let later = arm(at_rest(NOW + (SETTLING + 1) * PERIOD)).to(&mut pilot);
-    assert_eq!((later.answer, later.mode), (Some(Ok(())), Mode::Flying), "after {refusal:?}");
+    assert_eq!((later.answer, later.mode), (Some(Ok(())), Mode::Idling), "after {refusal:?}");
 }
 
 /// The same after two seconds and a half in which `lie` has changed what the sensors of a vehicle at rest say.
@@ -121,7 +123,6 @@ fn arming_is_refused_while_the_vehicle_moves() {
     for (speed, answer) in [(0.19, Ok(())), (0.21, Err(Refusal::Moving))] {
         let mut flight = Flight::new();
         flight.body.velocity.x = speed;
-        flight.held = false;
         flight.weightless = true;
         flight.ticks(200);
         flight.inputs.request = Some(Request::Arm);
@@ -213,7 +214,7 @@ fn an_armed_vehicle_refuses_requests_and_flies_on() {
     for (tick, request) in (1..).zip([Request::Arm, test]) {
         let outcome = Handed { request: Some(request), ..at_rest(NOW + tick * PERIOD) }.to(&mut pilot);
         assert_eq!(outcome.answer, Some(Err(Refusal::AlreadyArmed)));
-        assert!(matches!(outcome.output, Output::Thrusts(_)));
+        assert_eq!(outcome.output, Output::Idle);
     }
 }
 
@@ -230,37 +231,97 @@ fn motor_tests_of_other_rotors_levels_or_durations_are_refused() {
         (MotorTest { duration: 0, ..good }, Refusal::MotorTestDuration),
     ] {
         let mut pilot = pilot();
+        at_rest(NOW - PERIOD).to(&mut pilot);
         let outcome = Handed { request: Some(Request::MotorTest(test)), ..at_rest(NOW) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.output), (Some(Err(refusal)), Output::Stop));
-        let outcome = Handed { request: Some(Request::MotorTest(good)), ..at_rest(NOW) }.to(&mut pilot);
+        let outcome = Handed { request: Some(Request::MotorTest(good)), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.mode), (Some(Ok(())), Mode::MotorTest));
-        let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
-        assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::MotorTestRunning)), Mode::Disarmed));
+        let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW + 2 * PERIOD) }.to(&mut pilot);
+        assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::MotorTestRunning)), Mode::Checks));
     }
 }
 
 #[test]
-fn setpoints_are_refused_on_the_ground_and_when_they_make_no_sense() {
-    let mut pilot = settled(NOW - PERIOD);
-    let outcome = Handed { setpoint: Some(go_to(1.0, 0.0, 0.0)), ..at_rest(NOW) }.to(&mut pilot);
-    assert_eq!(outcome.setpoint, Some(Err(Refusal::NotFlying)));
-    Handed { request: Some(Request::Arm), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
-    let bad = [
-        (go_to(f32::NAN, 0.0, 0.0), "setpoint.position"),
-        (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),
-    ];
-    for (tick, (setpoint, field)) in (2..).zip(bad) {
-        let outcome = Handed { setpoint: Some(setpoint), ..at_rest(NOW + tick * PERIOD) }.to(&mut pilot);
-        assert_eq!((outcome.setpoint, outcome.mode), (Some(Err(Refusal::Setpoint(field))), Mode::Flying));
+fn setpoints_that_make_no_sense_are_refused_where_setpoints_are_flown() {
+    let mut flight = Flight::settled();
+    flight.inputs.setpoint = Some(go_to(f32::NAN, 0.0, 0.0));
+    assert_eq!(flight.tick().setpoint, None);
+    let mut flight = Flight::armed();
+    for (setpoint, refusal) in [
+        (go_to(f32::NAN, 0.0, 0.0), Refusal::OutsideFence),
+        (go_to(100.1, 0.0, 0.0), Refusal::OutsideFence),
+        (go_to(0.0, 0.0, 51.1), Refusal::OutsideFence),
+        (
+            Setpoint { motion: Motion::Velocity(Vector3::repeat(f32::NAN)), turn: Turn::Keep },
+            Refusal::Setpoint("setpoint.velocity"),
+        ),
+        (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, Refusal::Setpoint("setpoint.yaw_rate")),
+    ] {
+        flight.inputs.setpoint = Some(setpoint);
+        let outcome = flight.tick();
+        assert_eq!((outcome.setpoint, outcome.mode), (Some(Err(refusal)), Mode::Flying));
+    }
+}
+
+/// The answer to a request.
+fn answer(flight: &mut Flight, request: Request) -> Result<(), Refusal> {
+    flight.inputs.request = Some(request);
+    flight.tick().answer.unwrap()
+}
+
+#[test]
+fn what_cannot_be_done_on_the_ground_is_refused_there() {
+    let requests =
+        [Request::Hold, Request::Land, Request::GoTo(go_to(1.0, 0.0, 2.0)), Request::TakeOff(None), Request::Disarm];
+    let not = Err(Refusal::NotInTheAir);
+    for request in requests {
+        let wanted = match request {
+            Request::TakeOff(_) => Err(Refusal::NotIdling),
+            Request::Disarm => Ok(()),
+            _ => not,
+        };
+        assert_eq!(answer(&mut Flight::settled(), request), wanted, "{request:?}");
+    }
+    for height in [0.4, 50.1, f32::NAN, f32::INFINITY, -1.0] {
+        assert_eq!(answer(&mut Flight::idling(), Request::TakeOff(Some(height))), Err(Refusal::TakeOffHeight));
+    }
+}
+
+#[test]
+fn what_cannot_be_done_in_the_air_is_refused_there() {
+    let mut flight = Flight::armed();
+    flight.ticks(300);
+    assert_eq!(answer(&mut flight, Request::TakeOff(None)), Err(Refusal::NotIdling));
+    assert_eq!(answer(&mut flight, Request::GoTo(go_to(0.0, 200.0, 2.0))), Err(Refusal::OutsideFence));
+    // A critical battery lands, and nobody takes that back.
+    flight.inputs.battery = Battery::Critical;
+    for _ in 0..301 {
+        flight.tick();
+        flight.inputs.battery = Battery::Critical;
+    }
+    assert_eq!(flight.pilot.mode(), Mode::Landing);
+    for request in [Request::Hold, Request::GoTo(go_to(0.0, 0.0, 2.0))] {
+        flight.inputs.battery = Battery::Critical;
+        assert_eq!(answer(&mut flight, request), Err(Refusal::MustLand));
+    }
+    flight.inputs.battery = Battery::Critical;
+    assert_eq!(answer(&mut flight, Request::FlySetpoints), Err(Refusal::NotInTheAir));
+}
+
+#[test]
+fn a_battery_that_is_low_does_not_arm() {
+    for battery in [Battery::Low, Battery::Critical] {
+        refuses(Handed { battery, ..at_rest(NOW) }, Refusal::BatteryLow);
     }
 }
 
 /// It never arms, says why, and tests motors nevertheless.
 fn is_grounded(mut pilot: Pilot, grounded: Grounded) {
     assert_eq!(pilot.grounded(), Some(grounded));
+    at_rest(NOW - PERIOD).to(&mut pilot);
     let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW) }.to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(Refusal::Grounded(grounded))));
-    assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Disarmed));
+    assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Locked));
     let test = Request::MotorTest(MotorTest { rotor: 3, level: 0.1, duration: 1_000_000 });
     let outcome = Handed { request: Some(test), ..at_rest(NOW) }.to(&mut pilot);
     assert_eq!(outcome.mode, Mode::MotorTest);
@@ -273,7 +334,7 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
     let weak = Configuration::new(*base.vehicle(), weak, *base.gains().unwrap(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
-    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), estimator(), memory());
+    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator(), memory());
     let grounded = Grounded::Inequality("T2 yaw torque");
     assert_eq!(grounded.to_string(), "Not certified: T2 yaw torque");
     is_grounded(pilot, grounded);
@@ -283,19 +344,25 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
 fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     let limits = GovernorLimits::default();
     let rotorless = Certified::new(configuration()).unwrap();
-    is_grounded(Pilot::new(Ok(&rotorless), &limits, estimator(), memory()), Grounded::NoRotors);
+    is_grounded(
+        Pilot::new(Ok(&rotorless), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
+        Grounded::NoRotors,
+    );
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
     let field = "reference_bounds.horizontal_speed";
-    is_grounded(Pilot::new(Ok(&hover), &limits, estimator(), memory()), Grounded::Parameter(field));
+    is_grounded(
+        Pilot::new(Ok(&hover), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
+        Grounded::Parameter(field),
+    );
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
     is_grounded(
-        Pilot::new(Ok(&certified()), &slow, estimator(), memory()),
+        Pilot::new(Ok(&certified()), &slow, &FlightSettings::DEFAULT, estimator(), memory()),
         Grounded::Parameter("governor.horizontal_speed"),
     );
     let error = ParameterError { field: "vehicle.mass", reason: Reason::NotPositive };
     is_grounded(
-        Pilot::new(Err(&Refused::Undefined(error)), &limits, estimator(), memory()),
+        Pilot::new(Err(&Refused::Undefined(error)), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
         Grounded::Parameter("vehicle.mass"),
     );
 }

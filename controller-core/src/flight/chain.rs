@@ -29,7 +29,7 @@ use crate::heading::Heading;
 use crate::law::Law;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 /// Ticks from the rotors' idle to the law's thrusts.
 const SPOOL_TICKS: u32 = 100;
@@ -71,6 +71,30 @@ pub struct Flown {
     pub thrust_scale: f32,
 }
 
+/// The vertical motion without a pose, by what the accelerometer adds to it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Sinking {
+    /// m/s, upwards.
+    speed: f32,
+    /// For how long, s.
+    time: f32,
+    /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
+    last: Option<(f32, u32)>,
+}
+
+impl Sinking {
+    /// One tick on. What the estimate gains between its jumps is the accelerometer's.
+    fn advance(&mut self, estimated: &EstimatedState, period: f32) -> Self {
+        let (now, jumps) = (estimated.state.velocity.z, estimated.jumps);
+        if let Some((before, _)) = self.last.filter(|last| last.1 == jumps) {
+            self.speed += now - before;
+        }
+        self.last = Some((now, jumps));
+        self.time += period;
+        *self
+    }
+}
+
 /// Governor, law and mixer, with what they hand from tick to tick.
 #[derive(Debug, PartialEq)]
 pub(super) struct Chain<'m> {
@@ -94,8 +118,7 @@ pub(super) struct Chain<'m> {
     is_exact: bool,
     /// Ticks since the rotors' idle.
     spooled: u32,
-    /// By the accelerometer alone, m/s, while there is no pose; and for how long, s.
-    sinking: (f32, f32),
+    sinking: Sinking,
     /// Ticks in a row without new thrusts.
     refusals: u32,
     lift_off: LiftOff,
@@ -148,7 +171,7 @@ impl<'m> Chain<'m> {
             flown: None,
             is_exact: true,
             spooled: 0,
-            sinking: (0.0, 0.0),
+            sinking: Sinking::default(),
             refusals: 0,
             lift_off: LiftOff::DONE,
         })
@@ -196,7 +219,7 @@ impl<'m> Chain<'m> {
     /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s.
     pub fn level(&mut self, sinking: f32) {
         self.reference = resting(&self.reference.position, &self.reference.heading);
-        self.sinking = (sinking, 0.0);
+        self.sinking = Sinking { speed: sinking, ..Sinking::default() };
         self.law.restart();
     }
 
@@ -262,11 +285,9 @@ impl<'m> Chain<'m> {
     /// As [`Self::fly`].
     pub fn fly_level(&mut self, estimated: &EstimatedState, descends: bool) -> Result<Flown, InputError> {
         let State { attitude, angular_velocity, .. } = estimated.state;
-        let (speed, time) = &mut self.sinking;
-        *speed += estimated.acceleration.z * self.period;
-        *time += self.period;
-        self.reference.velocity.z = if descends { -(DESCENT + DRIFT * *time) } else { 0.0 };
-        let velocity = Vector3::new(0.0, 0.0, *speed);
+        let Sinking { speed, time, .. } = self.sinking.advance(estimated, self.period);
+        self.reference.velocity.z = if descends { -(DESCENT + DRIFT * time) } else { 0.0 };
+        let velocity = Vector3::new(0.0, 0.0, speed);
         // Without a pose there is nothing to learn from.
         self.law.hold_estimates();
         self.step(&State { position: self.reference.position, velocity, attitude, angular_velocity })
@@ -325,6 +346,18 @@ impl<'m> Chain<'m> {
     /// Where the reference is.
     pub fn reference(&self) -> &Reference {
         &self.reference
+    }
+
+    /// Whether the vehicle has been levelled for a while, and goes down.
+    pub fn sinks(&self) -> bool {
+        self.reference.velocity.z < 0.0
+    }
+
+    /// The acceleration beside the one that was asked for, m/s^2, world.
+    pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
+        let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);
+        let asked = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);
+        estimated.acceleration + Vector3::z() * self.gravity - asked
     }
 
     /// The vertical acceleration that a thrust means, m/s^2.

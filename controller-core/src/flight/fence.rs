@@ -22,6 +22,11 @@ impl Fence {
         self.home = *home;
     }
 
+    /// The frame has moved: what was at `from` is at `to`, m, world.
+    pub fn displace(&mut self, from: &Vector3<f32>, to: &Vector3<f32>) {
+        self.home += to - from;
+    }
+
     /// Whether `position`, m, world, is inside. One that is made of no numbers is not.
     pub fn contains(&self, position: &Vector3<f32>) -> bool {
         let away = position - self.home;

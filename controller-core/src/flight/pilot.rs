@@ -24,6 +24,7 @@ use crate::error::InputError;
 use crate::estimator::{Estimator, Fault};
 use crate::governor::{GovernorLimits, Setpoint};
 use crate::measurement::is_fresh;
+use nalgebra::Vector3;
 
 /// How near the height of its take-off the reference has to be, m, and how slow, m/s.
 const TAKEN_OFF: (f32, f32) = (0.01, 0.01);
@@ -39,6 +40,10 @@ pub struct Pilot<'m> {
     estimation: Estimation<'m>,
     watch: Watch,
     fence: Fence,
+    /// Where the vehicle was at the last tick, m, world.
+    last_position: Vector3<f32>,
+    /// Whether poses were still refused when the vehicle had levelled: they lie, and what they agree on later is no better.
+    poses_lie: bool,
     test: MotorTest,
     /// The height of the take-off, m, world.
     rising_to: f32,
@@ -74,6 +79,8 @@ impl<'m> Pilot<'m> {
             estimation: Estimation::new(estimator),
             watch: Watch::default(),
             fence: Fence::new(&settings),
+            last_position: Vector3::zeros(),
+            poses_lie: false,
             test: MotorTest::NONE,
             rising_to: 0.0,
             newest: Newest::default(),
@@ -140,8 +147,12 @@ impl<'m> Pilot<'m> {
 
     /// Goes along where the estimate has jumped in flight; whether that was possible.
     fn follow(&mut self, estimate: &Estimate) -> bool {
-        match (&mut self.chain, &estimate.state) {
-            (Ok(chain), Some(estimated)) if estimate.jumped && self.mode.flies() => {
+        let Some(estimated) = &estimate.state else { return true };
+        let position = estimated.state.position;
+        let from = core::mem::replace(&mut self.last_position, position);
+        match &mut self.chain {
+            Ok(chain) if estimate.jumped && self.mode.flies() => {
+                self.fence.displace(&from, &position);
                 chain.jump(&estimated.state).is_ok()
             }
             _ => true,
@@ -265,10 +276,12 @@ impl<'m> Pilot<'m> {
     /// What happened besides.
     fn happened(&mut self, conditions: Conditions, inputs: &Inputs, estimate: &Estimate, seen: &Seen) -> Conditions {
         let elapsed = inputs.now.saturating_sub(self.since);
+        if elapsed < LEVELLING_MAX {
+            self.poses_lie = matches!(estimate.health.last, Some(Err(_)));
+        }
+        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie);
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
-            (Mode::Descending, Ok(chain), Some(estimated)) if estimate.is_found() => {
-                chain.regain(&estimated.state).is_ok()
-            }
+            (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
             _ => false,
         };
         let patience = (self.settings.ground_station_patience * 1e6) as u64;
@@ -282,6 +295,7 @@ impl<'m> Pilot<'m> {
             .with(Condition::Crashed, seen.crashed)
             .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
+            .with(Condition::ImuDoubtful, seen.imu_doubtful)
             .with(Condition::PoseRegained, regained)
             .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
             .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))

@@ -58,6 +58,8 @@ pub enum Reason {
     PoseLost,
     /// The same, while idling.
     PoseLostOnGround,
+    /// Going down by the IMU alone, it does not fit what is commanded.
+    ImuDoubtful,
     /// Poses are believed again.
     PoseRegained,
     /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
@@ -86,7 +88,7 @@ pub enum Reason {
 
 impl Reason {
     /// Every reason.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 35] = [
         Self::Started,
         Self::NotCertified,
         Self::Ready,
@@ -109,6 +111,7 @@ impl Reason {
         Self::ThrustsRefused,
         Self::PoseLost,
         Self::PoseLostOnGround,
+        Self::ImuDoubtful,
         Self::PoseRegained,
         Self::DescendingOver,
         Self::GroundStationLost,
@@ -150,6 +153,7 @@ impl Reason {
             | Self::ThrustsRefused
             | Self::PoseLost
             | Self::PoseLostOnGround
+            | Self::ImuDoubtful
             | Self::DescendingOver
             | Self::GroundStationLost
             | Self::GroundStationLostOnGround
@@ -190,6 +194,7 @@ impl Reason {
             Self::ThrustsRefused => "Stopped: the law refused its input for 50 ms",
             Self::PoseLost => "Pose lost: levelling for 1 s, then going down",
             Self::PoseLostOnGround => "Disarmed: pose lost",
+            Self::ImuDoubtful => "Stopped: IMU does not fit what was commanded",
             Self::PoseRegained => "Pose regained: braking to hold position",
             Self::DescendingOver => "Stopped: neither pose nor ground found in 30 s",
             Self::GroundStationLost => "Ground station lost: holding position",

@@ -150,6 +150,9 @@ pub fn settled(now: u64) -> Pilot<'static> {
     pilot
 }
 
+/// Where flights start, m.
+pub const GROUND: f64 = 0.9;
+
 /// Ticks from idling to the law's thrusts.
 pub const SPOOLING: u64 = 100;
 
@@ -199,9 +202,9 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A disarmed vehicle at rest, level, on ground that is 1 m up, heading along x.
+    /// A disarmed vehicle at rest, level, on ground that is 0.9 m up, heading along x.
     pub fn new() -> Self {
-        let body = Body::resting(Vector3::new(0.0, 0.0, 1.0), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+        let body = Body::resting(Vector3::new(0.0, 0.0, GROUND), Quaternion::new(1.0, 0.0, 0.0, 0.0));
         let inputs = Handed { now: 1_000_000, ..Handed::default() };
         Self {
             pilot: pilot(),
@@ -210,7 +213,7 @@ impl Flight {
             inputs,
             told: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
             imu: Box::new(|_| {}),
-            ground: 1.0,
+            ground: GROUND,
             weightless: false,
             mixer: Mixer::new(&rotors()),
             certified: certified(),
@@ -234,13 +237,13 @@ impl Flight {
         flight
     }
 
-    /// The same, flying setpoints, the first of which is where it is; the ground gone from under it.
+    /// The same, flying setpoints, at the first of which it rests, 1 m up; the ground gone from under it.
     pub fn armed() -> Self {
         let mut flight = Self::idling();
         flight.inputs.request = Some(Request::FlySetpoints);
         flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
         flight.until(Reason::SetpointsCommanded, 1);
-        flight.ticks(SPOOLING);
+        flight.ticks(SPOOLING + 1_000);
         flight.ground = f64::NEG_INFINITY;
         flight
     }
@@ -283,12 +286,12 @@ impl Flight {
 
     /// The motion between two times, us, and what the IMU says of it.
     fn move_on(&mut self, wrench: &Wrench, start: u64, end: u64) -> Increment {
-        let vehicle = self.certified.configuration().vehicle();
+        let vehicle = *self.certified.configuration().vehicle();
         let (before, seconds) = (self.body, (end - start) as f64 * 1e-6);
         if self.weightless {
             self.body.position += self.body.velocity * seconds;
         } else {
-            self.body.advance(vehicle, wrench, seconds, 5);
+            self.body.advance(&vehicle, wrench, seconds, 5);
             self.stay_above_ground(&before);
         }
         let attitude = UnitQuaternion::new_normalize(before.attitude);
@@ -307,8 +310,8 @@ impl Flight {
     /// What the ground holds up stays as it was `before`, but for a height at which it comes down.
     fn stay_above_ground(&mut self, before: &Body) {
         if self.body.position.z <= self.ground {
-            let height = before.position.z.max(self.ground);
-            self.body = Body::resting(Vector3::new(before.position.x, before.position.y, height), before.attitude);
+            let place = Vector3::new(before.position.x, before.position.y, self.ground);
+            self.body = Body::resting(place, before.attitude);
         }
     }
 

@@ -45,6 +45,8 @@ pub enum Condition {
     ThrustsRefused,
     /// No pose has been believed for [`super::COASTING_MAX`], or the estimate is too uncertain.
     EstimateLost,
+    /// Going down by the IMU alone, the vehicle does not do what is commanded, as far as the IMU says: one of them is wrong.
+    ImuDoubtful,
     /// Poses are believed again, and the governor has started from the estimate.
     PoseRegained,
     /// Descending has lasted [`super::DESCENDING_MAX`].
@@ -71,7 +73,7 @@ pub enum Condition {
 
 impl Condition {
     /// Every condition.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 33] = [
         Self::Started,
         Self::Uncertified,
         Self::ChecksPass,
@@ -93,6 +95,7 @@ impl Condition {
         Self::ImuStale,
         Self::ThrustsRefused,
         Self::EstimateLost,
+        Self::ImuDoubtful,
         Self::PoseRegained,
         Self::DescendingOver,
         Self::GroundStationSilent,
@@ -109,7 +112,7 @@ impl Condition {
 
 /// The conditions that hold in one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Conditions(pub(super) u32);
+pub struct Conditions(pub(super) u64);
 
 impl Conditions {
     /// None of them.
@@ -118,12 +121,12 @@ impl Conditions {
     /// These and, if `holds`, one more.
     #[must_use]
     pub const fn with(self, condition: Condition, holds: bool) -> Self {
-        Self(self.0 | (holds as u32) << condition as u32)
+        Self(self.0 | (holds as u64) << condition as u64)
     }
 
     /// Whether `condition` is one of them.
     #[must_use]
     pub const fn contain(self, condition: Condition) -> bool {
-        self.0 >> condition as u32 & 1 == 1
+        self.0 >> condition as u64 & 1 == 1
     }
 }

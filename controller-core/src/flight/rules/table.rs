@@ -22,7 +22,7 @@ const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row 
 
 /// The rules. Within a mode, an upper row goes before a lower one.
 #[rustfmt::skip]
-pub const TABLE: [Row; 97] = {
+pub const TABLE: [Row; 98] = {
     use Condition::*;
     use Mode::*;
     [
@@ -130,6 +130,7 @@ pub const TABLE: [Row; 97] = {
         row(Descending, Crashed,             Stopped,    Reason::Crashed),
         row(Descending, ImuStale,            Stopped,    Reason::ImuLost),
         row(Descending, ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
+        row(Descending, ImuDoubtful,         Stopped,    Reason::ImuDoubtful),
         row(Descending, PoseRegained,        Holding,    Reason::PoseRegained),
         row(Descending, DescendingOver,      Stopped,    Reason::DescendingOver),
 
