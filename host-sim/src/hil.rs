@@ -162,14 +162,14 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
     Ok(Summary { pace, position: position.into(), touchdowns, took, end })
 }
 
-/// A row for each command: the state one period after it, the commands, the thrust at the end.
+/// A row for each command: the state one period after it, the commands, the thrust at the end, the command's own time.
 struct Log {
     file: WholeFile,
 }
 
 impl Log {
     const HEADER: &'static str =
-        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4";
+        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4,controller_us";
 
     fn create(path: &Path) -> io::Result<Self> {
         let mut file = WholeFile::create(path)?;
@@ -187,6 +187,6 @@ impl Log {
         for command in c.commands {
             write!(self.file, ",{command:?}")?;
         }
-        writeln!(self.file)
+        writeln!(self.file, ",{}", c.time)
     }
 }

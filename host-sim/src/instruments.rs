@@ -111,6 +111,3 @@ impl Instruments {
         self.what.outage.is_some_and(|outage| (outage.start..outage.start + outage.duration).contains(&arrival))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,6 +1,8 @@
 """The rig: an emulated board, the simulated vehicle on its first serial port, a ground station on its second."""
 
+import bisect
 import csv
+import math
 import os
 import pathlib
 import re
@@ -24,6 +26,9 @@ position_noise = 0.001
 attitude_noise_deg = 0.3
 seed = 1
 """
+
+# Between two commands, s.
+TICK = 0.01
 
 # What flies: the files that .ci/emulated_flight has just built.
 SIMULATOR = pathlib.Path(os.environ["SIMULATOR"])
@@ -115,6 +120,24 @@ class Rig:
         self.took = float(pace.group(5))
         with open(self.log) as file:
             self.rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+    def truth(self, begin, end):
+        """Where the vehicle was from `begin` to `end`, s of the board's time: a row is the state a tick after its command."""
+        for row in self.rows:
+            time = 1e-6 * row["controller_us"] + TICK
+            if begin <= time <= end:
+                yield time, (row["px"], row["py"], row["pz"])
+
+    def worst_error(self, track):
+        """The greatest distance of what telemetry said, (time, position), from where the vehicle was; every place it has had."""
+        truth = list(self.truth(0.0, math.inf))
+        times = [time for time, _ in truth]
+        worst = 0.0
+        for time, position in track:
+            # A report is that of a tick, its time cut to milliseconds; the next row's time is a tick's duration later or less.
+            place = truth[min(bisect.bisect_left(times, time - TICK / 2), len(truth) - 1)][1]
+            worst = max(worst, math.dist(position, place))
+        return worst
 
     def check_pace(self):
         """No tick missed, and jitter below 1 % of the period, in emulated time."""

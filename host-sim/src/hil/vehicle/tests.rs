@@ -51,3 +51,21 @@ fn impossible_commands_are_refused_in_words() {
 fn a_scenario_without_rotors_is_refused_in_words() {
     assert!(HilVehicle::new(&Scenario::paper().unwrap()).unwrap_err().contains("rotors"));
 }
+
+#[test]
+fn it_is_seen_at_each_millisecond_on_the_way_and_moves_no_differently_for_that() {
+    let (mut seen, mut unseen) = (HilVehicle::new(&study()).unwrap(), HilVehicle::new(&study()).unwrap());
+    for _ in 0..20 {
+        let (path, end) = (seen.advance(&all(0.9), 10).unwrap(), unseen.advance(&all(0.9), 1).unwrap());
+        assert_eq!((path.path.len(), end.path.len()), (10, 1));
+        assert_eq!((path.state, path.path[9], end.path[0]), (end.state, end.state, end.state));
+    }
+    // A plant step is a millisecond here: each state follows from the one before.
+    let before = *seen.state();
+    let path = seen.advance(&all(0.9), 10).unwrap().path;
+    for (earlier, later) in std::iter::once(&before).chain(&path).zip(&path) {
+        let risen = later.position.z - earlier.position.z;
+        let mean = 0.5e-3 * (later.velocity.z + earlier.velocity.z);
+        assert!(risen > 0.0 && (risen - mean).abs() < 1e-9, "{risen} {mean}");
+    }
+}
