@@ -22,6 +22,10 @@ SILENCE_MAX = 2.5
 
 FLYING, HOLDING = 3, 4
 
+# With noise, m: how well a hover is held, and how far telemetry is from the truth. Measured: 3.2 mm and 1.3 mm on both machines.
+NOISY_HOVER = 0.01
+NOISY_ERROR = 0.005
+
 
 def take_off(station, believed_within=1e-3):
     station.until("heartbeat and telemetry", lambda: station.mode and station.position, 60.0)
@@ -45,15 +49,17 @@ def flight(machine):
     """Boot, arm, take position, hover, a step of 1 m, land, disarm: on sensors at 1 kHz with noise, and late poses."""
     with Rig(machine, sensors=NOISY) as rig:
         station = rig.station
-        take_off(station, 0.01)
+        # Aligned on late poses of 1 mm of noise each: its filter is better than any of them, and has not converged.
+        take_off(station, 5e-3)
         begin = station.now
         worst = station.worst_distance(HOVER, 5.0)
         end = station.now
+        assert worst <= NOISY_HOVER, worst
         print(f"    hover held within {1e3 * worst:.1f} mm for 5 s, by telemetry")
         there = (HOVER[0], HOVER[1] + 1.0, HOVER[2])
         print(f"    1 m step within 0.1 m in {station.go(there, 0.1, 5.0):.2f} s")
         station.wait(3.0)
-        assert station.worst_distance(there, 3.0) <= 0.05
+        assert station.worst_distance(there, 3.0) <= NOISY_HOVER
         land(station)
         rig.land()
         rig.check_pace()
@@ -62,9 +68,11 @@ def flight(machine):
         # The simulator's own record: no telemetry in between, and no noise.
         truly = max(math.dist(place, HOVER) for _, place in rig.truth(begin, end))
         print(f"    truly within {1e3 * truly:.1f} mm meanwhile")
-        assert truly <= 0.05, truly
+        assert truly <= NOISY_HOVER, truly
         told = rig.worst_error(station.track)
         print(f"    telemetry within {1e3 * told:.1f} mm of the truth, from boot to the end")
+        # Telemetry that tells the truth to a tenth of a millimetre comes from sensors without noise.
+        assert 1e-4 < told <= NOISY_ERROR, told
         assert max(row["pz"] for row in rig.rows) < HOVER[2] + 0.05
 
 

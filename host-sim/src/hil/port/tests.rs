@@ -4,6 +4,7 @@ use crate::hil::{End, HilError, Session, serve};
 use firmware::frames;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use nalgebra::Vector3;
 use scenario::Scenario;
 use std::io::Read;
 use std::path::Path;
@@ -118,7 +119,7 @@ fn heard_in_a_noisy_session() -> Vec<u8> {
     const TICKS: u64 = 20;
     let (mut port, mut board) = connected(LONG);
     let study = std::fs::read_to_string("../vehicles/study.toml").unwrap();
-    let scenario = Scenario::parse(&format!("{study}\n[estimator]\n")).unwrap();
+    let scenario = Scenario::parse(&format!("{study}\n[estimator]\n"), "test.toml").unwrap();
     let board = std::thread::spawn(move || {
         let mut bytes = Vec::new();
         for tick in 0..TICKS {
