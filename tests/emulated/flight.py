@@ -97,7 +97,8 @@ def vanishing_client(machine):
         print(f"    held within {1e3 * worst:.1f} mm for 5 s, {held[1]:.2f} m along a way of {far} m")
         assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
         station.target, station.alive = None, True
-        station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
+        took = station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
+        print(f"    heard again after {took:.2f} s, by telemetry")
         station.target = (held[0], held[1], 0.0)
         land(station)
         rig.land()
