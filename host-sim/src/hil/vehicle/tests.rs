@@ -54,13 +54,16 @@ fn a_scenario_without_rotors_is_refused_in_words() {
 
 #[test]
 fn it_is_seen_at_each_millisecond_on_the_way_and_moves_no_differently_for_that() {
-    let (mut seen, mut unseen) = (HilVehicle::new(&study()).unwrap(), HilVehicle::new(&study()).unwrap());
+    // Two plant steps a millisecond.
+    let file = std::fs::read_to_string("../vehicles/study.toml").unwrap().replace("step = 0.001", "step = 0.0005");
+    let fine = Scenario::parse(&file, "fine.toml").unwrap();
+    let (mut seen, mut unseen) = (HilVehicle::new(&fine).unwrap(), HilVehicle::new(&fine).unwrap());
     for _ in 0..20 {
         let (path, end) = (seen.advance(&all(0.9), 10).unwrap(), unseen.advance(&all(0.9), 1).unwrap());
         assert_eq!((path.path.len(), end.path.len()), (10, 1));
         assert_eq!((path.state, path.path[9], end.path[0]), (end.state, end.state, end.state));
     }
-    // A plant step is a millisecond here: each state follows from the one before.
+    // Each state follows a millisecond after the one before.
     let before = *seen.state();
     let path = seen.advance(&all(0.9), 10).unwrap().path;
     for (earlier, later) in std::iter::once(&before).chain(&path).zip(&path) {
