@@ -10,6 +10,7 @@
 //! The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is [`senses`]' to say. Time is the
 //! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]).
 
+pub mod answer;
 pub mod messages;
 pub mod pace;
 pub mod port;

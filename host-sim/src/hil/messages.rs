@@ -1,6 +1,6 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
-use super::senses::{Answer, ToldPose};
+use super::answer::{Answer, ToldPose};
 use controller_core::flight::{ImuSample, Stamped};
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};

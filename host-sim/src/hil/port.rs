@@ -1,7 +1,7 @@
 //! The connection to the flight controller: TCP, every wait bounded and every wait ended by an interrupt.
 
+use super::answer::Answer;
 use super::messages::{Controls, Encoder};
-use super::senses::Answer;
 use crate::interrupt::Interrupt;
 use firmware::link::frame::Parser;
 use std::fmt;

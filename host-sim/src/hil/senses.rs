@@ -6,34 +6,13 @@
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 
+use super::answer::{Answer, ToldPose};
 use super::vehicle::Moved;
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::flight::{ImuSample, Stamped};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
-
-/// A pose as it is told.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToldPose {
-    /// p, m, world.
-    pub position: Vector3<f32>,
-    /// q, body to world, unit.
-    pub attitude: Quaternion<f32>,
-    /// v, m/s, and omega, rad/s, body frame; none from a source that knows neither.
-    pub motion: Option<(Vector3<f32>, Vector3<f32>)>,
-    /// Standard deviations on each axis, m and rad; none for a source that says nothing about them.
-    pub deviations: Option<(f32, f32)>,
-}
-
-/// What the sensors say in answer to a command, with the times at which it was true, us.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
-    /// Poses that have arrived, in the order of their times.
-    pub poses: Vec<Stamped<ToldPose>>,
-    /// The IMU's samples, in the order of their times; the last is of the period's end.
-    pub samples: Vec<Stamped<ImuSample>>,
-}
 
 /// A vehicle's sensors.
 #[derive(Debug, Clone)]

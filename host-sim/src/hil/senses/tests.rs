@@ -1,6 +1,7 @@
 //! Samples with their times, poses that come late, and sensors that are exact.
 
 use super::*;
+use nalgebra::Quaternion;
 
 /// The study, with this said of its sensors.
 fn scenario(sensors: &str) -> Scenario {
