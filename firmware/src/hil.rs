@@ -6,15 +6,17 @@
 //! | message | way | what |
 //! |---|---|---|
 //! | HIL_ACTUATOR_CONTROLS | out, one a tick | its time; commands 0 to 1 in the rotors' order; armed unless told to stop |
-//! | ODOMETRY | in | where the vehicle is a tick later, as from any source of poses; may be left out |
-//! | HIL_SENSOR | in | gyro and accelerometer then, with the time of the command that it answers; taken as a sensor's: [`Flow`] |
+//! | ODOMETRY | in | a pose, as from any source of poses; may come late, may be left out |
+//! | HIL_SENSOR | in | gyro and accelerometer; as many of them as the simulator likes, in order; taken as a sensor's: [`Flow`] |
 //!
-//! HIL_SENSOR comes last and ends the exchange; the simulator then stands still until the next command. So the two run in
-//! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in between: an
-//! emulated processor stays awake for it, a real one need not ask.
+//! The time of either answer is when what it says is true, by the vehicle's clock: the simulator adds to the time of a command. The
+//! HIL_SENSOR that is true a period after the last command ends the exchange; the simulator then stands still until the next one.
+//! Ten of them a tick are a sensor at 1 kHz, and one a tick will do. So the two run in lock-step, and what a tick sees
+//! does not depend on how long the simulator took. [`Hil::awaiting`] is true in between: an emulated processor stays
+//! awake for it, a real one need not ask.
 //!
-//! What an answer says is true one tick after the command whose time it carries, and that is its time stamp. Times after
-//! that of the last command are refused, so no clock but the vehicle's makes anything fresh.
+//! A time later than a period after the last command is refused, so no clock but the vehicle's makes anything fresh. A
+//! repeated or overtaken sample is not integrated, nor is a repeated pose taken: the conditioner and the estimator see to that.
 
 use crate::deadline::{send, within};
 use crate::frames;
@@ -102,16 +104,17 @@ impl<M: RawMutex> Hil<M> {
         self.outgoing.signal(());
     }
 
-    /// When what an answer with this time says is true, us; none for one that nothing was asked for.
+    /// The time of an answer, us; none for one that no command so far can have led to.
     fn stamp(&self, time: u64) -> Option<u64> {
         let State { active, commanded, .. } = self.state.lock(Cell::get);
-        (active && time <= commanded).then(|| time + PERIOD)
+        (active && time <= commanded + PERIOD).then_some(time)
     }
 
+    /// The sensors have said what they say at `time`, us.
     fn answered(&self, time: u64) {
         self.state.lock(|cell| {
             let state = cell.get();
-            cell.set(State { awaiting: state.awaiting && state.commanded != time, ..state });
+            cell.set(State { awaiting: state.awaiting && time != state.commanded + PERIOD, ..state });
         });
     }
 }
@@ -175,7 +178,7 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
     }
 }
 
-/// Acts on one frame, if it is one of the two and answers a command.
+/// Acts on one frame, if it is one of the two and a command can have led to it.
 fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, shared: &Shared<M>) {
     match frame.message {
         HIL_SENSOR_DATA::ID => {
@@ -183,7 +186,7 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
             let stamped = hil.stamp(message.time_usec).and_then(|time| sample(&message, time));
             if let Some(sample) = stamped {
                 flow.take(&sample);
-                hil.answered(message.time_usec);
+                hil.answered(sample.time);
             }
         }
         ODOMETRY_DATA::ID => {

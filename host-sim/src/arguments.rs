@@ -92,7 +92,7 @@ pub enum Command {
 #[derive(Args)]
 #[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
 pub struct HilArguments {
-    /// Scenario file: vehicle, rotors, delay; it starts on the ground below its initial position
+    /// Scenario file: vehicle, rotors, delay, [estimator]; it starts on the ground below its initial position
     pub file: PathBuf,
     /// Find the flight controller at this address
     #[arg(long, value_name = "HOST:PORT")]
@@ -109,7 +109,7 @@ pub struct HilArguments {
     /// Longest wait for the other side, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     patience: f64,
-    /// Write a row for each command: state, commands, thrust
+    /// Write a row for each command: state a period later, commands, thrust, the command's own time in us
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
 }
@@ -176,8 +176,13 @@ be used is answered by \"error: ...\" on its turn and changes nothing.";
 
 const HIL_HELP: &str = "\
 The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the file's order. Each moves
-the vehicle on by one control period, and is answered by ODOMETRY and HIL_SENSOR with the time of the command. Vehicle time
-counts from the first command.
+the vehicle on by one control period, and is answered by ODOMETRY and then HIL_SENSOR. Their times are those at which they are true,
+by the flight controller's clock: the command's, and what the vehicle has moved since. The HIL_SENSOR of the period's end comes
+last. Vehicle time counts from the first command.
+
+Sensors are exact, one pose and one sample a period. With [estimator] in the file they are those of a real vehicle: a sample each
+millisecond, with a BMI088's noise and biases, and poses that are noisy, late or missing; the same in every run. [sensors] does not
+count here.
 
 With QEMU, from the top of the repository (this firmware's emulated board; its second serial port is for the ground station):
   cargo build --profile board -p firmware --target thumbv7em-none-eabihf --no-default-features --features mps2 --bin mps2
@@ -186,6 +191,7 @@ With QEMU, from the top of the repository (this firmware's emulated board; its s
     -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
   cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
+Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too many for a period of 10 ms.
 
 Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is then 130 or 143.";
 

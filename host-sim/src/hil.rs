@@ -6,12 +6,15 @@
 //! ```
 //!
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs, the
-//! flight is the same. Both answers carry the time of the command that they answer; HIL_SENSOR comes last. Time is the
+//! flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far the vehicle has moved since.
+//! The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is [`senses`]' to say. Time is the
 //! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]).
 
+pub mod answer;
 pub mod messages;
 pub mod pace;
 pub mod port;
+pub mod senses;
 pub mod vehicle;
 
 use crate::progress::Progress;
@@ -19,11 +22,12 @@ use crate::whole_file::WholeFile;
 use pace::Pace;
 use port::{Port, PortError};
 use scenario::Scenario;
+use senses::Senses;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
-use vehicle::{HilVehicle, Moved};
+use vehicle::HilVehicle;
 
 /// How a session is run.
 #[derive(Debug, Clone, Default)]
@@ -110,6 +114,7 @@ impl fmt::Display for Summary {
 /// [`HilError`].
 pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Option<&Path>) -> Result<Summary, HilError> {
     let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
+    let mut senses = Senses::new(scenario);
     let mut log = log.map(Log::create).transpose().map_err(HilError::Log)?;
     let period = scenario.timing.period();
     let ticks = |seconds: f64| (seconds / period).round() as u64;
@@ -132,16 +137,20 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
         let tick = pace.ticks();
         let time = tick as f64 * period;
         pace.take(controls.time);
-        let Moved { state, specific_force, thrust, touchdown } =
-            vehicle.advance(&controls).map_err(|what| HilError::Flight(format!("at {time} s: {what}")))?;
-        if let Some(touchdown) = touchdown {
+        let moved = vehicle
+            .advance(&controls, senses.instants())
+            .map_err(|what| HilError::Flight(format!("at {time} s: {what}")))?;
+        if let Some(touchdown) = moved.touchdown {
             touchdowns.push((time, touchdown.speed, touchdown.tilt));
         }
         if let Some(log) = &mut log {
-            log.row(time, &state, &controls, thrust).map_err(HilError::Log)?;
+            log.row(time, &moved.state, &controls, moved.thrust).map_err(HilError::Log)?;
         }
-        let pose = pose_end.is_none_or(|end| tick < end);
-        port.answer(&controls, &state, &specific_force, pose).map_err(HilError::Port)?;
+        let mut answer = senses.answer(controls.time, &moved);
+        if pose_end.is_some_and(|end| tick >= end) {
+            answer.poses.clear();
+        }
+        port.answer(&answer).map_err(HilError::Port)?;
         if let Some(progress) = &mut progress {
             progress.show(pace.ticks());
         }
@@ -154,14 +163,14 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
     Ok(Summary { pace, position: position.into(), touchdowns, took, end })
 }
 
-/// A row for each command: the state one period after it, the commands, the thrust at the end.
+/// A row for each command: the state one period after it, the commands, the thrust at the end, the command's own time.
 struct Log {
     file: WholeFile,
 }
 
 impl Log {
     const HEADER: &'static str =
-        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4";
+        "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4,controller_us";
 
     fn create(path: &Path) -> io::Result<Self> {
         let mut file = WholeFile::create(path)?;
@@ -179,6 +188,6 @@ impl Log {
         for command in c.commands {
             write!(self.file, ",{command:?}")?;
         }
-        writeln!(self.file)
+        writeln!(self.file, ",{}", c.time)
     }
 }

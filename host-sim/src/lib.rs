@@ -8,6 +8,7 @@
 //! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
 //! | [`vehicle`] | the one or the other, as the scenario says |
 //! | [`sensors`] | what the controller is told of the state |
+//! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
@@ -26,6 +27,7 @@ pub mod flown;
 pub mod fly;
 pub mod ground;
 pub mod hil;
+pub mod instruments;
 pub mod interrupt;
 pub mod law;
 pub mod log;

@@ -5,11 +5,12 @@ Usage: flight.py MACHINE RUN...   with RUN one of: as-printed, flight, vanishing
 Every time is the vehicle's. Figures that are printed were measured in that run.
 """
 
+import math
 import os
 import sys
 
 from printed import as_printed
-from rig import Rig
+from rig import NOISY, TICK, Rig
 
 START = (1.0, 0.0, 0.0)
 HOVER = (1.0, 0.0, 1.5)
@@ -18,14 +19,17 @@ HOVER = (1.0, 0.0, 1.5)
 COASTING_MAX = 1.0
 LEVELLING_MAX = 1.0
 SILENCE_MAX = 2.5
-TICK = 0.01
 
 FLYING, HOLDING = 3, 4
 
+# With noise, m: how well a hover is held, and how far telemetry is from the truth. Measured: 3.2 mm and 1.3 mm on both machines.
+NOISY_HOVER = 0.01
+NOISY_ERROR = 0.005
 
-def take_off(station):
+
+def take_off(station, believed_within=1e-3):
     station.until("heartbeat and telemetry", lambda: station.mode and station.position, 60.0)
-    assert station.distance(START) < 1e-3, station.position
+    assert station.distance(START) < believed_within, station.position
     assert not station.armed
     station.wait(1.0)
     station.command_arm(True)
@@ -42,23 +46,33 @@ def land(station):
 
 
 def flight(machine):
-    """Boot, arm, take position, hover, a step of 1 m, land, disarm."""
-    with Rig(machine) as rig:
+    """Boot, arm, take position, hover, a step of 1 m, land, disarm: on sensors at 1 kHz with noise, and late poses."""
+    with Rig(machine, sensors=NOISY) as rig:
         station = rig.station
-        take_off(station)
+        # Aligned on late poses of 1 mm of noise each: its filter is better than any of them, and has not converged.
+        take_off(station, 5e-3)
+        begin = station.now
         worst = station.worst_distance(HOVER, 5.0)
-        print(f"    hover held within {1e3 * worst:.1f} mm for 5 s")
-        assert worst <= 0.05, worst
+        end = station.now
+        assert worst <= NOISY_HOVER, worst
+        print(f"    hover held within {1e3 * worst:.1f} mm for 5 s, by telemetry")
         there = (HOVER[0], HOVER[1] + 1.0, HOVER[2])
         print(f"    1 m step within 0.1 m in {station.go(there, 0.1, 5.0):.2f} s")
         station.wait(3.0)
-        assert station.worst_distance(there, 3.0) <= 0.05
+        assert station.worst_distance(there, 3.0) <= NOISY_HOVER
         land(station)
         rig.land()
         rig.check_pace()
         assert rig.rows[-1]["armed"] == 0 and rig.rows[-1]["thrust"] < 0.05
         assert abs(rig.rows[-1]["pz"]) < 0.01
-        # The simulator's own record: no telemetry in between.
+        # The simulator's own record: no telemetry in between, and no noise.
+        truly = max(math.dist(place, HOVER) for _, place in rig.truth(begin, end))
+        print(f"    truly within {1e3 * truly:.1f} mm meanwhile")
+        assert truly <= NOISY_HOVER, truly
+        told = rig.worst_error(station.track)
+        print(f"    telemetry within {1e3 * told:.1f} mm of the truth, from boot to the end")
+        # Telemetry that tells the truth to a tenth of a millimetre comes from sensors without noise.
+        assert 1e-4 < told <= NOISY_ERROR, told
         assert max(row["pz"] for row in rig.rows) < HOVER[2] + 0.05
 
 
@@ -83,7 +97,8 @@ def vanishing_client(machine):
         print(f"    held within {1e3 * worst:.1f} mm for 5 s, {held[1]:.2f} m along a way of {far} m")
         assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
         station.target, station.alive = None, True
-        station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
+        took = station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
+        print(f"    heard again after {took:.2f} s, by telemetry")
         station.target = (held[0], held[1], 0.0)
         land(station)
         rig.land()

@@ -22,6 +22,7 @@ class Station:
         self.line = mavutil.mavlink_connection(address, source_system=255, dialect="common", retries=int(patience))
         self.now = None  # vehicle time, s
         self.position = None  # x east, y north, z up, m
+        self.track = []  # (vehicle time, position): all that it ever said
         self.armed = False
         self.mode = 0
         self.heartbeats = 0  # the vehicle's: one a second, whatever else it has to say
@@ -47,6 +48,7 @@ class Station:
         elif kind == "LOCAL_POSITION_NED":
             self.now = message.time_boot_ms * 1e-3
             self.position = (message.y, message.x, -message.z)
+            self.track.append((self.now, self.position))
         elif kind == "STATUSTEXT":
             self.texts.append((self.now, message.text))
             print(f"    {self.now or 0.0:7.2f} s  {message.text}")

@@ -137,7 +137,7 @@ fn a_line_that_delivers_nothing_is_asked_again_but_not_all_the_time() {
 fn an_answer_in_pieces_between_faults_is_taken() {
     let (clock, shared, hil, line) = (Simulated::default(), Local::new(), commanded(), Line::default());
     clock.0.set(COMMANDED);
-    for piece in v2(1, &sensor(COMMANDED)).chunks(9) {
+    for piece in v2(1, &sensor(COMMANDED + PERIOD)).chunks(9) {
         line.borrow_mut().extend([Delivery::Bytes(piece.to_vec()), Delivery::Fault, Delivery::End]);
     }
     clock.run(50_000, hil::receive(&hil, Incoming(&line), &clock, &shared), |_| ());

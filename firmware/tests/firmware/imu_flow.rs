@@ -1,45 +1,18 @@
 //! From samples to control: every increment, the newest sample, faults in words, and the second sensor.
 
 use crate::support::bodies::{Body, Does, RIGHT, Sensor};
+use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
 use crate::support::simulator::{Hil, command, sensor};
 use crate::support::{Simulated, v2};
 use controller_core::estimator::Increment;
 use controller_core::flight::PERIOD;
-use core::cell::RefCell;
-use core::future::poll_fn;
-use core::task::Poll;
-use embedded_io_async::{ErrorKind, ErrorType, Read};
 use firmware::hardware::Imu;
 use firmware::redundant::Redundant;
 use firmware::shared::INCREMENTS;
 use firmware::{hil, imu};
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
-use std::collections::VecDeque;
-use std::rc::Rc;
-
-/// A line that delivers what is put into it while somebody waits.
-#[derive(Clone, Default)]
-struct Live(Rc<RefCell<VecDeque<u8>>>);
-
-impl ErrorType for Live {
-    type Error = ErrorKind;
-}
-
-impl Read for Live {
-    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, ErrorKind> {
-        poll_fn(|_| {
-            let mut bytes = self.0.borrow_mut();
-            let count = bytes.len().min(buffer.len());
-            for (place, byte) in buffer.iter_mut().zip(bytes.drain(..count)) {
-                *place = byte;
-            }
-            if count > 0 { Poll::Ready(Ok(count)) } else { Poll::Pending }
-        })
-        .await
-    }
-}
 
 fn first(body: &Body) -> Sensor<'_> {
     Sensor { body, wrong: RIGHT, is_second: false }
@@ -178,7 +151,8 @@ fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise
     clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, &shared), |now| {
         if now % PERIOD == 0 && now > 0 {
             command(&hil, now);
-            line.0.borrow_mut().extend(v2(1, &HIL_SENSOR_DATA { xgyro: rate(now + PERIOD), ..sensor(now) }));
+            let time = now + PERIOD;
+            line.say(&v2(1, &HIL_SENSOR_DATA { xgyro: rate(time), ..sensor(time) }));
         }
         increments.extend(drain(&shared));
     });

@@ -6,6 +6,7 @@ mod control;
 mod embedded;
 mod hil_answers;
 mod hil_lines;
+mod hil_samples;
 mod hil_takeover;
 mod imu;
 mod imu_calibration;

@@ -1,19 +1,22 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
+use super::answer::{Answer, ToldPose};
+use controller_core::flight::{ImuSample, Stamped};
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
-use nalgebra::{UnitQuaternion, Vector3};
-use scenario::body::BodyState;
 
 /// Motors that a flight controller commands.
 pub const MOTORS: usize = 4;
 
 /// This side's MAVLink system: beside the vehicle's own.
 const SYSTEM: u8 = 142;
+
+/// Where the variances of x, y, z, roll, pitch and yaw lie in the upper triangle of a covariance, row by row.
+const DIAGONAL: [usize; 6] = [0, 6, 11, 15, 18, 20];
 
 /// One tick's motor commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,18 +53,31 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// Appends where the vehicle is as an ODOMETRY.
-    pub fn odometry(&mut self, time: u64, state: &BodyState, bytes: &mut Vec<u8>) {
-        let measured = state.measured();
-        let attitude = UnitQuaternion::new_unchecked(state.attitude);
-        let velocity = attitude.inverse() * state.velocity;
-        let position = frames::world(&measured.position);
-        let velocity = frames::body(&velocity.map(|component| component as f32));
-        let rates = frames::body(&measured.angular_velocity);
-        let q = frames::attitude(&measured.attitude);
+    /// Appends an answer: the poses, then the sensors' samples.
+    pub fn answer(&mut self, answer: &Answer, bytes: &mut Vec<u8>) {
+        answer.poses.iter().for_each(|pose| self.odometry(pose, bytes));
+        answer.samples.iter().for_each(|sample| self.sensor(sample, bytes));
+    }
+
+    /// Appends a pose as an ODOMETRY.
+    fn odometry(&mut self, pose: &Stamped<ToldPose>, bytes: &mut Vec<u8>) {
+        let Stamped { value: ToldPose { position, attitude, motion, deviations }, time } = pose;
+        let position = frames::world(position);
+        let q = frames::attitude(attitude);
+        let (velocity, rates) = motion.unwrap_or_default();
+        let (velocity, rates) = (frames::body(&velocity), frames::body(&rates));
+        let mut pose_covariance = [0.0; 21];
+        if let Some((of_position, of_attitude)) = deviations {
+            DIAGONAL[..3].iter().for_each(|&place| pose_covariance[place] = of_position * of_position);
+            DIAGONAL[3..].iter().for_each(|&place| pose_covariance[place] = of_attitude * of_attitude);
+        }
+        let mut velocity_covariance = [0.0; 21];
+        if motion.is_none() {
+            velocity_covariance[0] = f32::NAN;
+        }
         self.append(
             &ODOMETRY_DATA {
-                time_usec: time,
+                time_usec: *time,
                 x: position.x,
                 y: position.y,
                 z: position.z,
@@ -72,22 +88,23 @@ impl Encoder {
                 rollspeed: rates.x,
                 pitchspeed: rates.y,
                 yawspeed: rates.z,
+                pose_covariance,
+                velocity_covariance,
                 frame_id: MavFrame::MAV_FRAME_LOCAL_NED,
                 child_frame_id: MavFrame::MAV_FRAME_BODY_FRD,
-                ..ODOMETRY_DATA::default()
             },
             bytes,
         );
     }
 
-    /// Appends gyro and accelerometer, body frame, as a HIL_SENSOR.
-    pub fn sensor(&mut self, time: u64, state: &BodyState, specific_force: &Vector3<f64>, bytes: &mut Vec<u8>) {
-        let gyro = frames::body(&state.measured().angular_velocity);
-        let force = frames::body(&specific_force.map(|component| component as f32));
+    /// Appends gyro and accelerometer as a HIL_SENSOR.
+    fn sensor(&mut self, sample: &Stamped<ImuSample>, bytes: &mut Vec<u8>) {
+        let gyro = frames::body(&sample.value.angular_velocity);
+        let force = frames::body(&sample.value.specific_force);
         use HilSensorUpdatedFlags as Field;
         self.append(
             &HIL_SENSOR_DATA {
-                time_usec: time,
+                time_usec: sample.time,
                 xacc: force.x,
                 yacc: force.y,
                 zacc: force.z,

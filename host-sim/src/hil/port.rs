@@ -1,10 +1,9 @@
 //! The connection to the flight controller: TCP, every wait bounded and every wait ended by an interrupt.
 
+use super::answer::Answer;
 use super::messages::{Controls, Encoder};
 use crate::interrupt::Interrupt;
 use firmware::link::frame::Parser;
-use nalgebra::Vector3;
-use scenario::body::BodyState;
 use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::net::{TcpListener, TcpStream};
@@ -125,22 +124,13 @@ impl Port {
         }
     }
 
-    /// Answers a command with where the vehicle is one period later, with its pose or without.
+    /// Answers a command.
     ///
     /// # Errors
     /// [`PortError`] if the connection breaks; a side that has gone is for [`Self::receive`] to find.
-    pub fn answer(
-        &mut self,
-        controls: &Controls,
-        state: &BodyState,
-        specific_force: &Vector3<f64>,
-        pose: bool,
-    ) -> Result<(), PortError> {
+    pub fn answer(&mut self, answer: &Answer) -> Result<(), PortError> {
         self.bytes.clear();
-        if pose {
-            self.encoder.odometry(controls.time, state, &mut self.bytes);
-        }
-        self.encoder.sensor(controls.time, state, specific_force, &mut self.bytes);
+        self.encoder.answer(answer, &mut self.bytes);
         match self.writer.write_all(&self.bytes) {
             Err(error) if !matches!(error.kind(), ErrorKind::BrokenPipe | ErrorKind::ConnectionReset) => {
                 Err(PortError::Broken(error))

@@ -17,10 +17,12 @@ use std::collections::VecDeque;
 const GROUND: f64 = 0.0;
 
 /// What a command led to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
     /// Where the vehicle is a period later.
     pub state: BodyState,
+    /// Where it was on the way, at as many evenly spaced instants as were asked for; the last is the period's end.
+    pub path: Vec<BodyState>,
     /// What an accelerometer shows then, m/s^2, body frame.
     pub specific_force: Vector3<f64>,
     /// The rotors' thrust then, N.
@@ -77,19 +79,20 @@ impl HilVehicle {
         self.plant.state()
     }
 
-    /// Takes one command and moves on by one control period.
+    /// Takes one command and moves on by one control period, noting where the vehicle is at `instants` of it: that number
+    /// divides the period's plant steps.
     ///
     /// # Errors
     /// In words, if a command is not from 0 to 1, or the motion is not finite afterwards.
-    pub fn advance(&mut self, controls: &Controls) -> Result<Moved, String> {
+    pub fn advance(&mut self, controls: &Controls, instants: u64) -> Result<Moved, String> {
         if let Some(bad) = controls.commands.iter().find(|command| !(0.0..=1.0).contains(*command)) {
             return Err(format!("a motor command is not from 0 to 1: {bad}"));
         }
         let thrust = |(curve, command): (&ThrustCurve, f32)| curve.thrust(command, 1.0);
         let thrusts = self.curves.iter().zip(controls.commands).map(thrust).collect();
         self.waiting.push_back((self.now + self.delay, thrusts));
-        let (mut thrust, mut touchdown) = (0.0, None);
-        for _ in 0..self.steps {
+        let (mut thrust, mut touchdown, mut path) = (0.0, None, Vec::new());
+        for step in 1..=self.steps {
             while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
                 self.rotors.command(&thrusts);
             }
@@ -97,10 +100,14 @@ impl HilVehicle {
             (thrust, torque) = self.rotors.advance();
             touchdown = self.ground.act(&mut self.plant, thrust, &torque).or(touchdown);
             self.now += 1;
+            if (step * instants).is_multiple_of(self.steps) {
+                path.push(*self.plant.state());
+            }
         }
         self.plant.check().map_err(|error| error.to_string())?;
         let state = *self.plant.state();
-        Ok(Moved { state, specific_force: self.ground.specific_force(&state, thrust), thrust, touchdown })
+        let specific_force = self.ground.specific_force(&state, thrust);
+        Ok(Moved { state, path, specific_force, thrust, touchdown })
     }
 }
 

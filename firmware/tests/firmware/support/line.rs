@@ -1,9 +1,11 @@
 //! Lines that deliver in pieces, fail, end or take nothing more.
 
 use core::cell::RefCell;
-use core::future::pending;
+use core::future::{pending, poll_fn};
+use core::task::Poll;
 use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
 use std::collections::VecDeque;
+use std::rc::Rc;
 
 /// What a line does next when it is read.
 pub enum Delivery {
@@ -38,6 +40,35 @@ impl Read for Incoming<'_> {
             Some(Delivery::End) => Ok(0),
             None => pending().await,
         }
+    }
+}
+
+/// A line that delivers what is put into it while somebody waits.
+#[derive(Clone, Default)]
+pub struct Live(Rc<RefCell<VecDeque<u8>>>);
+
+impl ErrorType for Live {
+    type Error = ErrorKind;
+}
+
+impl Read for Live {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, ErrorKind> {
+        poll_fn(|_| {
+            let mut bytes = self.0.borrow_mut();
+            let count = bytes.len().min(buffer.len());
+            for (place, byte) in buffer.iter_mut().zip(bytes.drain(..count)) {
+                *place = byte;
+            }
+            if count > 0 { Poll::Ready(Ok(count)) } else { Poll::Pending }
+        })
+        .await
+    }
+}
+
+impl Live {
+    /// Puts bytes into it.
+    pub fn say(&self, bytes: &[u8]) {
+        self.0.borrow_mut().extend(bytes);
     }
 }
 

@@ -10,7 +10,7 @@ use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame
 /// What a single-threaded test exchanges with a simulator.
 pub type Hil = hil::Hil<NoopRawMutex>;
 
-/// When the simulator got its command, us; it answers a few milliseconds later.
+/// When the simulator got its command, us; it answers a few milliseconds later, of the period that follows.
 pub const COMMANDED: u64 = 40_000;
 
 /// Pins that remember what they were told.
@@ -44,7 +44,7 @@ pub fn command(hil: &Hil, time: u64) {
     now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: &wanted, clock }.write(MotorCommand::Stop)).unwrap();
 }
 
-/// An answer by the sensors to the command of `time_usec`.
+/// What the sensors say at `time_usec`.
 pub fn sensor(time_usec: u64) -> HIL_SENSOR_DATA {
     HIL_SENSOR_DATA {
         time_usec,
@@ -60,7 +60,7 @@ pub fn sensor(time_usec: u64) -> HIL_SENSOR_DATA {
     }
 }
 
-/// An answer by the pose source.
+/// What the pose source says of `time_usec`.
 pub fn odometry(time_usec: u64) -> ODOMETRY_DATA {
     ODOMETRY_DATA {
         time_usec,

@@ -4,6 +4,7 @@ use crate::hil::{End, HilError, Session, serve};
 use firmware::frames;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use nalgebra::Vector3;
 use scenario::Scenario;
 use std::io::Read;
 use std::path::Path;
@@ -87,7 +88,7 @@ fn nobody_is_waited_for_without_end() {
 }
 
 #[test]
-fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_are_withheld() {
+fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
     let (mut port, mut board) = connected(LONG);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
     let session = Session { duration: Some(0.03), pose_until: Some(0.02) };
@@ -97,10 +98,11 @@ fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_ar
             board.write_all(&command(time, 0.0)).unwrap();
             if tick < 2 {
                 let pose: ODOMETRY_DATA = heard(&mut board).expect("a pose first");
-                assert_eq!((pose.time_usec, pose.z), (time, 0.0));
+                assert_eq!((pose.time_usec, pose.z), (time + 10_000, 0.0));
+                assert_eq!((pose.pose_covariance, pose.velocity_covariance), ([0.0; 21], [0.0; 21]));
             }
             let sensor: HIL_SENSOR_DATA = heard(&mut board).expect("sensors last");
-            assert_eq!(sensor.time_usec, time);
+            assert_eq!(sensor.time_usec, time + 10_000);
             // At rest it feels the ground push: up, which is against FRD's z.
             let force = frames::body(&Vector3::new(sensor.xacc, sensor.yacc, sensor.zacc));
             assert!((force - Vector3::z() * 9.81).norm() < 1e-4, "{force}");
@@ -110,6 +112,53 @@ fn each_command_is_answered_with_its_time_pose_first_sensors_last_until_poses_ar
     board.join().unwrap();
     assert_eq!((summary.pace.ticks(), summary.end), (3, End::Over));
     assert!(summary.to_string().contains(", 0 missed"), "{summary}");
+}
+
+/// Everything that a board hears in a session with sensors at 1 kHz, whose commands come a little irregularly.
+fn heard_in_a_noisy_session() -> Vec<u8> {
+    const TICKS: u64 = 20;
+    let (mut port, mut board) = connected(LONG);
+    let study = std::fs::read_to_string("../vehicles/study.toml").unwrap();
+    let scenario = Scenario::parse(&format!("{study}\n[estimator]\n"), "test.toml").unwrap();
+    let board = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        for tick in 0..TICKS {
+            let time = 5_000 + 10_000 * tick + 3 * (tick % 4);
+            board.write_all(&command(time, 0.9)).unwrap();
+            let mut ends = 0;
+            let mut parser = Parser::new();
+            while ends < time + 10_000 {
+                let mut byte = [0];
+                board.read_exact(&mut byte).unwrap();
+                bytes.push(byte[0]);
+                let sensor = parser.push(byte[0], 0).and_then(|frame| decode::<HIL_SENSOR_DATA>(&frame));
+                ends = sensor.map_or(ends, |sensor| sensor.time_usec);
+            }
+        }
+        bytes
+    });
+    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None };
+    serve(&scenario, &mut port, &session, None).unwrap();
+    board.join().unwrap()
+}
+
+#[test]
+fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_its_poses_are() {
+    let bytes = heard_in_a_noisy_session();
+    assert_eq!(bytes, heard_in_a_noisy_session());
+    let (mut parser, mut poses, mut samples) = (Parser::new(), 0, 0);
+    for byte in bytes {
+        let Some(frame) = parser.push(byte, 0) else { continue };
+        samples += u32::from(decode::<HIL_SENSOR_DATA>(&frame).is_some());
+        let Some(pose) = decode::<ODOMETRY_DATA>(&frame) else { continue };
+        poses += 1;
+        assert_eq!((pose.pose_covariance[0], pose.pose_covariance[11]), (1e-3 * 1e-3, 1e-3 * 1e-3));
+        let attitude_noise = 0.3_f32.to_radians();
+        assert!((pose.pose_covariance[20].sqrt() - attitude_noise).abs() < 1e-6);
+        assert!(pose.velocity_covariance[0].is_nan());
+    }
+    // A pose every 10 ms: the last two are still under way.
+    assert_eq!((samples, poses), (200, 18));
 }
 
 #[test]

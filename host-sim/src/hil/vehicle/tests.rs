@@ -21,13 +21,13 @@ fn hover() -> f32 {
 fn it_stands_below_the_scenarios_start_until_it_is_told_to_rise() {
     let mut vehicle = HilVehicle::new(&study()).unwrap();
     for _ in 0..100 {
-        let moved = vehicle.advance(&all(hover() - 0.01)).unwrap();
+        let moved = vehicle.advance(&all(hover() - 0.01), 1).unwrap();
         assert_eq!(moved.state.position, Vector3::new(1.0, 0.0, 0.0));
         assert!((moved.specific_force - Vector3::z() * 9.81).norm() < 1e-5);
     }
     let mut height = 0.0;
     for _ in 0..100 {
-        height = vehicle.advance(&all(hover() + 0.01)).unwrap().state.position.z;
+        height = vehicle.advance(&all(hover() + 0.01), 1).unwrap().state.position.z;
     }
     assert!((0.1..0.2).contains(&height), "{height}");
 }
@@ -35,19 +35,40 @@ fn it_stands_below_the_scenarios_start_until_it_is_told_to_rise() {
 #[test]
 fn a_command_acts_after_the_scenarios_delay() {
     let mut vehicle = HilVehicle::new(&study()).unwrap();
-    assert_eq!(vehicle.advance(&all(1.0)).unwrap().thrust, 0.0);
-    assert!(vehicle.advance(&all(1.0)).unwrap().thrust > 0.1);
+    assert_eq!(vehicle.advance(&all(1.0), 1).unwrap().thrust, 0.0);
+    assert!(vehicle.advance(&all(1.0), 1).unwrap().thrust > 0.1);
 }
 
 #[test]
 fn impossible_commands_are_refused_in_words() {
     let mut vehicle = HilVehicle::new(&study()).unwrap();
     for command in [f32::NAN, -0.1, 1.1] {
-        assert!(vehicle.advance(&all(command)).unwrap_err().contains("0 to 1"));
+        assert!(vehicle.advance(&all(command), 1).unwrap_err().contains("0 to 1"));
     }
 }
 
 #[test]
 fn a_scenario_without_rotors_is_refused_in_words() {
     assert!(HilVehicle::new(&Scenario::paper().unwrap()).unwrap_err().contains("rotors"));
+}
+
+#[test]
+fn it_is_seen_at_each_millisecond_on_the_way_and_moves_no_differently_for_that() {
+    // Two plant steps a millisecond.
+    let file = std::fs::read_to_string("../vehicles/study.toml").unwrap().replace("step = 0.001", "step = 0.0005");
+    let fine = Scenario::parse(&file, "fine.toml").unwrap();
+    let (mut seen, mut unseen) = (HilVehicle::new(&fine).unwrap(), HilVehicle::new(&fine).unwrap());
+    for _ in 0..20 {
+        let (path, end) = (seen.advance(&all(0.9), 10).unwrap(), unseen.advance(&all(0.9), 1).unwrap());
+        assert_eq!((path.path.len(), end.path.len()), (10, 1));
+        assert_eq!((path.state, path.path[9], end.path[0]), (end.state, end.state, end.state));
+    }
+    // Each state follows a millisecond after the one before.
+    let before = *seen.state();
+    let path = seen.advance(&all(0.9), 10).unwrap().path;
+    for (earlier, later) in std::iter::once(&before).chain(&path).zip(&path) {
+        let risen = later.position.z - earlier.position.z;
+        let mean = 0.5e-3 * (later.velocity.z + earlier.velocity.z);
+        assert!(risen > 0.0 && (risen - mean).abs() < 1e-9, "{risen} {mean}");
+    }
 }

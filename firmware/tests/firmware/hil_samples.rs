@@ -1,0 +1,140 @@
+//! A simulator's samples at 1 kHz: they become what a sensor's would, whatever the line does to their order and number.
+
+use crate::support::line::Live;
+use crate::support::receiver::{Local, texts};
+use crate::support::simulator::{Hil, command, sensor};
+use crate::support::{Simulated, v2};
+use controller_core::estimator::Increment;
+use controller_core::flight::{ImuSample, PERIOD, Stamped};
+use controller_core::imu::ImuParameters;
+use core::cell::Cell;
+use firmware::hardware::{Clock, Fault, Imu, RawImu};
+use firmware::{frames, hil, imu};
+use mavlink::dialects::common::HIL_SENSOR_DATA;
+use nalgebra::Vector3;
+
+/// Between two samples, us.
+const SAMPLE: u64 = 1_000;
+
+/// The first command is given a period after boot, the last one this many later.
+const TICKS: u64 = 50;
+
+/// A motion that never repeats itself, about every axis.
+fn motion(time: u64) -> ImuSample {
+    let t = time as f32 * 1e-6;
+    let angular_velocity = Vector3::new((31.0 * t).sin(), (47.0 * t).cos(), 0.5 * (200.0 * t).sin());
+    let specific_force = Vector3::new((53.0 * t).sin(), 2.0 * (29.0 * t).cos(), 9.8 + (71.0 * t).sin());
+    ImuSample { angular_velocity, specific_force }
+}
+
+/// The simulator's word on that motion at `time`.
+fn told(time: u64) -> Vec<u8> {
+    let ImuSample { angular_velocity, specific_force } = motion(time);
+    let (gyro, force) = (frames::body(&angular_velocity), frames::body(&specific_force));
+    let rates = HIL_SENSOR_DATA { xgyro: gyro.x, ygyro: gyro.y, zgyro: gyro.z, ..sensor(time) };
+    v2(1, &HIL_SENSOR_DATA { xacc: force.x, yacc: force.y, zacc: force.z, ..rates })
+}
+
+/// The times of a command's ten samples, us.
+fn times(commanded: u64) -> impl Iterator<Item = u64> {
+    (1..=10).map(move |sample| commanded + sample * SAMPLE)
+}
+
+/// What control gets.
+struct Got {
+    increments: Vec<Increment>,
+    newest: Stamped<ImuSample>,
+    texts: Vec<String>,
+}
+
+fn drain(shared: &Local, increments: &mut Vec<Increment>) {
+    increments.extend(std::iter::from_fn(|| shared.increments.take()));
+}
+
+/// What control gets from a simulator that says `answer` to the command of a time.
+fn simulated(answer: impl Fn(u64) -> Vec<u8>) -> Got {
+    let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
+    let mut increments = Vec::new();
+    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, &shared), |now| {
+        drain(&shared, &mut increments);
+        if now % PERIOD == 0 && (PERIOD..=TICKS * PERIOD).contains(&now) {
+            // The answer to the command before was whole.
+            assert!(!hil.awaiting(), "{now}");
+            command(&hil, now);
+            line.say(&answer(now));
+        }
+    });
+    assert!(!hil.awaiting());
+    Got { increments, newest: shared.imu.get().unwrap(), texts: texts(&shared) }
+}
+
+/// A sensor that feels the motion, each millisecond from after the first command on.
+struct Real<'a> {
+    clock: &'a Simulated,
+    last: &'a Cell<u64>,
+}
+
+impl Imu for Real<'_> {
+    async fn sample(&mut self) -> Result<RawImu, Fault> {
+        let time = self.last.get() + SAMPLE;
+        self.clock.until(time).await;
+        self.last.set(time);
+        let ImuSample { angular_velocity, specific_force } = motion(time);
+        Ok(RawImu { time, angular_velocity, specific_force: Some(specific_force) })
+    }
+
+    fn parameters(&self) -> ImuParameters {
+        ImuParameters::BMI088
+    }
+
+    fn is_polled(&self) -> bool {
+        false
+    }
+}
+
+/// What control gets from that sensor.
+fn real() -> Got {
+    let (clock, shared, last) = (Simulated::default(), Local::new(), Cell::new(PERIOD));
+    let mut increments = Vec::new();
+    let end = (TICKS + 1) * PERIOD + SAMPLE / 2;
+    clock.run(end, imu::run(&shared, &clock, &mut Real { clock: &clock, last: &last }), |_| {
+        drain(&shared, &mut increments);
+    });
+    drain(&shared, &mut increments);
+    Got { increments, newest: shared.imu.get().unwrap(), texts: texts(&shared) }
+}
+
+#[test]
+fn ten_samples_a_tick_are_integrated_and_filtered_as_a_sensors() {
+    let (simulated, real) = (simulated(|now| times(now).flat_map(told).collect()), real());
+    assert_eq!(real.newest.time, (TICKS + 1) * PERIOD);
+    assert_eq!(simulated.increments, real.increments);
+    assert_eq!(simulated.newest, real.newest);
+    // Two a tick; the first sample begins the first of them.
+    assert_eq!(real.increments.len() as u64, 2 * TICKS - 1);
+    assert_eq!((simulated.texts, real.texts), (vec![], vec![]));
+}
+
+#[test]
+fn samples_repeated_overtaken_or_to_come_change_nothing() {
+    let clean = simulated(|now| times(now).flat_map(told).collect());
+    let twice = |time: u64| [told(time), told(time)].concat();
+    let repeated = simulated(|now| times(now).flat_map(twice).collect());
+    // The third comes again behind the fifth, then one of the period before, as old as that command.
+    let behind = |time: u64, now: u64| match (time - now) / SAMPLE {
+        5 => [told(time), told(time - 2 * SAMPLE)].concat(),
+        7 => [told(time), told(now - 4 * SAMPLE), told(now)].concat(),
+        _ => told(time),
+    };
+    let overtaken = simulated(|now| times(now).flat_map(|time| behind(time, now)).collect());
+    for got in [repeated, overtaken] {
+        assert_eq!(got.increments, clean.increments);
+        assert_eq!(got.newest, clean.newest);
+        assert_eq!(got.texts, ["IMU: samples out of order"]);
+    }
+    // A microsecond beyond the period, and a period: not taken in the first place.
+    let early = |now: u64| [told(now + PERIOD + 1), told(now + 2 * PERIOD)].concat();
+    let hasty = simulated(|now| early(now).into_iter().chain(times(now).flat_map(told)).collect());
+    assert_eq!((hasty.increments, hasty.newest), (clean.increments, clean.newest));
+    assert_eq!(hasty.texts, [""; 0]);
+}

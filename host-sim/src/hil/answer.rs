@@ -1,0 +1,26 @@
+//! What a flight controller is told in answer to a command: poses, and the IMU's samples.
+
+use controller_core::flight::{ImuSample, Stamped};
+use nalgebra::{Quaternion, Vector3};
+
+/// A pose as it is told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToldPose {
+    /// p, m, world.
+    pub position: Vector3<f32>,
+    /// q, body to world, unit.
+    pub attitude: Quaternion<f32>,
+    /// v, m/s, and omega, rad/s, body frame; none from a source that knows neither.
+    pub motion: Option<(Vector3<f32>, Vector3<f32>)>,
+    /// Standard deviations on each axis, m and rad; none for a source that says nothing about them.
+    pub deviations: Option<(f32, f32)>,
+}
+
+/// What the sensors say in answer to a command, with the times at which it was true, us.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Poses that have arrived, in the order of their times.
+    pub poses: Vec<Stamped<ToldPose>>,
+    /// The IMU's samples, in the order of their times; the last is of the period's end.
+    pub samples: Vec<Stamped<ImuSample>>,
+}
