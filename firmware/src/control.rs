@@ -17,7 +17,7 @@ use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Refusal};
+use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
@@ -149,8 +149,11 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let (Some(Asked { command, .. }), Some(result)) = (asked, outcome.answer) {
             self.shared.answer(command, result);
         }
-        if let Some(transition) = outcome.transition {
-            self.shared.announce(Event::Mode(transition.reason));
+        // That it is ready, or not, the heartbeat says: on the bench that may change many times.
+        if let Some(Transition { reason, .. }) = outcome.transition
+            && !matches!(reason, Reason::Started | Reason::Ready | Reason::NotReady)
+        {
+            self.shared.announce(Event::Mode(reason));
         }
         if let Some(setpoint) = outcome.setpoint {
             let refusal = setpoint.err();

@@ -3,7 +3,8 @@
 use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
-use controller_core::flight::{ImuSample, Mode, MotorTest, Request};
+use controller_core::estimator::Increment;
+use controller_core::flight::{ImuSample, MotorTest, Request};
 use controller_core::imu::ImuParameters;
 use firmware::boot;
 use firmware::control::Control;
@@ -83,6 +84,17 @@ impl Watchdog for Bench {
     fn feed(&mut self) {}
 }
 
+/// What the IMU of a vehicle at rest did in the 5 ms before `now`, us.
+fn increment(now: u64) -> Increment {
+    Increment {
+        start: now - 5_000,
+        end: now,
+        delta_angle: Vector3::zeros(),
+        delta_velocity: Vector3::z() * 9.81 * 0.005,
+        angular_velocity: Vector3::zeros(),
+    }
+}
+
 /// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being wanted
 /// from 45 ms on; and the answer.
 fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, Vec<String>) {
@@ -98,6 +110,9 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
             return;
         }
         shared.imu.put(still, now);
+        if now > 0 && now % 5_000 == 0 {
+            shared.increment(increment(now));
+        }
         shared.ground_station.put((), now);
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
@@ -109,7 +124,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
         }
     });
     assert!(hil.active());
-    assert_eq!(shared.report.get().unwrap().value.mode, Mode::Disarmed);
+    assert!(!shared.report.get().unwrap().value.mode.is_armed());
     let Some(Reply::Command { result, .. }) = shared.answers.take() else { panic!("no answer") };
     (pins.0, result, texts(&shared))
 }

@@ -22,8 +22,9 @@ fn arm() -> COMMAND_LONG_DATA {
     command(ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0])
 }
 
+/// With force.
 fn disarm() -> COMMAND_LONG_DATA {
-    command(ARM_DISARM, [0.0; 5])
+    command(ARM_DISARM, [0.0, 21196.0, 0.0, 0.0, 0.0])
 }
 
 fn requests(shared: &Local) -> usize {
@@ -128,9 +129,9 @@ fn nonsense_is_denied() {
         command(test, [1.0, 1.0, 1100.0, 1.0, 0.0]),
         command(test, [1.0, 0.0, 5.0, 1.0, 4.0]),
         command(MavCmd::MAV_CMD_DO_SET_MODE, [nan, 6.0, 0.0, 0.0, 0.0]),
-        command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 3.0, 0.0, 0.0]),
+        command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 9.0, 0.0, 0.0]),
     ] {
-        assert_eq!(answer(&message, Mode::Disarmed), MavResult::MAV_RESULT_DENIED, "{message:?}");
+        assert_eq!(answer(&message, Mode::Ready), MavResult::MAV_RESULT_DENIED, "{message:?}");
     }
 }
 
@@ -154,22 +155,58 @@ fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
     }
 }
 
+/// What control is asked for by a message, if anything.
+fn asked(message: &COMMAND_LONG_DATA) -> Option<Request> {
+    let shared = Local::new();
+    Fed::new(&shared).message(message, 0);
+    shared.requests.take().map(|asked| asked.request)
+}
+
 #[test]
-fn the_mode_is_guided_flight_and_nothing_else() {
-    let set_mode = |base: f32, custom: f32| command(MavCmd::MAV_CMD_DO_SET_MODE, [base, custom, 0.0, 0.0, 0.0]);
-    // PX4's OFFBOARD, and GUIDED.
-    for message in [set_mode(1.0, 6.0), set_mode(129.0, 6.0), set_mode(8.0, 0.0), set_mode(216.0, 0.0)] {
-        assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_ACCEPTED, "{message:?}");
+fn modes_are_px4s_or_guided() {
+    let set_mode = |base: f32, main: f32, sub: f32| command(MavCmd::MAV_CMD_DO_SET_MODE, [base, main, sub, 0.0, 0.0]);
+    for (message, request) in [
+        (set_mode(1.0, 6.0, 0.0), Request::FlySetpoints),
+        // With every flag of our own heartbeat, the HIL flag among them.
+        (set_mode(249.0, 6.0, 0.0), Request::FlySetpoints),
+        (set_mode(8.0, 0.0, 0.0), Request::FlySetpoints),
+        (set_mode(216.0, 0.0, 0.0), Request::FlySetpoints),
+        (set_mode(1.0, 4.0, 3.0), Request::Hold),
+        (set_mode(1.0, 4.0, 2.0), Request::TakeOff(None)),
+        (set_mode(1.0, 4.0, 6.0), Request::Land),
+    ] {
+        assert_eq!(asked(&message), Some(request), "{message:?}");
     }
-    for message in [set_mode(64.0, 0.0), set_mode(4.0, 0.0), set_mode(256.0, 0.0), set_mode(-1.0, 0.0)] {
+    for message in [
+        set_mode(64.0, 0.0, 0.0),
+        set_mode(4.0, 0.0, 0.0),
+        set_mode(256.0, 0.0, 0.0),
+        set_mode(-1.0, 0.0, 0.0),
+        set_mode(1.0, 4.0, 5.0),
+        set_mode(1.0, 1.0, 0.0),
+    ] {
         assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_DENIED, "{message:?}");
     }
 }
 
 #[test]
+fn taking_off_landing_and_disarming_are_asked_for() {
+    let takeoff = |param7: f32| COMMAND_LONG_DATA { param7, ..command(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0; 5]) };
+    assert_eq!(asked(&takeoff(3.0)), Some(Request::TakeOff(Some(3.0))));
+    assert_eq!(asked(&takeoff(f32::NAN)), Some(Request::TakeOff(None)));
+    assert_eq!(asked(&takeoff(0.0)), Some(Request::TakeOff(None)));
+    assert_eq!(asked(&command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5])), Some(Request::Land));
+    assert_eq!(asked(&command(ARM_DISARM, [0.0; 5])), Some(Request::Disarm));
+    // Only the number that forces does.
+    assert_eq!(asked(&command(ARM_DISARM, [0.0, 21195.0, 0.0, 0.0, 0.0])), Some(Request::Disarm));
+    assert_eq!(asked(&disarm()), None);
+}
+
+#[test]
 fn a_simulator_takes_over_only_while_disarmed() {
     let message = command(MavCmd::MAV_CMD_DO_SET_MODE, [32.0, 0.0, 0.0, 0.0, 0.0]);
-    for (mode, taken) in [(Mode::Disarmed, true), (Mode::Flying, false), (Mode::Levelling, false)] {
+    for (mode, taken) in [(Mode::Ready, true), (Mode::Idling, false), (Mode::Flying, false), (Mode::Descending, false)]
+    {
         let shared = Local::new();
         report(&shared, mode, 0);
         Fed::new(&shared).message(&message, 0);
@@ -180,8 +217,8 @@ fn a_simulator_takes_over_only_while_disarmed() {
 
 #[test]
 fn commands_nobody_knows_are_answered_as_unsupported() {
-    for known in [MavCmd::MAV_CMD_REQUEST_MESSAGE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, MavCmd::MAV_CMD_NAV_TAKEOFF] {
-        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Disarmed), MavResult::MAV_RESULT_UNSUPPORTED);
+    for known in [MavCmd::MAV_CMD_DO_PARACHUTE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, MavCmd::MAV_CMD_NAV_WAYPOINT] {
+        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Ready), MavResult::MAV_RESULT_UNSUPPORTED);
     }
     // One that is not in the dialect at all is no command: nobody is told that it was for us.
     let mut payload = [0; 33];

@@ -21,7 +21,10 @@ use mavlink::dialects::common::{
 use nalgebra::{Quaternion, Vector3};
 
 fn disarm(sequence: u8) -> Vec<u8> {
-    v2(sequence, &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..Default::default() })
+    v2(
+        sequence,
+        &COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, param2: 21196.0, ..Default::default() },
+    )
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn values_survive_a_reboot_on_flash_of_4_byte_words() {
 fn nothing_is_written_while_armed() {
     let (chip, shared) = (Chip::erased(), Local::new());
     kept::<4>(&chip, &shared, 3_000_000, |now| {
-        report(&shared, if now < 2_000_000 { Mode::Flying } else { Mode::Disarmed }, now);
+        report(&shared, if now < 2_000_000 { Mode::Flying } else { Mode::Ready }, now);
         shared.parameters.set(Name::BatteryLow, 10.0).unwrap();
         assert!(now >= 2_000_000 || chip.borrow().writes == 0);
     });

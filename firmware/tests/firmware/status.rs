@@ -37,12 +37,13 @@ fn pattern(mode: Option<Mode>) -> String {
 }
 
 #[test]
-fn every_mode_has_a_pattern_of_its_own() {
-    assert_eq!(pattern(Some(Mode::Disarmed)), "#...................");
+fn what_somebody_nearby_must_know_has_a_pattern_of_its_own() {
+    assert_eq!(pattern(Some(Mode::Ready)), "#...................");
     assert_eq!(pattern(Some(Mode::MotorTest)), "#...#...............");
+    assert_eq!(pattern(Some(Mode::Stopped)), "#...#...#...........");
+    assert_eq!(pattern(Some(Mode::Idling)), "##########..........");
     assert_eq!(pattern(Some(Mode::Flying)), "####################");
-    assert_eq!(pattern(Some(Mode::Holding)), "##########..........");
-    assert_eq!(pattern(Some(Mode::Levelling)), "##..##..##..##..##..");
+    assert_eq!(pattern(Some(Mode::Descending)), "##..##..##..##..##..");
     assert_eq!(pattern(None), "#.#.#.#.#.#.#.#.#.#.");
 }
 
@@ -94,10 +95,12 @@ fn every_event_fits_its_text_and_matters_as_it_should() {
     for reason in Reason::ALL {
         let event = Event::Mode(reason);
         assert_eq!(words(&event), reason.to_string());
-        // On its own the vehicle levels, holds and stops; the rest it was told to, or recovers from.
-        let on_its_own = reason.text().contains("lost") || reason.text().starts_with("Stopped");
-        assert_eq!(event.severity() == Severity::Critical, on_its_own, "{reason}");
+        assert_eq!(event.severity() == Severity::Critical, reason.is_own_doing(), "{reason}");
     }
+    // What it was told to, or recovers from, is none of its own doing; what it stops or lands for is.
+    let own = [Reason::ImuLost, Reason::PoseLost, Reason::GroundStationLost, Reason::BatteryLow, Reason::Crashed];
+    let others = [Reason::Armed, Reason::Disarmed, Reason::Landed, Reason::PoseRegained, Reason::TakenOff];
+    assert!(own.iter().all(|reason| reason.is_own_doing()) && !others.iter().any(|reason| reason.is_own_doing()));
     let refused = Event::Refused(Refusal::Setpoint("setpoint.position"));
     assert_eq!(words(&refused), "Setpoint refused: setpoint.position");
     assert_eq!(refused.severity(), Severity::Warning);
