@@ -54,6 +54,7 @@ use crate::allocation::Thrusts;
 use crate::error::InputError;
 use crate::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
 use crate::governor::Setpoint;
+use nalgebra::Vector3;
 
 /// The time between ticks, us.
 pub const PERIOD: u64 = 10_000;
@@ -128,6 +129,8 @@ pub struct Outcome {
     pub answer: Option<Result<(), Refusal>>,
     /// What arming would be answered, while no motor turns.
     pub ready: Option<Result<(), Refusal>>,
+    /// Where it was armed; where it stands, if it is not and there is an estimate, m, world.
+    pub home: Option<Vector3<f32>>,
     /// Whether the vehicle has left the ground where it was armed, and has not landed.
     pub is_airborne: bool,
     /// Whether the setpoint was accepted, where setpoints are flown.

@@ -204,6 +204,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
             is_airborne: outcome.is_airborne,
             state: outcome.estimated.map(|estimated| estimated.state),
             health: outcome.health,
+            home: outcome.home,
+            reference: flown.map(|flown| flown.reference),
             wrench: flown.map(|flown| flown.wrench),
             thrust_scale: flown.map(|flown| flown.thrust_scale),
             timing: self.timing,

@@ -7,7 +7,9 @@
 //! | [`pose`], [`setpoint`], [`command`] | what the messages that matter for flight mean |
 //! | [`sender_clock`], [`time_sync`] | when a pose was true, on the vehicle's clock |
 //! | [`transmit`] | what goes out, and when |
-//! | [`telemetry`] | reports, answers and events as messages |
+//! | [`streams`] | which messages go out by the clock, and how often |
+//! | [`telemetry`] | what the vehicle knows as messages |
+//! | [`origin`] | a local frame on the globe |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
@@ -17,14 +19,18 @@
 //! dialect does not know (a frame, a command, a type) is none.
 
 pub mod command;
+mod commander;
 pub mod frame;
+pub mod origin;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;
 pub mod setpoint;
+pub mod streams;
 pub mod telemetry;
 pub mod time_sync;
 pub mod transmit;
+mod unknown;
 pub mod writer;
 
 /// MAV_COMP_ID_AUTOPILOT1: this component.

@@ -9,6 +9,7 @@
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
 //! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
+//! | link | [`Shared::origin`] | link, its other half | until another comes |
 //! | status | [`Shared::voltage`] | control, link | 1 s |
 //! | control | [`Shared::report`] | link, status | one report a tick |
 //! | control, link, status | [`Shared::announce`] | link (STATUSTEXT), status (log) | until sent |
@@ -35,6 +36,7 @@ pub use queue::{Full, Queue};
 pub use reply::{Asked, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
+use crate::link::origin::Origin;
 use crate::parameters::Parameters;
 use controller_core::estimator::{Increment, PoseMeasurement};
 use controller_core::flight::{ImuSample, Refusal, Stamped};
@@ -82,6 +84,8 @@ pub struct Shared<M: RawMutex> {
     pub disarm: Flag,
     /// Answers to requests. Put them in with [`Self::answer`].
     pub answers: Queue<M, Reply, REPLIES>,
+    /// Where the local frame is on the globe, if a ground station has said so.
+    pub origin: Latest<M, Origin>,
     /// The battery, V.
     pub voltage: Latest<M, f32>,
     /// What the last control tick did.
@@ -119,6 +123,7 @@ impl<M: RawMutex> Shared<M> {
             requests: Queue::new(),
             disarm: Flag::new(),
             answers: Queue::new(),
+            origin: Latest::new(),
             voltage: Latest::new(),
             report: Latest::new(),
             traffic: Latest::new(),

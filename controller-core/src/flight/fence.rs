@@ -22,6 +22,11 @@ impl Fence {
         self.home = *home;
     }
 
+    /// Where it is about, m, world.
+    pub fn home(&self) -> Vector3<f32> {
+        self.home
+    }
+
     /// The frame has moved: what was at `from` is at `to`, m, world.
     pub fn displace(&mut self, from: &Vector3<f32>, to: &Vector3<f32>) {
         self.home += to - from;

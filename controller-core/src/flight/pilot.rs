@@ -135,6 +135,7 @@ impl<'m> Pilot<'m> {
             transition,
             answer,
             ready,
+            home: self.home(estimate),
             is_airborne: self.is_airborne(),
             setpoint,
             estimated: estimate.state,
@@ -169,6 +170,13 @@ impl<'m> Pilot<'m> {
 
     fn is_airborne(&self) -> bool {
         self.mode.flies() && self.chain.as_ref().is_ok_and(|chain| !chain.is_standing())
+    }
+
+    fn home(&self, estimate: &Estimate) -> Option<Vector3<f32>> {
+        match self.mode {
+            mode if mode.is_armed() => Some(self.fence.home()),
+            _ => estimate.state.as_ref().map(|estimated| estimated.state.position),
+        }
     }
 
     /// Everything that arming needs.

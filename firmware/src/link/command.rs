@@ -1,4 +1,4 @@
-//! Commands: COMMAND_LONG, and what this vehicle makes of it.
+//! Commands: COMMAND_LONG and COMMAND_INT, and what this vehicle makes of them.
 //!
 //! | command | does |
 //! |---|---|
@@ -8,13 +8,25 @@
 //! | 176 DO_SET_MODE | PX4's custom modes: asks to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
-//! | any other of the dialect | is answered as unsupported |
+//! | 192 DO_REPOSITION | by COMMAND_INT: asks to fly to a latitude, longitude and altitude and to hold there |
+//! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
+//! | any other | is answered as unsupported |
+
+#![expect(deprecated, reason = "superseded commands and frames: clients still send them")]
 
 use super::frame::{Frame, Header};
+use super::origin::{Origin, Place};
+use super::streams;
+use super::telemetry::{Kind, vehicle};
+use crate::frames;
 use crate::hardware::MOTORS;
-use crate::shared::Procedure;
+use crate::shared::{Procedure, Reply};
 use controller_core::flight::{MotorTest, Request};
-use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavModeFlag, MavResult, MotorTestThrottleType};
+use controller_core::governor::{Motion, Setpoint, Turn};
+use mavlink::dialects::common::{
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult, MotorTestThrottleType,
+};
+use nalgebra::Vector3;
 
 /// The number that forces (MAVLink's, in parameter 2 of an arm command).
 const FORCE: f32 = 21196.0;
@@ -30,7 +42,7 @@ const AUTO_LAND: f32 = 6.0;
 const REPETITION: u64 = 1_000_000;
 
 /// What to do about a command.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Put it to the flight rules, which answer.
     Ask(Request),
@@ -42,40 +54,114 @@ pub enum Action {
     Calibrate(Option<Procedure>),
     /// Only answer.
     Answer(MavResult),
+    /// Accept, and say something besides.
+    Tell(Reply),
+    /// Accept, and name every mode.
+    TellModes,
 }
 
-/// What to do about `command` while armed or not.
+/// A command, however it came.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Call {
+    /// Which.
+    pub command: MavCmd,
+    /// Its first four parameters; the next two, unless they are a place; and the seventh.
+    pub parameters: [f32; 7],
+    /// The place, units of degrees, and the frame that COMMAND_INT says.
+    pub place: Option<(i32, i32, MavFrame)>,
+}
+
+impl From<&COMMAND_LONG_DATA> for Call {
+    fn from(message: &COMMAND_LONG_DATA) -> Self {
+        let &COMMAND_LONG_DATA { command, param1, param2, param3, param4, param5, param6, param7, .. } = message;
+        Self { command, parameters: [param1, param2, param3, param4, param5, param6, param7], place: None }
+    }
+}
+
+impl From<&COMMAND_INT_DATA> for Call {
+    fn from(message: &COMMAND_INT_DATA) -> Self {
+        let &COMMAND_INT_DATA { command, param1, param2, param3, param4, x, y, z, frame, .. } = message;
+        let parameters = [param1, param2, param3, param4, x as f32, y as f32, z];
+        Self { command, parameters, place: Some((x, y, frame)) }
+    }
+}
+
+/// What to do about a command while armed or not, where the local frame is at `origin` and home at `home`, m, NED.
 #[must_use]
-pub fn action(command: &COMMAND_LONG_DATA, armed: bool) -> Action {
-    match command.command {
-        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match command.param1 {
-            0.0 if command.param2 == FORCE => Action::ForceDisarm,
+pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) -> Action {
+    let [first, second, .., seventh] = call.parameters;
+    match call.command {
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match first {
+            0.0 if second == FORCE => Action::ForceDisarm,
             0.0 => Action::Ask(Request::Disarm),
             1.0 => Action::Ask(Request::Arm),
             _ => DENIED,
         },
         MavCmd::MAV_CMD_NAV_TAKEOFF => {
             // Most clients that name no height send NaN, some zero.
-            let height = Some(command.param7).filter(|height| !height.is_nan() && *height != 0.0);
+            let height = Some(seventh).filter(|height| !height.is_nan() && *height != 0.0);
             Action::Ask(Request::TakeOff(height))
         }
         MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
-        MavCmd::MAV_CMD_DO_MOTOR_TEST => {
-            motor_test(command).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test)))
+        MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
+        MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test))),
+        MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
+        MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
+        MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
+            0.0 => Action::TellModes,
+            index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Tell(Reply::Mode(index as u8)),
+            _ => DENIED,
+        },
+        MavCmd::MAV_CMD_REQUEST_MESSAGE => tell(first, Reply::Message),
+        MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => tell(first, Reply::IntervalOf),
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => {
+            tell(first, |kind| Reply::Interval { kind, interval: second as i64 })
         }
-        MavCmd::MAV_CMD_DO_SET_MODE => set_mode(command, armed),
-        MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(command),
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => DENIED,
+        // What older clients say for REQUEST_MESSAGE.
+        MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Tell(Reply::Message(Kind::AutopilotVersion)),
+        MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION => Action::Tell(Reply::Message(Kind::ProtocolVersion)),
         _ => Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
     }
+}
+
+/// AVAILABLE_MODES.
+const MODES_NUMBER: f32 = 435.0;
+
+/// Something about the message of this number; unsupported if it is none of ours.
+fn tell(number: f32, reply: impl Fn(Kind) -> Reply) -> Action {
+    // A number that is none, or negative, becomes that of HEARTBEAT: not asked for that way.
+    let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| streams::of_number(number as u32));
+    kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), |kind| Action::Tell(reply(kind)))
+}
+
+/// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the heading.
+fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
+    let [.., yaw, _, _, altitude] = call.parameters;
+    let Some((latitude, longitude, frame)) = call.place else {
+        return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
+    };
+    let altitude = match frame {
+        MavFrame::MAV_FRAME_GLOBAL | MavFrame::MAV_FRAME_GLOBAL_INT => altitude,
+        MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
+            origin.place(home).altitude + altitude
+        }
+        _ => return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
+    };
+    if !altitude.is_finite() {
+        return DENIED;
+    }
+    let place = origin.local(&Place { latitude, longitude, altitude });
+    let turn = if yaw.is_finite() { Turn::Angle { angle: frames::heading(yaw), rate: 0.0 } } else { Turn::Keep };
+    Action::Ask(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
 }
 
 const DENIED: Action = Action::Answer(MavResult::MAV_RESULT_DENIED);
 
 /// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative times
 /// become zero, which is refused as well.
-fn motor_test(command: &COMMAND_LONG_DATA) -> Option<MotorTest> {
-    let COMMAND_LONG_DATA { param1: motor, param2: unit, param3: throttle, param4: seconds, param5: count, .. } =
-        *command;
+fn motor_test(call: &Call) -> Option<MotorTest> {
+    let [motor, unit, throttle, seconds, count, ..] = call.parameters;
     let rotor = (0..MOTORS).find(|&rotor| motor == (rotor + 1) as f32)?;
     let in_percent = unit == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 as f32;
     let is_one = count == 0.0 || count == 1.0;
@@ -84,10 +170,9 @@ fn motor_test(command: &COMMAND_LONG_DATA) -> Option<MotorTest> {
 }
 
 /// One calibration at a time, of what there is. Magnetometer, barometer, radio and temperature are not.
-fn calibration(command: &COMMAND_LONG_DATA) -> Action {
-    let COMMAND_LONG_DATA { param1: gyro, param2, param3, param4, param5: accelerometer, param6, param7, .. } =
-        *command;
-    if [param2, param3, param4, param6, param7].iter().any(|other| *other != 0.0) {
+fn calibration(call: &Call) -> Action {
+    let [gyro, second, third, fourth, accelerometer, sixth, seventh] = call.parameters;
+    if [second, third, fourth, sixth, seventh].iter().any(|other| *other != 0.0) {
         return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
     }
     let procedure = match (gyro, accelerometer) {
@@ -103,8 +188,8 @@ fn calibration(command: &COMMAND_LONG_DATA) -> Action {
 
 /// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a simulator and the
 /// guided flag for flight by setpoints.
-fn set_mode(command: &COMMAND_LONG_DATA, armed: bool) -> Action {
-    let COMMAND_LONG_DATA { param1: base, param2: main, param3: sub, .. } = *command;
+fn set_mode(call: &Call, armed: bool) -> Action {
+    let [base, main, sub, ..] = call.parameters;
     if !(0.0..=255.0).contains(&base) {
         return DENIED;
     }

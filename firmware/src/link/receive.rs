@@ -2,11 +2,18 @@
 //!
 //! A message that cannot be used changes nothing, is counted and, once a second at most, told in words. No input panics.
 
+#![expect(deprecated, reason = "superseded messages: clients still send them")]
+
 use super::COMPONENT;
-use super::command::{Action, Repetitions, action};
+use super::command::{Action, Call, Repetitions, action};
+use super::commander::Commander;
 use super::frame::{Frame, Parser};
+use super::origin::Origin;
 use super::pose::Poses;
-use super::setpoint::setpoint;
+use super::setpoint::{Here, setpoint};
+use super::telemetry::{Kind, vehicle};
+use super::unknown::command_of;
+use crate::frames;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, Ping, Procedure, Reply, Severity, Shared, Traffic};
@@ -16,10 +23,12 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavParamType, MavResult, MavType, ODOMETRY_DATA,
-    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    TIMESYNC_DATA,
+    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MISSION_CLEAR_ALL_DATA,
+    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavMissionResult, MavParamType, MavResult, MavType, ODOMETRY_DATA,
+    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA, TIMESYNC_DATA,
 };
+use nalgebra::Vector3;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -68,11 +77,30 @@ impl Occasionally {
     }
 }
 
+/// A message that says whom it is for.
+trait Addressed {
+    /// System and component.
+    fn target(&self) -> (u8, u8);
+}
+
+impl Addressed for COMMAND_LONG_DATA {
+    fn target(&self) -> (u8, u8) {
+        (self.target_system, self.target_component)
+    }
+}
+
+impl Addressed for COMMAND_INT_DATA {
+    fn target(&self) -> (u8, u8) {
+        (self.target_system, self.target_component)
+    }
+}
+
 /// Acts on frames.
 pub struct Receiver<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     poses: Poses,
     repetitions: Repetitions,
+    commander: Commander,
     pose_refused: Occasionally,
     setpoint_refused: Occasionally,
     traffic: Traffic,
@@ -86,6 +114,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             shared,
             poses: Poses::default(),
             repetitions: Repetitions::default(),
+            commander: Commander::default(),
             pose_refused: Occasionally::default(),
             setpoint_refused: Occasionally::default(),
             traffic: Traffic::default(),
@@ -100,12 +129,18 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
+        self.commander.hear(frame.header.system, frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             // In a simulation the simulator says where the vehicle is.
             ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
-            COMMAND_LONG_DATA::ID => self.decoded(frame, Self::command),
+            COMMAND_LONG_DATA::ID => self.command(frame, frame.decode::<COMMAND_LONG_DATA>().as_ref()),
+            COMMAND_INT_DATA::ID => self.command(frame, frame.decode::<COMMAND_INT_DATA>().as_ref()),
+            SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.decoded(frame, Self::set_origin),
+            MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
+            MISSION_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::mission_list),
+            MISSION_CLEAR_ALL_DATA::ID => self.decoded(frame, Self::mission_clear),
             TIMESYNC_DATA::ID => self.decoded(frame, Self::time_sync),
             Ping::ID => self.decoded(frame, Self::ping),
             PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
@@ -143,9 +178,9 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    /// Any ground station's will do.
+    /// Any ground station's or companion computer's will do.
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
-        if message.mavtype == MavType::MAV_TYPE_GCS {
+        if matches!(message.mavtype, MavType::MAV_TYPE_GCS | MavType::MAV_TYPE_ONBOARD_CONTROLLER) {
             self.shared.ground_station.put((), frame.time);
         }
     }
@@ -170,7 +205,8 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        match setpoint(message) {
+        let state = self.shared.report.get().and_then(|report| report.value.state);
+        match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
             Err(refusal) => {
                 self.refused();
@@ -179,35 +215,95 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    fn command(&mut self, frame: &Frame<'_>, message: &COMMAND_LONG_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
+    /// Acts on a command, if the message is one of the dialect's; another is answered by its number.
+    fn command<D: Addressed>(&mut self, frame: &Frame<'_>, message: Option<&D>)
+    where
+        for<'m> Call: From<&'m D>,
+    {
+        let Some(message) = message else {
+            let unknown = command_of(frame.message, frame.payload);
+            match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
+                Some((number, _)) => self.shared.reply(Reply::UnknownCommand(number)),
+                None => self.refused(),
+            }
+            return;
+        };
+        let (system, component) = message.target();
+        if !self.is_addressed(system, component) {
             return;
         }
         if self.repetitions.is_repeated(frame) {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             return;
         }
-        let command = message.command;
-        let result = match action(message, self.shared.is_armed()) {
-            Action::Ask(request) => match self.shared.request(Asked { request, command }) {
-                Ok(()) => return,
-                Err(_) => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
-            },
-            Action::ForceDisarm => {
-                self.shared.request_disarm();
-                MavResult::MAV_RESULT_ACCEPTED
+        let (call, sender) = (Call::from(message), frame.header.system);
+        let command = call.command;
+        let result = if self.commander.may(&call, sender, self.shared.is_armed(), frame.time) {
+            match self.act(&call) {
+                Some(result) => result,
+                None => return,
             }
-            Action::EnterHil => {
-                self.shared.hil.raise();
-                MavResult::MAV_RESULT_ACCEPTED
-            }
-            Action::Calibrate(procedure) => match self.calibrate(procedure) {
-                Ok(()) => return,
-                Err(result) => result,
-            },
-            Action::Answer(result) => result,
+        } else {
+            self.shared.announce(Event::new(Severity::Warning, "Refused: another station commands"));
+            MavResult::MAV_RESULT_DENIED
         };
         self.shared.reply(Reply::Command { command, result });
+    }
+
+    /// Acts on a command; what to answer, unless somebody else does.
+    fn act(&mut self, call: &Call) -> Option<MavResult> {
+        let report = self.shared.report.get();
+        let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
+        let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
+        match action(call, self.shared.is_armed(), &origin, &home) {
+            Action::Ask(request) => {
+                let asked = self.shared.request(Asked { request, command: call.command });
+                return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            }
+            Action::ForceDisarm => self.shared.request_disarm(),
+            Action::EnterHil => self.shared.hil.raise(),
+            Action::Calibrate(procedure) => return self.calibrate(procedure).err(),
+            Action::Answer(result) => return Some(result),
+            Action::Tell(reply) => self.shared.reply(reply),
+            Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
+        }
+        Some(MavResult::MAV_RESULT_ACCEPTED)
+    }
+
+    fn set_origin(&mut self, frame: &Frame<'_>, message: &SET_GPS_GLOBAL_ORIGIN_DATA) {
+        let SET_GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude, target_system } = *message;
+        if !self.is_addressed(target_system, 0) {
+            return;
+        }
+        match Origin::new(latitude, longitude, altitude) {
+            Some(origin) => {
+                self.shared.origin.put(origin, frame.time);
+                self.shared.reply(Reply::Message(Kind::GlobalOrigin));
+            }
+            None => self.refused(),
+        }
+    }
+
+    /// Missions are not flown here: whoever sends one is told.
+    fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            let result = MavMissionResult::MAV_MISSION_UNSUPPORTED;
+            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
+        }
+    }
+
+    fn mission_list(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_LIST_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            self.shared.reply(Reply::NoMission(frame.header.system, frame.header.component));
+        }
+    }
+
+    /// There is none: that is what was wanted.
+    fn mission_clear(&mut self, frame: &Frame<'_>, message: &MISSION_CLEAR_ALL_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) {
+            let result = MavMissionResult::MAV_MISSION_ACCEPTED;
+            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
+        }
     }
 
     /// Hands it to the IMU task, which answers.
@@ -224,7 +320,6 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     }
 
     /// Back to its sender. One that is addressed to somebody is itself an answer.
-    #[expect(deprecated, reason = "see there")]
     fn ping(&mut self, frame: &Frame<'_>, message: &Ping) {
         if (message.target_system, message.target_component) == (0, 0) {
             let (target_system, target_component) = (frame.header.system, frame.header.component);

@@ -8,13 +8,23 @@
 //! | anything else: acceleration alone, single axes, forces | refused |
 //!
 //! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not looked
-//! at. Only LOCAL_NED is understood. Ranges are the governor's business: everything from here goes through it.
+//! at. Ranges are the governor's business: everything from here goes through it.
+//!
+//! | frame | position | velocity, acceleration | yaw |
+//! |---|---|---|---|
+//! | LOCAL_NED | there | there | from north |
+//! | LOCAL_OFFSET_NED | from where the vehicle is | north, east, down | from where it points |
+//! | BODY_NED, BODY_OFFSET_NED, BODY_FRD | from where it is, ahead, right, down | ahead, right, down | from where it points |
+//!
+//! Ahead is where the vehicle points, level: it does not matter how it leans.
 
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::math;
+use controller_core::state::State;
 use core::fmt;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
-use nalgebra::Vector3;
+use nalgebra::{RealField, UnitQuaternion, Vector2, Vector3};
 
 /// Why a setpoint was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +33,7 @@ pub enum SetpointRefusal {
     NotFinite,
     /// A combination of fields that says nothing the governor could do.
     Mask,
-    /// Another frame than LOCAL_NED.
+    /// A frame that is not understood, or one of a vehicle that does not know where it is.
     Frame,
 }
 
@@ -32,7 +42,7 @@ impl fmt::Display for SetpointRefusal {
         f.write_str(match self {
             Self::NotFinite => "a field is not finite",
             Self::Mask => "type mask not supported",
-            Self::Frame => "use LOCAL_NED",
+            Self::Frame => "frame not understood",
         })
     }
 }
@@ -48,18 +58,78 @@ const NO_ACCELERATION: Mask = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
     .union(Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE)
     .union(Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE);
 
-/// What a SET_POSITION_TARGET_LOCAL_NED asks for.
+/// Where the vehicle is, m, and where it points, in the law's world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Here {
+    position: Vector3<f32>,
+    /// A unit vector, level.
+    ahead: Vector2<f32>,
+}
+
+impl Here {
+    /// Of a vehicle in this state; none where it points straight up or down.
+    #[must_use]
+    pub fn of(state: &State) -> Option<Self> {
+        let ahead = (UnitQuaternion::new_unchecked(state.attitude) * Vector3::x()).xy();
+        let length = math::sqrt(ahead.norm_squared());
+        (length > 0.1).then(|| Self { position: state.position, ahead: ahead / length })
+    }
+
+    /// Ahead, left, up in the law's world.
+    fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
+        let (cosine, sine) = (self.ahead.x, self.ahead.y);
+        Vector3::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z)
+    }
+}
+
+/// How the numbers of a frame are meant.
+struct Axes<'h> {
+    /// Where positions begin, and yaw.
+    from: Option<&'h Here>,
+    /// Whether they are ahead, right, down.
+    turned: bool,
+}
+
+impl Axes<'_> {
+    fn vector(&self, vector: [f32; 3]) -> Vector3<f32> {
+        match self.from {
+            Some(here) if self.turned => here.turned(&frames::body(&vector.into())),
+            _ => frames::world(&vector.into()),
+        }
+    }
+
+    fn place(&self, vector: [f32; 3]) -> Vector3<f32> {
+        self.vector(vector) + self.from.map_or_else(Vector3::zeros, |here| here.position)
+    }
+}
+
+/// How a frame is to be understood.
+#[expect(deprecated, reason = "frames that clients still use")]
+fn axes(frame: MavFrame, here: Option<&Here>) -> Result<Axes<'_>, SetpointRefusal> {
+    let from = here.ok_or(SetpointRefusal::Frame);
+    match frame {
+        MavFrame::MAV_FRAME_LOCAL_NED => Ok(Axes { from: None, turned: false }),
+        MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => Ok(Axes { from: Some(from?), turned: false }),
+        MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED | MavFrame::MAV_FRAME_BODY_FRD => {
+            Ok(Axes { from: Some(from?), turned: true })
+        }
+        _ => Err(SetpointRefusal::Frame),
+    }
+}
+
+/// What a SET_POSITION_TARGET_LOCAL_NED asks for, of a vehicle that is `here`.
 ///
 /// # Errors
 /// [`SetpointRefusal`] for what cannot be done or is not finite.
-pub fn setpoint(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint, SetpointRefusal> {
+pub fn setpoint(
+    message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
+    here: Option<&Here>,
+) -> Result<Setpoint, SetpointRefusal> {
     let &SET_POSITION_TARGET_LOCAL_NED_DATA { x, y, z, vx, vy, vz, afx, afy, afz, type_mask: mask, .. } = message;
-    if message.coordinate_frame != MavFrame::MAV_FRAME_LOCAL_NED {
-        return Err(SetpointRefusal::Frame);
-    }
-    let position = used([x, y, z], mask, NO_POSITION)?;
-    let velocity = used([vx, vy, vz], mask, NO_VELOCITY)?;
-    let acceleration = used([afx, afy, afz], mask, NO_ACCELERATION)?;
+    let axes = axes(message.coordinate_frame, here)?;
+    let position = used([x, y, z], mask, NO_POSITION)?.map(|position| axes.place(position));
+    let velocity = used([vx, vy, vz], mask, NO_VELOCITY)?.map(|velocity| axes.vector(velocity));
+    let acceleration = used([afx, afy, afz], mask, NO_ACCELERATION)?.map(|acceleration| axes.vector(acceleration));
     let motion = match (position, velocity, acceleration) {
         (_, _, Some(_)) if mask.contains(Mask::POSITION_TARGET_TYPEMASK_FORCE_SET) => {
             return Err(SetpointRefusal::Mask);
@@ -72,11 +142,11 @@ pub fn setpoint(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint
         }
         _ => return Err(SetpointRefusal::Mask),
     };
-    Ok(Setpoint { motion, turn: turn(message)? })
+    Ok(Setpoint { motion, turn: turn(message, axes.from)? })
 }
 
-/// A vector of NED in the law's world, unless the mask sets it aside. All three axes count, or none.
-fn used(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Option<Vector3<f32>>, SetpointRefusal> {
+/// A vector, unless the mask sets it aside. All three axes count, or none.
+fn used(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Option<[f32; 3]>, SetpointRefusal> {
     if mask.contains(ignored) {
         return Ok(None);
     }
@@ -84,16 +154,22 @@ fn used(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Option<Vector3<f3
         return Err(SetpointRefusal::Mask);
     }
     let finite = vector.iter().all(|component| component.is_finite());
-    if finite { Ok(Some(frames::world(&vector.into()))) } else { Err(SetpointRefusal::NotFinite) }
+    if finite { Ok(Some(vector)) } else { Err(SetpointRefusal::NotFinite) }
 }
 
-fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Turn, SetpointRefusal> {
+/// Which way to point: from north, or from where the vehicle points.
+fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA, from: Option<&Here>) -> Result<Turn, SetpointRefusal> {
     let turns = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
     let rotates = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
     if turns && !message.yaw.is_finite() || rotates && !message.yaw_rate.is_finite() {
         return Err(SetpointRefusal::NotFinite);
     }
-    let (angle, rate) = (frames::heading(message.yaw), frames::heading_rate(message.yaw_rate));
+    let rate = frames::heading_rate(message.yaw_rate);
+    let angle = match from {
+        None => frames::heading(message.yaw),
+        // A yaw to the right is a heading to the other side.
+        Some(here) => RealField::atan2(here.ahead.y, here.ahead.x) - message.yaw,
+    };
     Ok(match (turns, rotates) {
         (false, false) => Turn::Keep,
         (false, true) => Turn::Rate(rate),

@@ -1,125 +1,162 @@
-//! Telemetry: reports, answers and events as MAVLink messages, in MAVLink's frames.
+//! Telemetry: what the vehicle knows, as MAVLink messages in MAVLink's frames.
+//!
+//! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
+//! - [`motion`]: how it moves: attitude, position, odometry, target, home;
+//! - [`identity`]: what it is.
 
-use crate::frames;
-use crate::parameters::table::{Name, PARAMETERS};
-use crate::shared::{Event, Report, Severity, Text, Traffic};
-use controller_core::flight::{Mode, PERIOD};
-use controller_core::state::State;
+pub mod identity;
+pub mod motion;
+pub mod vehicle;
+
+use super::origin::Origin;
+use super::time_sync;
+use super::writer::Writer;
+use crate::shared::{Report, Traffic};
+use controller_core::flight::Stamped;
+use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavAutopilot, MavModeFlag, MavParamType,
-    MavSeverity, MavState, MavSysStatusSensor, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
+    ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA,
+    ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA,
+    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA, TIMESYNC_DATA,
 };
 
-/// The version of the protocol that HEARTBEAT names.
-const PROTOCOL: u8 = 3;
+/// A message that is sent by the clock or on request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// HEARTBEAT.
+    Heartbeat,
+    /// SYS_STATUS.
+    SystemStatus,
+    /// EXTENDED_SYS_STATE.
+    ExtendedState,
+    /// BATTERY_STATUS.
+    BatteryStatus,
+    /// CURRENT_MODE.
+    CurrentMode,
+    /// ATTITUDE.
+    Attitude,
+    /// ATTITUDE_QUATERNION.
+    AttitudeQuaternion,
+    /// LOCAL_POSITION_NED.
+    Position,
+    /// GLOBAL_POSITION_INT.
+    GlobalPosition,
+    /// ODOMETRY.
+    Odometry,
+    /// POSITION_TARGET_LOCAL_NED.
+    PositionTarget,
+    /// ESTIMATOR_STATUS.
+    EstimatorStatus,
+    /// HOME_POSITION.
+    HomePosition,
+    /// GPS_GLOBAL_ORIGIN.
+    GlobalOrigin,
+    /// SYSTEM_TIME.
+    SystemTime,
+    /// TIMESYNC, a question.
+    TimeSync,
+    /// AUTOPILOT_VERSION.
+    AutopilotVersion,
+    /// PROTOCOL_VERSION.
+    ProtocolVersion,
+}
 
-/// Main and sub-modes by which PX4's clients know what a vehicle does.
-const AUTO: u32 = 4 << 16;
-const AUTO_READY: u32 = AUTO | 1 << 24;
-const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
-const AUTO_LOITER: u32 = AUTO | 3 << 24;
-const AUTO_LAND: u32 = AUTO | 6 << 24;
-const OFFBOARD: u32 = 6 << 16;
+/// What is known when a message is written.
+#[derive(Debug, Clone)]
+pub struct View {
+    /// The vehicle's clock, us.
+    pub now: u64,
+    /// What control did last, if that is not long ago.
+    pub report: Option<Stamped<Report>>,
+    /// V, if it is known.
+    pub voltage: Option<f32>,
+    /// What the line carried.
+    pub traffic: Traffic,
+    /// Whether a simulator has sensors and motors.
+    pub simulated: bool,
+    /// Where the local frame is on the globe.
+    pub origin: Origin,
+}
 
-/// What the vehicle is and how it does; no mode without a fresh report. The custom mode is PX4's for what comes nearest.
-#[must_use]
-pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
-    let (custom_mode, system_status) = match mode {
-        None => (0, MavState::MAV_STATE_BOOT),
-        Some(Mode::Boot) => (AUTO_READY, MavState::MAV_STATE_BOOT),
-        Some(Mode::Checks) => (AUTO_READY, MavState::MAV_STATE_CALIBRATING),
-        Some(Mode::Ready | Mode::MotorTest) => (AUTO_READY, MavState::MAV_STATE_STANDBY),
-        Some(Mode::Idling) => (AUTO_READY, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::TakingOff) => (AUTO_TAKEOFF, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::Flying) => (OFFBOARD, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::Holding) => (AUTO_LOITER, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::Landing) => (AUTO_LAND, MavState::MAV_STATE_ACTIVE),
-        Some(Mode::Descending) => (AUTO_LAND, MavState::MAV_STATE_EMERGENCY),
-        Some(Mode::Stopped | Mode::Locked) => (AUTO_READY, MavState::MAV_STATE_EMERGENCY),
-    };
-    let mut base_mode = MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED
-        | MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED
-        | MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
-    base_mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, mode.is_some_and(Mode::is_armed));
-    base_mode.set(MavModeFlag::MAV_MODE_FLAG_TEST_ENABLED, mode == Some(Mode::MotorTest));
-    base_mode.set(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED, hil);
-    HEARTBEAT_DATA {
-        custom_mode,
-        mavtype: MavType::MAV_TYPE_QUADROTOR,
-        autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC,
-        base_mode,
-        system_status,
-        mavlink_version: PROTOCOL,
+/// What every frame has around its message, bytes.
+const FRAME: usize = 12;
+
+impl Kind {
+    /// The message's number, and how long it can be.
+    const fn facts(self) -> (u32, usize) {
+        const fn of<D: MessageData>() -> (u32, usize) {
+            (D::ID, D::ENCODED_LEN)
+        }
+        match self {
+            Self::Heartbeat => of::<HEARTBEAT_DATA>(),
+            Self::SystemStatus => of::<SYS_STATUS_DATA>(),
+            Self::ExtendedState => of::<EXTENDED_SYS_STATE_DATA>(),
+            Self::BatteryStatus => of::<BATTERY_STATUS_DATA>(),
+            Self::CurrentMode => of::<CURRENT_MODE_DATA>(),
+            Self::Attitude => of::<ATTITUDE_DATA>(),
+            Self::AttitudeQuaternion => of::<ATTITUDE_QUATERNION_DATA>(),
+            Self::Position => of::<LOCAL_POSITION_NED_DATA>(),
+            Self::GlobalPosition => of::<GLOBAL_POSITION_INT_DATA>(),
+            Self::Odometry => of::<ODOMETRY_DATA>(),
+            Self::PositionTarget => of::<POSITION_TARGET_LOCAL_NED_DATA>(),
+            Self::EstimatorStatus => of::<ESTIMATOR_STATUS_DATA>(),
+            Self::HomePosition => of::<HOME_POSITION_DATA>(),
+            Self::GlobalOrigin => of::<GPS_GLOBAL_ORIGIN_DATA>(),
+            Self::SystemTime => of::<SYSTEM_TIME_DATA>(),
+            Self::TimeSync => of::<TIMESYNC_DATA>(),
+            Self::AutopilotVersion => of::<AUTOPILOT_VERSION_DATA>(),
+            Self::ProtocolVersion => of::<identity::ProtocolVersion>(),
+        }
     }
-}
 
-/// Attitude and body rates at `time`, us.
-#[must_use]
-pub fn attitude(time: u64, state: &State) -> ATTITUDE_QUATERNION_DATA {
-    let q = frames::attitude(&state.attitude);
-    let rates = frames::body(&state.angular_velocity);
-    ATTITUDE_QUATERNION_DATA {
-        time_boot_ms: milliseconds(time),
-        q1: q.w,
-        q2: q.i,
-        q3: q.j,
-        q4: q.k,
-        rollspeed: rates.x,
-        pitchspeed: rates.y,
-        yawspeed: rates.z,
+    /// The message's number.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        self.facts().0
     }
-}
 
-/// Position and velocity at `time`, us.
-#[must_use]
-pub fn position(time: u64, state: &State) -> LOCAL_POSITION_NED_DATA {
-    let (p, v) = (frames::world(&state.position), frames::world(&state.velocity));
-    LOCAL_POSITION_NED_DATA { time_boot_ms: milliseconds(time), x: p.x, y: p.y, z: p.z, vx: v.x, vy: v.y, vz: v.z }
-}
-
-/// A time stamp's milliseconds, which start again after 2^32.
-fn milliseconds(time: u64) -> u32 {
-    (time / 1000) as u32
-}
-
-/// Battery (V, if known), how much of its period the longest tick took, and what the line lost. Nothing is said of sensors.
-#[must_use]
-pub fn status(voltage: Option<f32>, report: Option<&Report>, traffic: Traffic) -> SYS_STATUS_DATA {
-    let longest = report.map_or(0, |report| u64::from(report.timing.worst_duration));
-    SYS_STATUS_DATA {
-        // The crate's default is the first of them.
-        onboard_control_sensors_present: MavSysStatusSensor::empty(),
-        onboard_control_sensors_enabled: MavSysStatusSensor::empty(),
-        onboard_control_sensors_health: MavSysStatusSensor::empty(),
-        // Tenths of a percent.
-        load: (1000 * longest / PERIOD).min(1000) as u16,
-        voltage_battery: voltage.map_or(u16::MAX, |volts| (volts * 1000.0) as u16),
-        current_battery: -1,
-        battery_remaining: -1,
-        errors_comm: traffic.refused.try_into().unwrap_or(u16::MAX),
-        ..SYS_STATUS_DATA::DEFAULT
+    /// The longest frame it makes, bytes.
+    #[must_use]
+    pub fn bytes_at_most(self) -> usize {
+        self.facts().1 + FRAME
     }
-}
 
-/// An event in words.
-#[must_use]
-pub fn text(event: &Event) -> STATUSTEXT_DATA {
-    let severity = match event.severity() {
-        Severity::Information => MavSeverity::MAV_SEVERITY_INFO,
-        Severity::Warning => MavSeverity::MAV_SEVERITY_WARNING,
-        Severity::Critical => MavSeverity::MAV_SEVERITY_CRITICAL,
-    };
-    STATUSTEXT_DATA { severity, text: Text::new(event).as_str().into() }
-}
+    /// Writes the message as `system`'s; whether there was anything to say.
+    pub fn write(self, view: &View, system: u8, writer: &mut Writer) -> bool {
+        let Some(report) = &view.report else { return self.write_without_report(view, system, writer) };
+        let (time, report) = (report.time, &report.value);
+        match self {
+            Self::Attitude => writer.write_some(system, motion::attitude(time, report)),
+            Self::AttitudeQuaternion => writer.write_some(system, motion::attitude_quaternion(time, report)),
+            Self::Position => writer.write_some(system, motion::position(time, report)),
+            Self::GlobalPosition => writer.write_some(system, motion::global_position(time, report, &view.origin)),
+            Self::Odometry => writer.write_some(system, motion::odometry(time, report)),
+            Self::PositionTarget => writer.write_some(system, motion::position_target(time, report)),
+            Self::HomePosition => writer.write_some(system, motion::home(report, &view.origin)),
+            Self::EstimatorStatus => writer.write_some(system, Some(motion::estimator_status(time, report))),
+            Self::ExtendedState => writer.write_some(system, Some(vehicle::extended_state(report))),
+            Self::CurrentMode => writer.write_some(system, Some(vehicle::current_mode(report.mode))),
+            _ => self.write_without_report(view, system, writer),
+        }
+    }
 
-/// A parameter's present value.
-#[must_use]
-pub fn parameter(name: Name, value: f32) -> PARAM_VALUE_DATA {
-    PARAM_VALUE_DATA {
-        param_value: value,
-        param_count: PARAMETERS.len() as u16,
-        param_index: name as u16,
-        param_id: name.row().name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    /// What can be said whatever control does.
+    fn write_without_report(self, view: &View, system: u8, writer: &mut Writer) -> bool {
+        let report = view.report.as_ref().map(|report| &report.value);
+        match self {
+            Self::Heartbeat => {
+                writer.write(system, &vehicle::heartbeat(report.map(|report| report.mode), view.simulated));
+            }
+            Self::SystemStatus => writer.write(system, &vehicle::status(view.voltage, report, view.traffic)),
+            Self::BatteryStatus => writer.write(system, &vehicle::battery(view.voltage)),
+            Self::SystemTime => writer.write(system, &motion::system_time(view.now)),
+            Self::TimeSync => writer.write(system, &time_sync::question(view.now)),
+            Self::GlobalOrigin => writer.write(system, &motion::origin(&view.origin)),
+            Self::AutopilotVersion => writer.write(system, &identity::autopilot_version()),
+            Self::ProtocolVersion => writer.write(system, &identity::protocol_version()),
+            _ => return false,
+        }
+        true
     }
 }

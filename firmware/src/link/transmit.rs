@@ -2,25 +2,24 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::telemetry;
+use super::origin::Origin;
+use super::streams::{Schedule, interval_of_rate};
+use super::telemetry::{Kind, View, vehicle};
 use super::time_sync;
+use super::unknown::UnknownCommand;
 use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, Reply, Report, Severity, Shared};
-use controller_core::flight::Stamped;
+use crate::shared::{Event, Reply, Severity, Shared};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
-use mavlink::dialects::common::COMMAND_ACK_DATA;
+use mavlink::dialects::common::{COMMAND_ACK_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA};
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIME_MAX: u64 = 100_000;
-
-/// Time between heartbeats, and between questions for the time, us.
-pub const HEARTBEAT_INTERVAL: u64 = 1_000_000;
 
 /// Time between the values of a list of parameters, us: slow enough to leave the line to the rest.
 const LIST_INTERVAL: u64 = 20_000;
@@ -41,44 +40,18 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
             }
         }
         if silent {
-            let due = clock.until(speaker.schedule.next());
+            let due = clock.until(speaker.next());
             select(due, shared.outgoing.wait()).await;
         }
     }
-}
-
-/// When what is due, us.
-struct Schedule {
-    attitude: u64,
-    position: u64,
-    heartbeat: u64,
-    status: u64,
-    sync: u64,
-    /// The next of a list of parameters.
-    list: Option<(usize, u64)>,
-}
-
-impl Schedule {
-    fn next(&self) -> u64 {
-        let list = self.list.map_or(u64::MAX, |(_, time)| time);
-        list.min(self.attitude).min(self.position).min(self.heartbeat).min(self.status).min(self.sync)
-    }
-}
-
-/// Whether `due` has come; it is then an interval on, or an interval from now if that has passed as well.
-fn comes(due: &mut u64, interval: u64, now: u64) -> bool {
-    let has_come = now >= *due;
-    if has_come {
-        let next = due.saturating_add(interval);
-        *due = if next > now { next } else { now.saturating_add(interval) };
-    }
-    has_come
 }
 
 /// Finds what to say next and writes it. Nothing here waits, so there is one future for all messages.
 struct Speaker<'a, M: RawMutex> {
     shared: &'a Shared<M>,
     schedule: Schedule,
+    /// The next of a list of parameters, and when it is due, us.
+    list: Option<(usize, u64)>,
     writer: Writer,
     /// Lost events that were told of.
     told: u32,
@@ -86,45 +59,58 @@ struct Speaker<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
-        let schedule = Schedule { attitude: now, position: now, heartbeat: now, status: now, sync: now, list: None };
-        Self { shared, schedule, writer: Writer::new(), told: 0 }
+        Self { shared, schedule: Schedule::new(now), list: None, writer: Writer::new(), told: 0 }
+    }
+
+    fn system(&self) -> u8 {
+        self.shared.parameters.get(Name::SystemId) as u8
     }
 
     fn say(&mut self, message: &impl MessageData) {
-        self.writer.write(self.shared.parameters.get(Name::SystemId) as u8, message);
+        self.writer.write(self.system(), message);
+    }
+
+    /// How often telemetry goes out, us.
+    fn telemetry(&self) -> u64 {
+        interval_of_rate(self.shared.parameters.get(Name::TelemetryRate))
+    }
+
+    /// When something is due, us.
+    fn next(&self) -> u64 {
+        let list = self.list.map_or(u64::MAX, |(_, time)| time);
+        self.schedule.next(self.telemetry()).min(list)
     }
 
     /// Writes the first message that is due; whether there is one.
     fn scheduled(&mut self, now: u64) -> bool {
-        // Within 10 and 50 Hz, as the table has it.
-        let interval = (1e6 / self.shared.parameters.get(Name::TelemetryRate)) as u64;
-        let report = self.shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
-        let state = report.as_ref().and_then(|report| Some((report.time, report.value.state.as_ref()?)));
-        if comes(&mut self.schedule.attitude, interval, now)
-            && let Some((time, state)) = state
-        {
-            self.say(&telemetry::attitude(time, state));
-        } else if comes(&mut self.schedule.position, interval, now)
-            && let Some((time, state)) = state
-        {
-            self.say(&telemetry::position(time, state));
-        } else if comes(&mut self.schedule.heartbeat, HEARTBEAT_INTERVAL, now) {
-            let mode = report.map(|report| report.value.mode);
-            self.say(&telemetry::heartbeat(mode, self.shared.hil.is_raised()));
-        } else if comes(&mut self.schedule.status, HEARTBEAT_INTERVAL, now) {
-            self.status(report.as_ref(), now);
-        } else if comes(&mut self.schedule.sync, HEARTBEAT_INTERVAL, now) {
-            self.say(&time_sync::question(now));
-        } else if let Some((index, mut time)) = self.schedule.list.filter(|&(_, time)| now >= time) {
-            comes(&mut time, LIST_INTERVAL, now);
-            let name = Name::from_index(index);
-            self.schedule.list = name.map(|_| (index + 1, time));
-            let Some(name) = name else { return false };
-            self.parameter(name);
-        } else {
-            return false;
+        let telemetry = self.telemetry();
+        while let Some(kind) = self.schedule.next_due(telemetry, now) {
+            if self.message(kind, now) {
+                return true;
+            }
         }
+        let Some((index, time)) = self.list.filter(|&(_, time)| now >= time) else { return false };
+        let name = Name::from_index(index);
+        self.list = name.map(|_| (index + 1, time.max(now.saturating_sub(LIST_INTERVAL)) + LIST_INTERVAL));
+        let Some(name) = name else { return false };
+        self.parameter(name);
         true
+    }
+
+    /// Writes a message of what is known now; whether there was anything to say.
+    fn message(&mut self, kind: Kind, now: u64) -> bool {
+        let shared = self.shared;
+        let voltage = shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
+        let view = View {
+            now,
+            report: shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX),
+            voltage: voltage.map(|voltage| voltage.value),
+            traffic: shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value),
+            simulated: shared.hil.is_raised(),
+            origin: shared.origin.get().map_or_else(Origin::default, |origin| origin.value),
+        };
+        let system = self.system();
+        kind.write(&view, system, &mut self.writer)
     }
 
     /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.
@@ -134,41 +120,57 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             return self.reply(answer, now);
         }
         if let Some(event) = shared.events.take() {
-            self.say(&telemetry::text(&event));
+            self.say(&vehicle::text(&event));
             return true;
         }
         let lost = shared.lost_events().wrapping_sub(self.told);
         if lost > 0 {
             self.told = self.told.wrapping_add(lost);
-            self.say(&telemetry::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
+            self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
         shared.replies.take().is_some_and(|reply| self.reply(reply, now))
     }
 
-    /// Writes a reply; a list of parameters is put on the schedule.
+    /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
             Reply::Command { command, result } => self.say(&COMMAND_ACK_DATA { command, result }),
+            Reply::UnknownCommand(number) => self.say(&UnknownCommand(number)),
             Reply::Ping(ping) => self.say(&ping),
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),
+            Reply::Message(kind) => return self.message(kind, now),
+            Reply::Mode(index) => {
+                let system = self.system();
+                return self.writer.write_some(system, vehicle::available_mode(index));
+            }
+            Reply::NoMission(system, component) => {
+                self.say(&MISSION_COUNT_DATA { count: 0, target_system: system, target_component: component })
+            }
+            Reply::Mission(system, component, result) => {
+                self.say(&MISSION_ACK_DATA { target_system: system, target_component: component, mavtype: result })
+            }
+            Reply::IntervalOf(kind) => {
+                let interval = self.schedule.interval_of(kind, self.telemetry());
+                self.say(&MESSAGE_INTERVAL_DATA {
+                    interval_us: interval.map_or(-1, |interval| i32::try_from(interval).unwrap_or(i32::MAX)),
+                    message_id: kind.number() as u16,
+                });
+            }
+            Reply::Interval { kind, interval } => {
+                self.schedule.ask(kind, interval, now);
+                return false;
+            }
             Reply::AllParameters => {
-                self.schedule.list = Some((0, now));
+                self.list = Some((0, now));
                 return false;
             }
         }
         true
     }
 
-    fn status(&mut self, report: Option<&Stamped<Report>>, now: u64) {
-        let voltage = self.shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
-        let traffic = self.shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value);
-        let report = report.map(|report| &report.value);
-        self.say(&telemetry::status(voltage.map(|voltage| voltage.value), report, traffic));
-    }
-
     fn parameter(&mut self, name: Name) {
-        self.say(&telemetry::parameter(name, self.shared.parameters.get(name)));
+        self.say(&vehicle::parameter(name, self.shared.parameters.get(name)));
     }
 }

@@ -23,6 +23,14 @@ impl Writer {
         self.frame.serialize_message_data(header, message);
     }
 
+    /// Writes a message, if there is one; whether there was.
+    pub fn write_some(&mut self, system: u8, message: Option<impl MessageData>) -> bool {
+        message.is_some_and(|message| {
+            self.write(system, &message);
+            true
+        })
+    }
+
     /// The frame last written.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {

@@ -1,8 +1,9 @@
 //! What the vehicle answers, and to what.
 
+use crate::link::telemetry::Kind;
 use crate::parameters::table::Name;
 use controller_core::flight::Request;
-use mavlink::dialects::common::{MavCmd, MavResult};
+use mavlink::dialects::common::{MavCmd, MavMissionResult, MavResult};
 
 /// PING: superseded by TIMESYNC, but clients still send it and wait for the answer.
 #[expect(deprecated, reason = "see above")]
@@ -40,6 +41,8 @@ pub enum Reply {
         /// With what.
         result: MavResult,
     },
+    /// COMMAND_ACK: unsupported, of a number that the dialect does not have.
+    UnknownCommand(u16),
     /// PING, sent back.
     Ping(Ping),
     /// TIMESYNC: the time of day.
@@ -51,4 +54,21 @@ pub enum Reply {
     Parameter(Name),
     /// PARAM_VALUE of every parameter, one after the other.
     AllParameters,
+    /// A message, once.
+    Message(Kind),
+    /// AVAILABLE_MODES of one mode, counted from 1.
+    Mode(u8),
+    /// A message every so many us from now on; 0 as usual, below that never.
+    Interval {
+        /// Which.
+        kind: Kind,
+        /// us.
+        interval: i64,
+    },
+    /// MESSAGE_INTERVAL of a message.
+    IntervalOf(Kind),
+    /// MISSION_COUNT to a system's component: there is none.
+    NoMission(u8, u8),
+    /// MISSION_ACK to a system's component.
+    Mission(u8, u8, MavMissionResult),
 }

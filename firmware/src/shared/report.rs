@@ -2,7 +2,9 @@
 
 use controller_core::estimator::Health;
 use controller_core::flight::Mode;
+use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
+use nalgebra::Vector3;
 
 /// One control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +19,10 @@ pub struct Report {
     pub state: Option<State>,
     /// What that is worth.
     pub health: Health,
+    /// Where it was armed, or stands if it is not, m, world.
+    pub home: Option<Vector3<f32>>,
+    /// What the law follows; none while it does not fly.
+    pub reference: Option<Reference>,
     /// What the law asked for; none while it does not fly.
     pub wrench: Option<Wrench>,
     /// What the rotors are believed to give of it; none while the law does not fly.
@@ -33,6 +39,8 @@ impl Report {
         is_airborne: false,
         state: None,
         health: Health::NONE,
+        home: None,
+        reference: None,
         wrench: None,
         thrust_scale: None,
         timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },

@@ -76,7 +76,7 @@ proptest! {
         let turn = Turn::Angle { angle: frames::heading(yaw), rate: frames::heading_rate(yaw_rate) };
         for bytes in [v1(1, &message), v2(1, &message)] {
             let message = read(&bytes, |frame| frame.decode()).unwrap();
-            prop_assert_eq!(setpoint(&message), Ok(Setpoint { motion, turn }));
+            prop_assert_eq!(setpoint(&message, None), Ok(Setpoint { motion, turn }));
         }
     }
 

@@ -2,10 +2,13 @@
 
 use crate::support::receiver::{Fed, Local, texts};
 use crate::support::{patched, v1};
+use controller_core::flight::Mode;
 use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
+use firmware::shared::Report;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// The mask that sets all aside but these.
 fn only(used: Mask) -> Mask {
@@ -88,11 +91,54 @@ fn masks_that_say_nothing_flyable_are_refused_in_words() {
 
 #[test]
 fn a_setpoint_in_another_frame_is_refused_in_words() {
+    // Global, or of a body that does not know where it is.
+    for coordinate_frame in [MavFrame::MAV_FRAME_GLOBAL, MavFrame::MAV_FRAME_BODY_FRD] {
+        let shared = Local::new();
+        let message = SET_POSITION_TARGET_LOCAL_NED_DATA { coordinate_frame, ..target(only(POSITION)) };
+        Fed::new(&shared).message(&message, 0);
+        assert!(shared.setpoint.get().is_none());
+        assert_eq!(texts(&shared), ["Setpoint refused: frame not understood"]);
+    }
+}
+
+/// Leaning, pointing a quarter turn to the left of world x: north. At (10, 20, 3) in the law's world.
+fn leaning_north() -> State {
+    let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2);
+    let leaning = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.4);
+    State {
+        position: Vector3::new(10.0, 20.0, 3.0),
+        velocity: Vector3::zeros(),
+        attitude: (turned * leaning).into_inner(),
+        angular_velocity: Vector3::zeros(),
+    }
+}
+
+/// What a message in a frame asks of the vehicle that leans and points north.
+fn asked_of_it(message: SET_POSITION_TARGET_LOCAL_NED_DATA, coordinate_frame: MavFrame) -> Setpoint {
     let shared = Local::new();
-    let coordinate_frame = MavFrame::MAV_FRAME_BODY_FRD;
-    Fed::new(&shared).message(&SET_POSITION_TARGET_LOCAL_NED_DATA { coordinate_frame, ..target(only(POSITION)) }, 0);
-    assert!(shared.setpoint.get().is_none());
-    assert_eq!(texts(&shared), ["Setpoint refused: use LOCAL_NED"]);
+    shared.report.put(Report { mode: Mode::Flying, state: Some(leaning_north()), ..Report::NONE }, 0);
+    Fed::new(&shared).message(&SET_POSITION_TARGET_LOCAL_NED_DATA { coordinate_frame, ..message }, 0);
+    shared.setpoint.get().unwrap().value
+}
+
+#[test]
+#[expect(deprecated, reason = "frames that clients still use")]
+fn setpoints_of_the_body_are_ahead_right_and_down_however_it_leans() {
+    let ahead = SET_POSITION_TARGET_LOCAL_NED_DATA { x: 5.0, y: 1.0, z: -2.0, ..target(only(POSITION)) };
+    for frame in [MavFrame::MAV_FRAME_BODY_NED, MavFrame::MAV_FRAME_BODY_OFFSET_NED, MavFrame::MAV_FRAME_BODY_FRD] {
+        let Motion::Position(position) = asked_of_it(ahead.clone(), frame).motion else { panic!() };
+        // 5 m north, 1 m east, 2 m up from where it is.
+        assert!((position - Vector3::new(11.0, 25.0, 5.0)).norm() < 1e-4, "{position}");
+    }
+    let Motion::Position(position) = asked_of_it(ahead, MavFrame::MAV_FRAME_LOCAL_OFFSET_NED).motion else { panic!() };
+    assert!((position - Vector3::new(11.0, 25.0, 5.0)).norm() < 1e-4, "{position}");
+    let moving = SET_POSITION_TARGET_LOCAL_NED_DATA { vx: 0.0, vy: 1.0, vz: 0.5, ..target(only(VELOCITY)) };
+    let Motion::Velocity(velocity) = asked_of_it(moving, MavFrame::MAV_FRAME_BODY_NED).motion else { panic!() };
+    assert!((velocity - Vector3::new(1.0, 0.0, -0.5)).norm() < 1e-4, "{velocity}");
+    // A yaw of the body's is from where it points; to the right, east, where the law's heading is zero.
+    let turning = SET_POSITION_TARGET_LOCAL_NED_DATA { yaw: FRAC_PI_2, ..target(only(VELOCITY.union(YAW))) };
+    let Turn::Angle { angle, .. } = asked_of_it(turning, MavFrame::MAV_FRAME_BODY_NED).turn else { panic!() };
+    assert!(angle.abs() < 1e-4, "{angle}");
 }
 
 #[test]

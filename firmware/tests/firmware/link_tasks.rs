@@ -15,8 +15,8 @@ use firmware::shared::{Event, Ping, Reply, Report, Severity, Timing, Traffic};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA,
-    SYS_STATUS_DATA, TIMESYNC_DATA,
+    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavSysStatusSensor, MavType, PARAM_VALUE_DATA,
+    STATUSTEXT_DATA, SYS_STATUS_DATA, TIMESYNC_DATA,
 };
 use nalgebra::{Quaternion, Vector3};
 
@@ -174,7 +174,11 @@ fn the_battery_is_told_while_it_is_known() {
         ..statuses[2].clone()
     };
     assert_eq!(statuses[2], expected);
-    assert!(statuses[2].onboard_control_sensors_present.is_empty() && statuses[2].drop_rate_comm == 0);
+    let battery = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY;
+    let known: Vec<_> =
+        statuses.iter().map(|status| status.onboard_control_sensors_present.contains(battery)).collect();
+    assert_eq!(known, [false, true, false]);
+    assert_eq!(statuses[2].drop_rate_comm, 0);
 }
 
 #[test]

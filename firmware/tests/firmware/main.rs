@@ -18,6 +18,7 @@ mod link_messages;
 mod link_poses;
 mod link_setpoints;
 mod link_tasks;
+mod link_telemetry;
 mod parameters;
 mod status;
 mod support;

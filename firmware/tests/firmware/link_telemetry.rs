@@ -1,0 +1,138 @@
+//! Telemetry out: what each message says of a vehicle whose state is known.
+
+use controller_core::estimator::{Estimator, EstimatorParameters, Health, Settings};
+use controller_core::flight::Mode;
+use controller_core::state::State;
+use firmware::link::origin::Origin;
+use firmware::link::telemetry::{motion, vehicle};
+use firmware::shared::{Report, Traffic};
+use mavlink::dialects::common::{EstimatorStatusFlags, MavLandedState, MavSysStatusSensor as Sensor};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Healthy, as far as an estimator that never began can be.
+fn healthy() -> Health {
+    let estimator = Estimator::new(&Settings::new(&EstimatorParameters::BMI088).unwrap());
+    let mut health = estimator.health(0);
+    health.faults = Default::default();
+    health.pose_age = Some(20_000);
+    health.deviations = (0.03, 0.06, 0.015);
+    health.nis = (9.0, 2.25);
+    health
+}
+
+/// At (2, 1, 3) in the law's world, pointing north and nose up by 0.2 rad, flying east.
+fn report() -> Report {
+    let north = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), core::f32::consts::FRAC_PI_2);
+    // Nose up is a turn about left by a negative angle.
+    let attitude = (north * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -0.2)).into_inner();
+    let state = State {
+        position: Vector3::new(2.0, 1.0, 3.0),
+        velocity: Vector3::new(0.5, 0.0, 0.25),
+        attitude,
+        angular_velocity: Vector3::new(0.1, 0.2, 0.3),
+    };
+    Report {
+        mode: Mode::Holding,
+        is_airborne: true,
+        state: Some(state),
+        health: healthy(),
+        home: Some(Vector3::new(2.0, 1.0, 1.0)),
+        ..Report::NONE
+    }
+}
+
+#[test]
+fn angles_are_those_of_the_vehicle() {
+    let attitude = motion::attitude(1_234_567, &report()).unwrap();
+    assert_eq!(attitude.time_boot_ms, 1_234);
+    // As well as displays need it.
+    assert!(
+        (attitude.pitch - 0.2).abs() < 0.01 && attitude.roll.abs() < 0.01 && attitude.yaw.abs() < 0.01,
+        "{attitude:?}"
+    );
+}
+
+#[test]
+fn a_place_on_the_globe_is_told_with_its_height_above_home() {
+    let origin = Origin::new(473_977_420, 85_455_940, 488_000).unwrap();
+    let place = motion::global_position(0, &report(), &origin).unwrap();
+    // 1 m north, 2 m east, 3 m up.
+    assert_eq!((place.lat - 473_977_420, place.alt, place.relative_alt), (89, 491_000, 2_000));
+    assert!((place.lon - 85_455_940 - 265).abs() <= 1, "{}", place.lon);
+    assert_eq!((place.vx, place.vy, place.vz), (0, 50, -25));
+    assert!(place.hdg < 100 || place.hdg > 35_900, "{}", place.hdg);
+    let home = motion::home(&report(), &origin).unwrap();
+    assert_eq!((home.latitude - 473_977_420, home.altitude, home.z), (89, 489_000, -1.0));
+}
+
+#[test]
+fn odometry_goes_out_as_it_would_come_in_and_says_how_sure_it_is() {
+    let odometry = motion::odometry(5, &report()).unwrap();
+    assert_eq!((odometry.x, odometry.y, odometry.z, odometry.time_usec), (1.0, 2.0, -3.0, 5));
+    // East is to the right of a vehicle that points north; up is ahead of a nose that is up.
+    assert!((odometry.vy - 0.5).abs() < 1e-5 && odometry.vx > 0.04 && odometry.vz < -0.24, "{odometry:?}");
+    assert!((odometry.pose_covariance[0] - 0.0003).abs() < 1e-9);
+    assert!((odometry.pose_covariance[20] - 0.000_075).abs() < 1e-9);
+    assert!((odometry.velocity_covariance[0] - 0.0012).abs() < 1e-9 && odometry.velocity_covariance[20].is_nan());
+}
+
+#[test]
+fn the_estimators_health_is_told() {
+    use EstimatorStatusFlags as Flags;
+    let status = motion::estimator_status(7, &report());
+    assert!(status.flags.contains(Flags::ESTIMATOR_ATTITUDE | Flags::ESTIMATOR_POS_HORIZ_ABS));
+    assert!((status.pos_horiz_ratio - 1.0).abs() < 1e-6 && status.pos_horiz_accuracy == 0.03);
+    // Coasting, it no longer knows where it is.
+    let mut coasting = report();
+    coasting.health.pose_age = Some(400_000);
+    let flags = motion::estimator_status(7, &coasting).flags;
+    assert!(flags.contains(Flags::ESTIMATOR_ATTITUDE) && !flags.contains(Flags::ESTIMATOR_POS_HORIZ_ABS));
+    assert!(motion::estimator_status(7, &Report::NONE).flags.is_empty());
+}
+
+#[test]
+fn sensors_are_healthy_only_while_they_are() {
+    let bits =
+        |report: Option<&Report>| vehicle::status(None, report, Traffic::default()).onboard_control_sensors_health;
+    let poses = Sensor::MAV_SYS_STATUS_SENSOR_VISION_POSITION | Sensor::MAV_SYS_STATUS_SENSOR_GPS;
+    let imu = Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO | Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL;
+    let well = report();
+    assert!(bits(Some(&well)).contains(poses | imu | Sensor::MAV_SYS_STATUS_AHRS));
+    let mut lost = report();
+    lost.health.pose_age = None;
+    assert!(!bits(Some(&lost)).intersects(poses) && bits(Some(&lost)).contains(imu));
+    assert!(!bits(Some(&Report::NONE)).intersects(poses | imu | Sensor::MAV_SYS_STATUS_PREARM_CHECK));
+    assert!(bits(None).is_empty());
+    // It may be armed where it says so.
+    for (mode, ready, armable) in [(Mode::Ready, true, true), (Mode::Checks, false, false), (Mode::Flying, false, true)]
+    {
+        let report = Report { mode, ready, ..report() };
+        assert_eq!(bits(Some(&report)).contains(Sensor::MAV_SYS_STATUS_PREARM_CHECK), armable, "{mode:?}");
+    }
+}
+
+#[test]
+fn ground_and_air_are_told_apart() {
+    for (mode, is_airborne, landed) in [
+        (Mode::Ready, false, MavLandedState::MAV_LANDED_STATE_ON_GROUND),
+        (Mode::TakingOff, false, MavLandedState::MAV_LANDED_STATE_ON_GROUND),
+        (Mode::TakingOff, true, MavLandedState::MAV_LANDED_STATE_TAKEOFF),
+        (Mode::Holding, true, MavLandedState::MAV_LANDED_STATE_IN_AIR),
+        (Mode::Landing, true, MavLandedState::MAV_LANDED_STATE_LANDING),
+        (Mode::Descending, true, MavLandedState::MAV_LANDED_STATE_LANDING),
+    ] {
+        let report = Report { mode, is_airborne, ..report() };
+        assert_eq!(vehicle::extended_state(&report).landed_state, landed, "{mode:?}");
+    }
+}
+
+#[test]
+fn modes_have_names_and_the_heartbeat_says_the_same_number() {
+    let named: Vec<_> = (1..=vehicle::MODES).map(|index| vehicle::available_mode(index).unwrap()).collect();
+    assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODES + 1).is_none());
+    for mode in [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing] {
+        let number = vehicle::heartbeat(Some(mode), false).custom_mode;
+        assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
+        assert_eq!(vehicle::current_mode(mode).custom_mode, number);
+    }
+}
