@@ -24,7 +24,6 @@ use crate::certificate::certified::Certified;
 use crate::certificate::configuration::{ExtendedLaw, LawParameters};
 use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
-use crate::math;
 use crate::path_lifting::{self, Lift};
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
@@ -251,7 +250,7 @@ impl Controller {
             self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
         let torque = torque - self.torque_bias.estimate(&estimates.torque);
         let along = self.vehicle.mass * command.dot(&axis);
-        let thrust = math::greater(along, self.floor.least(&torque, estimates.scale));
+        let thrust = self.floor.raised(along, &torque, estimates.scale);
 
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         let wrench = Wrench { thrust, torque };
