@@ -11,13 +11,13 @@
 
 use super::actuators::{ActuatorModel, ActuatorState};
 use super::attitude::{AttitudeLaw, AttitudeTorque};
-use super::force::{self, ForceEstimate, ForceGenerator};
+use super::force::{ForceEstimate, ForceGenerator};
 use super::heading::{self, HeadingLag};
 use super::parameters::Extended;
 use super::position::PositionLaw;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
-use super::torque_bias::{self, TorqueBias};
+use super::torque_bias::TorqueBias;
 use crate::allocation::Rotors;
 use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::certified::Certified;
@@ -84,6 +84,7 @@ pub struct Controller {
     parameters: Extended,
     period: f32,
     per_mass: f32,
+    per_period: f32,
     switching_scalar: f32,
     /// M_z- + D_z - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
@@ -132,12 +133,13 @@ impl Controller {
             parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
+            per_period: 1.0 / period,
             switching_scalar: path_lifting::switching_scalar(parameters.attitude.delta),
             steepest_fall: p.m_down + parameters.estimates.force_vertical - vehicle.gravity,
             position: PositionLaw::new(p, period)?,
             force: ForceGenerator::new(&parameters.estimates, vehicle.gravity, period)?,
             attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
-            torque_bias: TorqueBias::new(&parameters.estimates, period),
+            torque_bias: TorqueBias::new(&parameters.estimates, &vehicle.inertia, period),
             thrust_scale: ThrustScale::new(&parameters.estimates, period),
             floor: ThrustFloor::new(rotors, parameters.floor_margin),
             actuators: ActuatorModel::new(actuators, period)?,
@@ -300,19 +302,13 @@ impl Controller {
         let Some(last) = last.as_ref().filter(|_| *held == 0) else {
             return *estimates;
         };
-        let mean_axis = (last.thrust_axis + axis) * 0.5;
         let commanded = acted.x * self.per_mass;
-        let per_period = 1.0 / self.period;
-        let lift = (state.velocity.z - last.velocity.z) * per_period + self.vehicle.gravity;
-        let scale = self.thrust_scale.learnt(estimates.scale, commanded, mean_axis.z, lift);
-        let force = force::observed([&last.velocity, &state.velocity], &mean_axis, scale * commanded, &self.force);
+        let thrust = (last.thrust_axis + axis) * (0.5 * commanded);
+        let lift = (state.velocity.z - last.velocity.z) * self.per_period + self.vehicle.gravity;
+        let scale = self.thrust_scale.learnt(estimates.scale, commanded, thrust.z, lift);
+        let force = self.force.observed([&last.velocity, &state.velocity], &(thrust * scale));
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale;
-        let torque = torque_bias::observed(
-            [&last.angular_velocity, &state.angular_velocity],
-            &torque,
-            &self.vehicle.inertia,
-            per_period,
-        );
+        let torque = self.torque_bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
         Estimates {
             force: self.force.averaged(&estimates.force, &force),
             torque: self.torque_bias.averaged(&estimates.torque, &torque),

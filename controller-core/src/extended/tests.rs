@@ -6,10 +6,10 @@ use super::actuators::ActuatorParameters;
 use super::attitude::AttitudeLaw;
 use super::controller::Controller;
 use super::example;
-use super::force::{ForceEstimate, ForceGenerator, observed};
+use super::force::{ForceEstimate, ForceGenerator};
 use super::heading::{HeadingLag, advanced, turning};
 use super::parameters::{AttitudeParameters, EstimateParameters, Extended, ExtendedParameters};
-use super::position::{asymmetric, radial};
+use super::saturation::Saturation;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
@@ -51,14 +51,15 @@ fn controller(parameters: &ExtendedParameters) -> Controller {
 }
 
 #[test]
-fn saturations_are_monotone_shorter_than_their_level_and_never_steeper_than_one() {
+fn a_saturation_is_monotone_shorter_than_its_level_and_never_steeper_than_its_gain() {
     let mut random = Random(1);
     for _ in 0..100_000 {
         let (a, b) = (random.vector(9.0).xy(), random.vector(9.0).xy());
-        let (s, t) = (radial(&a, 2.0), radial(&b, 2.0));
-        assert!((s - t).dot(&(a - b)) >= 0.0 && s.norm() < 2.0 && (s - t).norm() <= (a - b).norm() * (1.0 + 1e-5));
-        let (s, t) = (asymmetric(a.x, 5.0, 1.0), asymmetric(b.x, 5.0, 1.0));
-        assert!((s - t) * (a.x - b.x) >= 0.0 && s < 5.0 && s > -1.0 && (s - t).abs() <= (a.x - b.x).abs() + 1e-6);
+        let saturation = Saturation::new(1.5, 2.0);
+        let (s, t) = (a * saturation.factor(a.norm_squared()), b * saturation.factor(b.norm_squared()));
+        assert!(
+            (s - t).dot(&(a - b)) >= 0.0 && s.norm() < 2.0 && (s - t).norm() <= 1.5 * (a - b).norm() * (1.0 + 1e-5)
+        );
     }
 }
 
@@ -107,7 +108,7 @@ fn a_vehicle_that_does_as_commanded_shows_no_force() {
     let (start, thrust) = (Vector3::new(2.0, -1.0, 0.5), 15.0);
     let acceleration = axis * thrust - Vector3::new(0.0, 0.0, 9.81) - Vector3::new(drag * start.x, drag * start.y, 0.0);
     let end = start + acceleration * 0.01;
-    let force = observed([&start, &end], &axis, thrust, &generator);
+    let force = generator.observed([&start, &end], &(axis * thrust));
     assert!(force.norm() < 0.03, "{force}");
 }
 
@@ -214,7 +215,7 @@ fn across_the_switch_the_potential_falls() {
 #[test]
 fn a_bias_is_believed_up_to_its_level() {
     let parameters = example::PARAMETERS.estimates;
-    let bias = TorqueBias::new(&parameters, 0.01);
+    let bias = TorqueBias::new(&parameters, &example::vehicle().inertia, 0.01);
     let mut average = Vector3::zeros();
     let torque = Vector3::new(0.5 * parameters.torque_tilt, -9.0, 2.0 * parameters.torque_yaw);
     for _ in 0..2_000 {
@@ -230,7 +231,7 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
     for truth in [0.8_f32, 1.0, 1.2, 3.0] {
         let mut learnt = 1.0;
         for _ in 0..5_000 {
-            learnt = scale.learnt(learnt, 10.0, 0.9, truth * 9.0);
+            learnt = scale.learnt(learnt, 10.0, 9.0, truth * 9.0);
         }
         let EstimateParameters { scale_least, scale_greatest, .. } = example::PARAMETERS.estimates;
         let allowed = truth.clamp(scale_least, scale_greatest);

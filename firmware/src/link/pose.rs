@@ -103,7 +103,8 @@ impl Poses {
     fn listen(&mut self, frame: &Frame<'_>, time: u64) -> Result<u64, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
-        let fresh = Source { system, component, message: frame.message, clock: None, arrived: frame.time, stamped: None };
+        let fresh =
+            Source { system, component, message: frame.message, clock: None, arrived: frame.time, stamped: None };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
             if frame.time.saturating_sub(source.arrived) <= SOURCE_SILENCE {
