@@ -262,6 +262,24 @@ fn at_the_floor_one_rotor_is_at_its_least_thrust_and_none_below() {
 }
 
 #[test]
+fn the_bound_on_the_floor_changes_no_thrust() {
+    let floor = ThrustFloor::new(Some(&example::rotors()), 0.05);
+    let (mut random, mut raised) = (Random(8), 0);
+    for _ in 0..100_000 {
+        let (torque, scale) = (random.vector(0.5), 1.0 + 0.3 * random.signed());
+        let least = floor.least(&torque, scale);
+        // Just below the floor, at it, just above it, and anywhere up to where the bound may be.
+        for thrust in [least.next_down(), least, least.next_up(), least * (1.0 + 2.0 * random.signed().abs())] {
+            let found = floor.raised(thrust, &torque, scale);
+            assert_eq!(found, thrust.max(least), "{thrust} at {torque}, scale {scale}");
+            raised += u32::from(found > thrust);
+        }
+    }
+    assert_eq!(raised, 100_000);
+    assert!(floor.raised(f32::NAN, &Vector3::zeros(), 1.0).is_nan());
+}
+
+#[test]
 fn hovering_asks_for_the_weight_and_no_torque() {
     let mut controller = controller(&example::PARAMETERS);
     let hover = Hover::new(Vector3::new(1.0, 2.0, 3.0), Heading::FORWARD).unwrap();
@@ -297,6 +315,27 @@ fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
     assert_eq!(controller, before);
     controller.reset();
     assert_eq!(controller, fresh);
+}
+
+#[test]
+fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
+    let mut controller = controller(&example::PARAMETERS);
+    let mut reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
+    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    let mut state = State { position: Vector3::new(0.0, 0.0, 1e4), velocity: zero, attitude, angular_velocity: zero };
+    // Far too high, and pushed upwards: filter and estimate go to the ends at which u is least.
+    for _ in 0..3_000 {
+        state.velocity.z += 0.3;
+        controller.step(&state, &reference).unwrap();
+    }
+    let parameters = example::PARAMETERS;
+    let fall = parameters.position.m_down + parameters.estimates.force_vertical - example::vehicle().gravity;
+    reference.acceleration.z = fall.next_up();
+    reference.jerk = Vector3::repeat(1e6);
+    let before = controller.clone();
+    let refused = controller.step(&state, &reference).unwrap_err();
+    assert_eq!(refused, InputError::OutOfRange { field: "reference" });
+    assert_eq!(controller, before);
 }
 
 #[test]
