@@ -5,9 +5,10 @@
 //! State, Reference -> position -> attitude_reference -> heading -> path_lifting -> attitude -> thrust_floor -> Wrench
 //! ```
 //!
-//! The order within a tick: the averages of the estimates first; then everything from filters and generators as they stand,
-//! with the feedback and the accelerations that will be held; then all of them advance by one period. So the wrench is the one
-//! for the instant the state was taken, as in the paper's [`controller`](crate::controller).
+//! The order within a tick: what can be refused first, up to the desired motion, from filters and generators as they stand and
+//! with the averages that have taken in what happened. Nothing is remembered before that. From there on every part of the memory
+//! advances by one period as soon as its last value has served. So the wrench is the one for the instant the state was taken, as
+//! in the paper's [`controller`](crate::controller).
 
 use super::actuators::{ActuatorModel, ActuatorState};
 use super::attitude::{AttitudeLaw, AttitudeTorque};
@@ -263,9 +264,9 @@ impl Controller {
 
         let AttitudeTorque { angular_velocity_error, potential, damping, torque } =
             self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
-        let bias = self.torque(state, scale);
-        self.memory.estimates.torque = bias;
-        let torque = torque - self.torque_bias.estimate(&bias);
+        let average = self.torque_average(state, scale);
+        self.memory.estimates.torque = average;
+        let torque = torque - self.torque_bias.estimate(&average);
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.floor.raised(along, &torque, scale);
 
@@ -317,8 +318,8 @@ impl Controller {
         (self.force.averaged(&estimates.force, &force), scale)
     }
 
-    /// The averaged torque bias with what happened since the last tick.
-    fn torque(&self, state: &State, scale: f32) -> Vector3<f32> {
+    /// The average of the torque bias with what happened since the last tick.
+    fn torque_average(&self, state: &State, scale: f32) -> Vector3<f32> {
         let Memory { estimates, acted, .. } = &self.memory;
         let Some(last) = self.last() else {
             return estimates.torque;
