@@ -373,6 +373,8 @@ fn constants_out_of_their_range_are_refused_by_name() {
     };
     assert_eq!(refused(&|p| p.position.k_f_across = 0.1).field, "gains.k_f_across");
     assert_eq!(refused(&|p| p.position.m_down = 9.5).field, "gains.m_down");
+    assert_eq!(refused(&|p| p.attitude.m_t = 1e-30).field, "gains.m_t");
+    assert_eq!(refused(&|p| p.attitude.eta_t = 1e-30).field, "gains.eta_t");
     assert_eq!(refused(&|p| p.attitude.delta = 1.5).field, "gains.delta");
     assert_eq!(refused(&|p| p.attitude.ease = 1.0).field, "gains.ease");
     assert_eq!(refused(&|p| p.attitude.alpha = 1.0).field, "gains.alpha");
