@@ -40,6 +40,7 @@
 
 use crate::heading::Heading;
 use crate::math;
+use crate::state::{STATE_RANGE, sum_of_squares};
 use nalgebra::{Quaternion, Vector2, Vector3};
 
 /// R_d with its angular velocity and acceleration.
@@ -82,6 +83,14 @@ pub struct AngularMotion {
     pub velocity: Vector3<f32>,
     /// rad/s^2.
     pub acceleration: Vector3<f32>,
+}
+
+impl AngularMotion {
+    /// Whether every component is finite, and its square as well.
+    #[inline(always)]
+    pub(crate) fn is_in_range(&self) -> bool {
+        sum_of_squares(&[&self.velocity, &self.acceleration]) <= STATE_RANGE * STATE_RANGE
+    }
 }
 
 /// R_d by its three angles.

@@ -9,6 +9,7 @@
 //! | [`position`] | gains, filters and levels axis by axis, a radial level across, a capped approach speed | 1 |
 //! | [`force`] | an estimate of the force the model does not know, as a bounded, twice differentiable part of u | 2 |
 //! | [`heading`] | the desired frame may lag in heading, so that yaw is asked for no more than it has | 3 |
+//! | [`saturation`] | the saturation that all feedback passes | 1 |
 //! | [`attitude`] | separate levels for tilt and yaw | 4 |
 //! | [`torque_bias`] | an estimate of a constant torque | 5 |
 //! | [`thrust_floor`] | a least thrust that follows the torque, so that no rotor is asked for less than it can give | 6 |
@@ -26,6 +27,7 @@ pub mod force;
 pub mod heading;
 pub mod parameters;
 pub mod position;
+pub mod saturation;
 pub mod thrust_floor;
 pub mod thrust_scale;
 pub mod torque_bias;

@@ -11,6 +11,9 @@ use crate::error::{ParameterError, Reason, require, require_finite};
 use crate::math;
 use nalgebra::Vector4;
 
+/// Commands that are remembered, a power of two, so that a remainder of it is a place among them.
+const REMEMBERED: usize = 8;
+
 /// The greatest delay that is modelled, samples.
 pub const DELAY_MAX: usize = 4;
 
@@ -60,7 +63,7 @@ pub struct ActuatorModel {
 pub struct ActuatorState {
     acting: Vector4<f32>,
     /// A ring, with the place of the newest.
-    commanded: [Vector4<f32>; DELAY_MAX + 1],
+    commanded: [Vector4<f32>; REMEMBERED],
     newest: usize,
 }
 
@@ -68,12 +71,12 @@ impl ActuatorState {
     /// A wrench that has been commanded for ever.
     #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
-        Self { acting: wrench, commanded: [wrench; DELAY_MAX + 1], newest: 0 }
+        Self { acting: wrench, commanded: [wrench; REMEMBERED], newest: 0 }
     }
 
     /// Takes up what is commanded now.
     pub fn command(&mut self, wrench: Vector4<f32>) {
-        self.newest = if self.newest < DELAY_MAX { self.newest + 1 } else { 0 };
+        self.newest = (self.newest + 1) % REMEMBERED;
         if let Some(slot) = self.commanded.get_mut(self.newest) {
             *slot = wrench;
         }
@@ -81,8 +84,7 @@ impl ActuatorState {
 
     /// The command of `age` ticks before the newest, at most [`DELAY_MAX`].
     fn command_before(&self, age: usize) -> Vector4<f32> {
-        let place = if age <= self.newest { self.newest - age } else { self.newest + self.commanded.len() - age };
-        self.commanded.get(place).copied().unwrap_or_default()
+        self.commanded.get(self.newest.wrapping_sub(age) % REMEMBERED).copied().unwrap_or_default()
     }
 }
 

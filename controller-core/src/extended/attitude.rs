@@ -15,6 +15,7 @@
 //! z. Towards a half turn the tilt's damping may ease: its gain is k_omega_t (1 - ease r^2). Body frame, N m.
 
 use super::parameters::AttitudeParameters;
+use super::saturation::Saturation;
 use crate::attitude::rotate_back;
 use crate::math;
 use nalgebra::{Quaternion, Vector3};
@@ -35,7 +36,17 @@ pub struct AttitudeTorque {
 /// The attitude law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AttitudeLaw {
-    parameters: AttitudeParameters,
+    /// w / 2, N m, and eta.
+    half_w: f32,
+    eta: f32,
+    /// M_t k_t, M_t^2 and k_t^2, N^2 m^2, and eta_t^2.
+    tilt_product: f32,
+    tilt_level_squared: f32,
+    tilt_gain_squared: f32,
+    eta_t_squared: f32,
+    damping_tilt: Saturation,
+    damping_yaw: Saturation,
+    ease: f32,
     /// The diagonal of J, kg m^2.
     inertia: Vector3<f32>,
     /// (J_z - J_y, J_x - J_z, J_y - J_x), kg m^2.
@@ -46,7 +57,20 @@ impl AttitudeLaw {
     /// For the diagonal of J, kg m^2.
     #[must_use]
     pub fn new(parameters: &AttitudeParameters, inertia: &Vector3<f32>) -> Self {
-        Self { parameters: *parameters, inertia: *inertia, differences: inertia.zxy() - inertia.yzx() }
+        let p = parameters;
+        Self {
+            half_w: 0.5 * p.w,
+            eta: p.eta,
+            tilt_product: p.m_t * p.k_t,
+            tilt_level_squared: p.m_t * p.m_t,
+            tilt_gain_squared: p.k_t * p.k_t,
+            eta_t_squared: p.eta_t * p.eta_t,
+            damping_tilt: Saturation::new(p.k_omega_t, p.m_omega_t),
+            damping_yaw: Saturation::new(p.k_omega_z, p.m_omega_z),
+            ease: p.ease,
+            inertia: *inertia,
+            differences: inertia.zxy() - inertia.yzx(),
+        }
     }
 
     /// Evaluates the law. `error` is the lifted error, of unit length; `angular_velocity` is omega in the body frame; omega_d
@@ -71,24 +95,23 @@ impl AttitudeLaw {
     }
 
     fn potential(&self, error: &Quaternion<f32>) -> Vector3<f32> {
-        let AttitudeParameters { w, eta, k_t, m_t, eta_t, .. } = self.parameters;
         let (q_0, q_1, q_2, q_3) = (error.w, error.i, error.j, error.k);
         let r_squared = q_1 * q_1 + q_2 * q_2;
-        let lifted = q_0 + eta;
-        let whole = 0.5 * w / math::sqrt(lifted * lifted + q_3 * q_3);
+        let lifted = q_0 + self.eta;
+        let whole = self.half_w / math::sqrt(lifted * lifted + q_3 * q_3);
         // One root for both: sqrt(M_t^2 + k_t^2 r^2) sqrt(1 - r^2 + eta_t^2). 1 - r^2 is q_0^2 + q_3^2, which cannot round below 0.
-        let steep = (m_t * m_t + k_t * k_t * r_squared) * (q_0 * q_0 + q_3 * q_3 + eta_t * eta_t);
-        let tilt = m_t * k_t / math::sqrt(steep);
+        let level = self.tilt_level_squared + self.tilt_gain_squared * r_squared;
+        let ease = q_0 * q_0 + q_3 * q_3 + self.eta_t_squared;
+        let tilt = self.tilt_product / math::sqrt(level * ease);
         let (along, across) = (whole * lifted + tilt * q_0, (whole + tilt) * q_3);
-        Vector3::new(along * q_1 + across * q_2, along * q_2 - across * q_1, whole * eta * q_3)
+        Vector3::new(along * q_1 + across * q_2, along * q_2 - across * q_1, whole * self.eta * q_3)
     }
 
     fn damping(&self, error: &Quaternion<f32>, angular_velocity_error: &Vector3<f32>) -> Vector3<f32> {
-        let AttitudeParameters { k_omega_t, m_omega_t, k_omega_z, m_omega_z, ease, .. } = self.parameters;
         let rate = angular_velocity_error;
-        let gain = k_omega_t * (1.0 - ease * (error.i * error.i + error.j * error.j));
-        let (x, y, z) = (gain * rate.x, gain * rate.y, k_omega_z * rate.z);
-        let across = m_omega_t / math::sqrt(m_omega_t * m_omega_t + x * x + y * y);
-        Vector3::new(x * across, y * across, z * (m_omega_z / math::sqrt(m_omega_z * m_omega_z + z * z)))
+        let eased = 1.0 - self.ease * (error.i * error.i + error.j * error.j);
+        let square = rate.x * rate.x + rate.y * rate.y;
+        let tilt = eased * self.damping_tilt.factor(eased * eased * square);
+        Vector3::new(rate.x * tilt, rate.y * tilt, rate.z * self.damping_yaw.factor(rate.z * rate.z))
     }
 }

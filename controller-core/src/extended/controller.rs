@@ -5,26 +5,26 @@
 //! State, Reference -> position -> attitude_reference -> heading -> path_lifting -> attitude -> thrust_floor -> Wrench
 //! ```
 //!
-//! The order within a tick: the averages of the estimates first; then everything from filters and generators as they stand,
-//! with the feedback and the accelerations that will be held; then all of them advance by one period. So the wrench is the one
-//! for the instant the state was taken, as in the paper's [`controller`](crate::controller).
+//! The order within a tick: what can be refused first, up to the desired motion, from filters and generators as they stand and
+//! with the averages that have taken in what happened. Nothing is remembered before that. From there on every part of the memory
+//! advances by one period as soon as its last value has served. So the wrench is the one for the instant the state was taken, as
+//! in the paper's [`controller`](crate::controller).
 
 use super::actuators::{ActuatorModel, ActuatorState};
 use super::attitude::{AttitudeLaw, AttitudeTorque};
-use super::force::{self, ForceEstimate, ForceGenerator};
+use super::force::{ForceEstimate, ForceGenerator};
 use super::heading::{self, HeadingLag};
-use super::parameters::Extended;
+use super::parameters::{AttitudeParameters, Extended};
 use super::position::PositionLaw;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
-use super::torque_bias::{self, TorqueBias};
+use super::torque_bias::TorqueBias;
 use crate::allocation::Rotors;
 use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::certified::Certified;
 use crate::certificate::configuration::{ExtendedLaw, LawParameters};
 use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
-use crate::math;
 use crate::path_lifting::{self, Lift};
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
@@ -85,6 +85,7 @@ pub struct Controller {
     parameters: Extended,
     period: f32,
     per_mass: f32,
+    per_period: f32,
     switching_scalar: f32,
     /// M_z- + D_z - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
@@ -133,12 +134,13 @@ impl Controller {
             parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
+            per_period: 1.0 / period,
             switching_scalar: path_lifting::switching_scalar(parameters.attitude.delta),
             steepest_fall: p.m_down + parameters.estimates.force_vertical - vehicle.gravity,
             position: PositionLaw::new(p, period)?,
             force: ForceGenerator::new(&parameters.estimates, vehicle.gravity, period)?,
             attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
-            torque_bias: TorqueBias::new(&parameters.estimates, period),
+            torque_bias: TorqueBias::new(&parameters.estimates, &vehicle.inertia, period),
             thrust_scale: ThrustScale::new(&parameters.estimates, period),
             floor: ThrustFloor::new(rotors, parameters.floor_margin),
             actuators: ActuatorModel::new(actuators, period)?,
@@ -228,49 +230,51 @@ impl Controller {
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
-        let Memory { filter, lift, heading, .. } = self.memory;
+        let filter = self.memory.filter;
         let axis = thrust_axis(&state.attitude);
-        let estimates = self.estimate(state, &axis);
+        let (force, scale) = self.force_and_scale(state, &axis);
 
         let feedback = self.position.feedback(state, reference, &filter);
-        let force_acceleration = self.force.acceleration(&estimates.force);
-        let command = self.acceleration_command(reference, &filter, &estimates.force);
-        let jerk =
-            self.with_drag(&reference.jerk, &reference.acceleration) + feedback.filtered_rate - estimates.force.rate;
+        let force_acceleration = self.force.acceleration(&force);
+        let command = self.acceleration_command(reference, &filter, &force);
+        let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.filtered_rate - force.rate;
         let snap =
             self.with_drag(&reference.snap, &reference.jerk) + feedback.filtered_acceleration - force_acceleration;
-
         let desired = DesiredAttitude::new(&command, &reference.heading);
         let papers = desired.motion(&jerk, &snap, &reference.heading);
-        let heading = heading.unwrap_or_else(|| HeadingLag::none(papers.velocity.z, &self.parameters.heading));
-        let turning = heading::turning(&heading, &papers, &self.parameters.heading, self.period);
-
-        let error = heading.turned_back(&desired.error(&state.attitude));
-        let lifted = path_lifting::lift(lift.as_ref(), &error, self.switching_scalar, self.parameters.attitude.alpha);
-        let AttitudeTorque { angular_velocity_error, potential, damping, torque } =
-            self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
-        let torque = torque - self.torque_bias.estimate(&estimates.torque);
-        let along = self.vehicle.mass * command.dot(&axis);
-        let thrust = math::greater(along, self.floor.least(&torque, estimates.scale));
-
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
-        let wrench = Wrench { thrust, torque };
-        if !wrench.is_finite() {
+        if !papers.is_in_range() {
             return Err(InputError::OutOfRange { field: "reference" });
         }
-        // Field by field, in place: the whole would be copied twice.
+
+        // Nothing can fail from here on: every part of the memory advances as soon as its last value has served.
+        self.memory.filter = self.position.advance(&filter, &feedback.feedback);
+        self.memory.estimates.force = self.force.advanced(&force, &force_acceleration);
+        self.memory.estimates.scale = scale;
+
+        let heading = self.memory.heading;
+        let heading = heading.unwrap_or_else(|| HeadingLag::none(papers.velocity.z, &self.parameters.heading));
+        let turning = heading::turning(&heading, &papers, &self.parameters.heading, self.period);
+        self.memory.heading = Some(heading::advanced(&heading, &turning, self.period));
+
+        let error = heading.turned_back(&desired.error(&state.attitude));
+        let AttitudeParameters { alpha, .. } = self.parameters.attitude;
+        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, alpha);
+        self.memory.lift = Some(lifted.lift);
+
+        let AttitudeTorque { angular_velocity_error, potential, damping, torque } =
+            self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
+        let average = self.torque_average(state, scale);
+        self.memory.estimates.torque = average;
+        let torque = torque - self.torque_bias.estimate(&average);
+        let along = self.vehicle.mass * command.dot(&axis);
+        let thrust = self.floor.raised(along, &torque, scale);
+
         let memory = &mut self.memory;
-        memory.filter = self.position.advance(&filter, &feedback.feedback);
-        memory.lift = Some(lifted.lift);
-        memory.heading = Some(heading::advanced(&heading, &turning, self.period));
-        memory.estimates.force = self.force.advanced(&estimates.force, &force_acceleration);
-        memory.estimates.torque = estimates.torque;
-        memory.estimates.scale = estimates.scale;
         memory.held = memory.held.saturating_sub(1);
         memory.last =
             Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity });
-        let per_scale = 1.0 / estimates.scale;
-        memory.actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) * per_scale);
+        memory.actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) * (1.0 / scale));
         memory.acted = self.actuators.advance(&mut memory.actuators);
 
         let diagnostics = Diagnostics {
@@ -292,33 +296,37 @@ impl Controller {
             attitude_feedback: potential,
             rate_feedback: damping,
         };
-        Ok((wrench, diagnostics))
+        Ok((Wrench { thrust, torque }, diagnostics))
     }
 
-    /// The estimates with what happened since the last tick.
-    fn estimate(&self, state: &State, axis: &Vector3<f32>) -> Estimates {
-        let Memory { estimates, last, acted, held, .. } = &self.memory;
-        let Some(last) = last.as_ref().filter(|_| *held == 0) else {
-            return *estimates;
+    /// The last tick, if there is something to be learnt from what happened since.
+    fn last(&self) -> Option<&Last> {
+        self.memory.last.as_ref().filter(|_| self.memory.held == 0)
+    }
+
+    /// The estimates of the force and of the thrust scale with what happened since the last tick.
+    fn force_and_scale(&self, state: &State, axis: &Vector3<f32>) -> (ForceEstimate, f32) {
+        let Memory { estimates, acted, .. } = &self.memory;
+        let Some(last) = self.last() else {
+            return (estimates.force, estimates.scale);
         };
-        let mean_axis = (last.thrust_axis + axis) * 0.5;
         let commanded = acted.x * self.per_mass;
-        let per_period = 1.0 / self.period;
-        let lift = (state.velocity.z - last.velocity.z) * per_period + self.vehicle.gravity;
-        let scale = self.thrust_scale.learnt(estimates.scale, commanded, mean_axis.z, lift);
-        let force = force::observed([&last.velocity, &state.velocity], &mean_axis, scale * commanded, &self.force);
+        let thrust = (last.thrust_axis + axis) * (0.5 * commanded);
+        let lift = (state.velocity.z - last.velocity.z) * self.per_period + self.vehicle.gravity;
+        let scale = self.thrust_scale.learnt(estimates.scale, commanded, thrust.z, lift);
+        let force = self.force.observed([&last.velocity, &state.velocity], &(thrust * scale));
+        (self.force.averaged(&estimates.force, &force), scale)
+    }
+
+    /// The average of the torque bias with what happened since the last tick.
+    fn torque_average(&self, state: &State, scale: f32) -> Vector3<f32> {
+        let Memory { estimates, acted, .. } = &self.memory;
+        let Some(last) = self.last() else {
+            return estimates.torque;
+        };
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale;
-        let torque = torque_bias::observed(
-            [&last.angular_velocity, &state.angular_velocity],
-            &torque,
-            &self.vehicle.inertia,
-            per_period,
-        );
-        Estimates {
-            force: self.force.averaged(&estimates.force, &force),
-            torque: self.torque_bias.averaged(&estimates.torque, &torque),
-            scale,
-        }
+        let torque = self.torque_bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
+        self.torque_bias.averaged(&estimates.torque, &torque)
     }
 
     /// u = u_f + g e3 + p_d'' + kappa p_d' - d.

@@ -3,7 +3,7 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`observed`] | a = (v_k - v_(k-1)) / h - (bbar F / m - g e3 - kappa v): what accelerates the vehicle beside its thrust and its known drag |
+//! | [`ForceGenerator::observed`] | a = (v_k - v_(k-1)) / h - (bbar F / m - g e3 - kappa v): what accelerates the vehicle beside its thrust and its known drag |
 //! | `average` | zeta += (1 - e^(-L h)) (a - zeta) |
 //! | `value`, `rate` | d'' = sat(k_d^2 (P(zeta) - d) - 2 k_d d'; S), and so much less that \|d'\| <= S / k_d |
 //!
@@ -15,7 +15,7 @@
 
 use super::parameters::EstimateParameters;
 use crate::error::{ParameterError, Reason, require};
-use crate::math::{self, within};
+use crate::math::{self, within, within_rate};
 use nalgebra::Vector3;
 
 /// zeta, d and d', world frame; m/s^2 and m/s^3.
@@ -38,25 +38,38 @@ impl ForceEstimate {
     };
 }
 
-/// What accelerated the vehicle over an interval beside its thrust, gravity and known drag, m/s^2, world frame.
-///
-/// `velocities` are those at the interval's start and end, m/s; `thrust_axis` the mean of R e3 there; `thrust` the mean thrust,
-/// per mass, m/s^2; `drag` is kappa along each axis, 1/s.
-#[must_use]
-pub fn observed(
-    velocities: [&Vector3<f32>; 2],
-    thrust_axis: &Vector3<f32>,
-    thrust: f32,
-    constants: &ForceGenerator,
-) -> Vector3<f32> {
-    let [start, end] = velocities;
-    let acceleration = (end - start) * constants.per_period;
-    let half_drag = 0.5 * constants.drag;
-    let mut rest = acceleration - thrust_axis * thrust;
-    rest.x += half_drag * (start.x + end.x);
-    rest.y += half_drag * (start.y + end.y);
-    rest.z += constants.gravity;
-    rest
+/// One axis' constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Axis {
+    /// 1 - e^(-L h).
+    averaging: f32,
+    /// k_d^2, 1/s^2.
+    stiffness: f32,
+    /// 2 k_d, 1/s.
+    damping: f32,
+    /// D, m/s^2.
+    level: f32,
+    /// S, m/s^4.
+    snap: f32,
+    /// S / k_d, m/s^3.
+    jerk: f32,
+}
+
+impl Axis {
+    fn new(smoothing: f32, bandwidth: f32, level: f32, snap: f32, period: f32) -> Self {
+        let averaging = -math::exp_m1(-f64::from(smoothing) * f64::from(period)) as f32;
+        let (stiffness, damping) = (bandwidth * bandwidth, 2.0 * bandwidth);
+        Self { averaging, stiffness, damping, level, snap, jerk: snap / bandwidth }
+    }
+
+    fn averaged(&self, zeta: f32, observed: f32) -> f32 {
+        zeta + self.averaging * (observed - zeta)
+    }
+
+    fn acceleration(&self, zeta: f32, d: f32, rate: f32, period: f32) -> f32 {
+        let wanted = self.stiffness * (within(zeta, self.level) - d) - self.damping * rate;
+        within_rate(within(wanted, self.snap), rate, self.jerk, period)
+    }
 }
 
 /// The estimate's constants.
@@ -65,17 +78,10 @@ pub struct ForceGenerator {
     period: f32,
     per_period: f32,
     gravity: f32,
-    drag: f32,
-    /// 1 - e^(-L h) of each axis.
-    averaging: Vector3<f32>,
-    /// k_d of each axis, 1/s.
-    bandwidth: Vector3<f32>,
-    /// D of each axis, m/s^2.
-    level: Vector3<f32>,
-    /// S of each axis, m/s^4.
-    snap: Vector3<f32>,
-    /// S / k_d of each axis, m/s^3.
-    jerk: Vector3<f32>,
+    /// kappa / 2, 1/s.
+    half_drag: f32,
+    across: Axis,
+    vertical: Axis,
 }
 
 impl ForceGenerator {
@@ -95,27 +101,50 @@ impl ForceGenerator {
         ] {
             require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
         }
-        let axes = |across: f32, vertical: f32| Vector3::new(across, across, vertical);
-        let averaging = |smoothing: f32| -math::exp_m1(-f64::from(smoothing) * f64::from(period)) as f32;
-        let snap = axes(e.force_snap_across, e.force_snap_vertical);
-        let bandwidth = axes(e.force_bandwidth_across, e.force_bandwidth_vertical);
         Ok(Self {
             period,
             per_period: 1.0 / period,
             gravity,
-            drag: e.drag_across,
-            averaging: axes(averaging(e.force_smoothing_across), averaging(e.force_smoothing_vertical)),
-            bandwidth,
-            level: axes(e.force_across, e.force_vertical),
-            snap,
-            jerk: snap.component_div(&bandwidth),
+            half_drag: 0.5 * e.drag_across,
+            across: Axis::new(
+                e.force_smoothing_across,
+                e.force_bandwidth_across,
+                e.force_across,
+                e.force_snap_across,
+                period,
+            ),
+            vertical: Axis::new(
+                e.force_smoothing_vertical,
+                e.force_bandwidth_vertical,
+                e.force_vertical,
+                e.force_snap_vertical,
+                period,
+            ),
         })
     }
 
-    /// Takes what was [`observed`] into the average.
+    /// What accelerated the vehicle over an interval beside its thrust, gravity and known drag, m/s^2, world frame.
+    ///
+    /// `velocities` are those at the interval's start and end, m/s; `thrust` is what the thrust made of it, bbar F / m, m/s^2.
+    #[must_use]
+    pub fn observed(&self, velocities: [&Vector3<f32>; 2], thrust: &Vector3<f32>) -> Vector3<f32> {
+        let [start, end] = velocities;
+        let mut rest = (end - start) * self.per_period - thrust;
+        rest.x += self.half_drag * (start.x + end.x);
+        rest.y += self.half_drag * (start.y + end.y);
+        rest.z += self.gravity;
+        rest
+    }
+
+    /// Takes what was [observed](Self::observed) into the average.
     #[must_use]
     pub fn averaged(&self, estimate: &ForceEstimate, observed: &Vector3<f32>) -> ForceEstimate {
-        let average = estimate.average + (observed - estimate.average).component_mul(&self.averaging);
+        let ForceEstimate { average, .. } = estimate;
+        let average = Vector3::new(
+            self.across.averaged(average.x, observed.x),
+            self.across.averaged(average.y, observed.y),
+            self.vertical.averaged(average.z, observed.z),
+        );
         ForceEstimate { average, ..*estimate }
     }
 
@@ -123,15 +152,10 @@ impl ForceGenerator {
     #[must_use]
     pub fn acceleration(&self, estimate: &ForceEstimate) -> Vector3<f32> {
         let ForceEstimate { average, value, rate } = estimate;
-        let axis = |zeta: f32, d: f32, rate: f32, k: f32, [level, snap, jerk]: [f32; 3]| {
-            let wanted = within(k * (k * (within(zeta, level) - d) - 2.0 * rate), snap);
-            (within(rate + wanted * self.period, jerk) - rate) * self.per_period
-        };
-        let (k, level, snap, jerk) = (&self.bandwidth, &self.level, &self.snap, &self.jerk);
         Vector3::new(
-            axis(average.x, value.x, rate.x, k.x, [level.x, snap.x, jerk.x]),
-            axis(average.y, value.y, rate.y, k.y, [level.y, snap.y, jerk.y]),
-            axis(average.z, value.z, rate.z, k.z, [level.z, snap.z, jerk.z]),
+            self.across.acceleration(average.x, value.x, rate.x, self.period),
+            self.across.acceleration(average.y, value.y, rate.y, self.period),
+            self.vertical.acceleration(average.z, value.z, rate.z, self.period),
         )
     }
 

@@ -64,8 +64,7 @@ pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &HeadingPar
     let lag_rate = lag.rate - w.z;
     let wanted = math::within(a.z - c_2 * lag_rate - 2.0 * c_1 * s, most);
     // The rate at the end of the period is what W_max bounds.
-    let reached = math::within(lag.rate + wanted * period, fastest);
-    let turn = (reached - lag.rate) / period;
+    let turn = math::within_rate(wanted, lag.rate, fastest, period);
 
     let (cos, sin) = (c * c - s * s, 2.0 * c * s);
     let across = |v: &Vector3<f32>| Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x);

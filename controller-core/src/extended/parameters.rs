@@ -165,6 +165,9 @@ impl Extended {
     /// The greatest of all other gains and levels: products with the largest accepted states stay finite.
     pub const GREATEST: f32 = 1e3;
 
+    /// The least of all gains and levels that must not be zero: their squares stay above zero, so that no saturation divides by it.
+    pub const LEAST: f32 = 1e-7;
+
     /// Checks every constant, and that the vehicle can never be asked to push down.
     ///
     /// # Errors
@@ -211,6 +214,7 @@ impl Extended {
             (*floor_margin, "gains.floor_margin"),
         ] {
             require_positive(value, field)?;
+            require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
             require(value < Self::GREATEST, field, Reason::NotBelow(Self::GREATEST))?;
         }
         for (value, field) in [
@@ -234,6 +238,7 @@ impl Extended {
             (a.alpha, 1.0, "gains.alpha"),
         ] {
             require_positive(value, field)?;
+            require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
             require(value <= most, field, Reason::NotBelow(most))?;
         }
         require(a.alpha < 1.0, "gains.alpha", Reason::NotBelow(1.0))?;

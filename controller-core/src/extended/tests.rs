@@ -6,10 +6,10 @@ use super::actuators::ActuatorParameters;
 use super::attitude::AttitudeLaw;
 use super::controller::Controller;
 use super::example;
-use super::force::{ForceEstimate, ForceGenerator, observed};
+use super::force::{ForceEstimate, ForceGenerator};
 use super::heading::{HeadingLag, advanced, turning};
 use super::parameters::{AttitudeParameters, EstimateParameters, Extended, ExtendedParameters};
-use super::position::{asymmetric, radial};
+use super::saturation::Saturation;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
@@ -51,14 +51,15 @@ fn controller(parameters: &ExtendedParameters) -> Controller {
 }
 
 #[test]
-fn saturations_are_monotone_shorter_than_their_level_and_never_steeper_than_one() {
+fn a_saturation_is_monotone_shorter_than_its_level_and_never_steeper_than_its_gain() {
     let mut random = Random(1);
     for _ in 0..100_000 {
         let (a, b) = (random.vector(9.0).xy(), random.vector(9.0).xy());
-        let (s, t) = (radial(&a, 2.0), radial(&b, 2.0));
-        assert!((s - t).dot(&(a - b)) >= 0.0 && s.norm() < 2.0 && (s - t).norm() <= (a - b).norm() * (1.0 + 1e-5));
-        let (s, t) = (asymmetric(a.x, 5.0, 1.0), asymmetric(b.x, 5.0, 1.0));
-        assert!((s - t) * (a.x - b.x) >= 0.0 && s < 5.0 && s > -1.0 && (s - t).abs() <= (a.x - b.x).abs() + 1e-6);
+        let saturation = Saturation::new(1.5, 2.0);
+        let (s, t) = (a * saturation.factor(a.norm_squared()), b * saturation.factor(b.norm_squared()));
+        assert!(
+            (s - t).dot(&(a - b)) >= 0.0 && s.norm() < 2.0 && (s - t).norm() <= 1.5 * (a - b).norm() * (1.0 + 1e-5)
+        );
     }
 }
 
@@ -107,7 +108,7 @@ fn a_vehicle_that_does_as_commanded_shows_no_force() {
     let (start, thrust) = (Vector3::new(2.0, -1.0, 0.5), 15.0);
     let acceleration = axis * thrust - Vector3::new(0.0, 0.0, 9.81) - Vector3::new(drag * start.x, drag * start.y, 0.0);
     let end = start + acceleration * 0.01;
-    let force = observed([&start, &end], &axis, thrust, &generator);
+    let force = generator.observed([&start, &end], &(axis * thrust));
     assert!(force.norm() < 0.03, "{force}");
 }
 
@@ -214,7 +215,7 @@ fn across_the_switch_the_potential_falls() {
 #[test]
 fn a_bias_is_believed_up_to_its_level() {
     let parameters = example::PARAMETERS.estimates;
-    let bias = TorqueBias::new(&parameters, 0.01);
+    let bias = TorqueBias::new(&parameters, &example::vehicle().inertia, 0.01);
     let mut average = Vector3::zeros();
     let torque = Vector3::new(0.5 * parameters.torque_tilt, -9.0, 2.0 * parameters.torque_yaw);
     for _ in 0..2_000 {
@@ -230,7 +231,7 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
     for truth in [0.8_f32, 1.0, 1.2, 3.0] {
         let mut learnt = 1.0;
         for _ in 0..5_000 {
-            learnt = scale.learnt(learnt, 10.0, 0.9, truth * 9.0);
+            learnt = scale.learnt(learnt, 10.0, 9.0, truth * 9.0);
         }
         let EstimateParameters { scale_least, scale_greatest, .. } = example::PARAMETERS.estimates;
         let allowed = truth.clamp(scale_least, scale_greatest);
@@ -258,6 +259,24 @@ fn at_the_floor_one_rotor_is_at_its_least_thrust_and_none_below() {
         let least = above.fold(f64::INFINITY, f64::min);
         assert!(least.abs() < 2e-6, "{torque}: {least}");
     }
+}
+
+#[test]
+fn the_bound_on_the_floor_changes_no_thrust() {
+    let floor = ThrustFloor::new(Some(&example::rotors()), 0.05);
+    let (mut random, mut raised) = (Random(8), 0);
+    for _ in 0..100_000 {
+        let (torque, scale) = (random.vector(0.5), 1.0 + 0.3 * random.signed());
+        let least = floor.least(&torque, scale);
+        // Just below the floor, at it, just above it, and anywhere up to where the bound may be.
+        for thrust in [least.next_down(), least, least.next_up(), least * (1.0 + 2.0 * random.signed().abs())] {
+            let found = floor.raised(thrust, &torque, scale);
+            assert_eq!(found, thrust.max(least), "{thrust} at {torque}, scale {scale}");
+            raised += u32::from(found > thrust);
+        }
+    }
+    assert_eq!(raised, 100_000);
+    assert!(floor.raised(f32::NAN, &Vector3::zeros(), 1.0).is_nan());
 }
 
 #[test]
@@ -299,6 +318,27 @@ fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
 }
 
 #[test]
+fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
+    let mut controller = controller(&example::PARAMETERS);
+    let mut reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
+    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    let mut state = State { position: Vector3::new(0.0, 0.0, 1e4), velocity: zero, attitude, angular_velocity: zero };
+    // Far too high, and pushed upwards: filter and estimate go to the ends at which u is least.
+    for _ in 0..3_000 {
+        state.velocity.z += 0.3;
+        controller.step(&state, &reference).unwrap();
+    }
+    let parameters = example::PARAMETERS;
+    let fall = parameters.position.m_down + parameters.estimates.force_vertical - example::vehicle().gravity;
+    reference.acceleration.z = fall.next_up();
+    reference.jerk = Vector3::repeat(1e6);
+    let before = controller.clone();
+    let refused = controller.step(&state, &reference).unwrap_err();
+    assert_eq!(refused, InputError::OutOfRange { field: "reference" });
+    assert_eq!(controller, before);
+}
+
+#[test]
 fn held_estimates_stay_as_they_are() {
     let mut controller = controller(&example::PARAMETERS);
     let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
@@ -333,6 +373,8 @@ fn constants_out_of_their_range_are_refused_by_name() {
     };
     assert_eq!(refused(&|p| p.position.k_f_across = 0.1).field, "gains.k_f_across");
     assert_eq!(refused(&|p| p.position.m_down = 9.5).field, "gains.m_down");
+    assert_eq!(refused(&|p| p.attitude.m_t = 1e-30).field, "gains.m_t");
+    assert_eq!(refused(&|p| p.attitude.eta_t = 1e-30).field, "gains.eta_t");
     assert_eq!(refused(&|p| p.attitude.delta = 1.5).field, "gains.delta");
     assert_eq!(refused(&|p| p.attitude.ease = 1.0).field, "gains.ease");
     assert_eq!(refused(&|p| p.attitude.alpha = 1.0).field, "gains.alpha");

@@ -8,10 +8,15 @@
 //!
 //! and T = max(m u . R e3, N(tau)). A rotor commanded f / s turns at its least speed when f is s f_min,i. A vehicle without
 //! rotors has a constant floor, the margin.
+//!
+//! The command is nearly always far above N. A bound on N says so with one comparison for all rotors: the same formula with the
+//! greatest magnitude of each constant among the rotors and of each component of tau. Rounding is monotone, so that the bound is
+//! not below any rotor's part, to the last bit.
 
 use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::math;
+use core::hint::cold_path;
 use heapless::Vec;
 use nalgebra::Vector3;
 
@@ -22,10 +27,18 @@ struct Floor {
     per_torque: Vector3<f32>,
 }
 
+impl Floor {
+    fn at(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
+        scale * self.least + self.per_torque.dot(torque)
+    }
+}
+
 /// N.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThrustFloor {
     rotors: Vec<Floor, ROTORS_MAX>,
+    /// The greatest magnitudes among the rotors' constants.
+    greatest: Floor,
     margin: f32,
 }
 
@@ -39,13 +52,29 @@ impl ThrustFloor {
             // As many as there are rotors: it fits.
             let _ = floors.push(Floor { least: (f64::from(rotor.thrust_min) / row.x) as f32, per_torque });
         }
-        Self { rotors: floors, margin }
+        let mut greatest = Floor { least: 0.0, per_torque: Vector3::zeros() };
+        for floor in &floors {
+            greatest.least = math::greater(greatest.least, floor.least);
+            greatest.per_torque = greatest.per_torque.zip_map(&floor.per_torque.abs(), math::greater);
+        }
+        Self { rotors: floors, greatest, margin }
+    }
+
+    /// max(`thrust`, N(tau)), N, for a torque in N m and the thrust scale s.
+    #[must_use]
+    pub fn raised(&self, thrust: f32, torque: &Vector3<f32>, scale: f32) -> f32 {
+        if thrust >= self.greatest.at(&torque.abs(), scale) + self.margin {
+            thrust
+        } else {
+            cold_path();
+            math::greater(thrust, self.least(torque, scale))
+        }
     }
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
     #[must_use]
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let floor = self.rotors.iter().map(|floor| scale * floor.least + floor.per_torque.dot(torque));
+        let floor = self.rotors.iter().map(|floor| floor.at(torque, scale));
         floor.fold(0.0, math::greater) + self.margin
     }
 }

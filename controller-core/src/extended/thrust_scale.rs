@@ -20,8 +20,10 @@ const RATE_MAX: f32 = 0.2;
 /// The estimate's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrustScale {
-    period: f32,
-    rate: f32,
+    /// gamma h.
+    gain: f32,
+    /// r h.
+    most: f32,
     least: f32,
     greatest: f32,
 }
@@ -31,17 +33,15 @@ impl ThrustScale {
     #[must_use]
     pub fn new(parameters: &EstimateParameters, period: f32) -> Self {
         let EstimateParameters { scale_least, scale_greatest, scale_rate, .. } = *parameters;
-        Self { period, rate: scale_rate, least: scale_least, greatest: scale_greatest }
+        Self { gain: scale_rate * period, most: RATE_MAX * period, least: scale_least, greatest: scale_greatest }
     }
 
-    /// The scale after an interval with the mean of the commanded thrust per mass `thrust` = F / m, m/s^2, the mean vertical
-    /// part `thrust_axis_z` of R e3, and the vertical acceleration less gravity's, `lift` = v_z' + g, m/s^2.
+    /// The scale after an interval with the mean of the commanded thrust per mass `thrust` = F / m, m/s^2, its vertical part
+    /// `upwards` = b_z F / m, and the vertical acceleration less gravity's, `lift` = v_z' + g, m/s^2.
     #[must_use]
-    pub fn learnt(&self, scale: f32, thrust: f32, thrust_axis_z: f32, lift: f32) -> f32 {
-        let upwards = thrust_axis_z * thrust;
-        let weight = upwards / (thrust * thrust + LEAST_THRUST * LEAST_THRUST);
-        let most = RATE_MAX * self.period;
-        let step = math::within(self.rate * self.period * (lift - scale * upwards) * weight, most);
+    pub fn learnt(&self, scale: f32, thrust: f32, upwards: f32, lift: f32) -> f32 {
+        let weight = self.gain * upwards / (thrust * thrust + LEAST_THRUST * LEAST_THRUST);
+        let step = math::within(weight * (lift - scale * upwards), self.most);
         math::between(scale + step, self.least, self.greatest)
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`observed`] | J (omega_k - omega_(k-1)) / h + omega x J omega - tau, with omega and tau the means over the interval |
+//! | [`TorqueBias::observed`] | J (omega_k - omega_(k-1)) / h + omega x J omega - tau, with omega and tau the means over the interval |
 //! | [`TorqueBias::averaged`] | the same averaged with the bandwidth L_tau |
 //! | [`TorqueBias::estimate`] | each component cut to its level |
 //!
@@ -13,42 +13,44 @@ use super::parameters::EstimateParameters;
 use crate::math;
 use nalgebra::Vector3;
 
-/// What turned the vehicle over an interval beside the torque commanded, N m, body frame.
-///
-/// `angular_velocities` are those at the interval's start and end, rad/s; `torque` the mean of what acted, N m.
-#[must_use]
-pub fn observed(
-    angular_velocities: [&Vector3<f32>; 2],
-    torque: &Vector3<f32>,
-    inertia: &Vector3<f32>,
-    per_period: f32,
-) -> Vector3<f32> {
-    let [start, end] = angular_velocities;
-    let mean = (start + end) * 0.5;
-    let acceleration = (end - start) * per_period;
-    inertia.component_mul(&acceleration) + mean.cross(&inertia.component_mul(&mean)) - torque
-}
-
 /// The estimate's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueBias {
     /// 1 - e^(-L_tau h).
     averaging: f32,
     level: Vector3<f32>,
+    /// The diagonal of J over h, kg m^2/s.
+    inertia_per_period: Vector3<f32>,
+    /// (J_z - J_y, J_x - J_z, J_y - J_x) / 4, kg m^2: the mean of two rates, twice in a product, is a quarter of their sums'.
+    quarter_differences: Vector3<f32>,
 }
 
 impl TorqueBias {
-    /// For steps of `period`, s.
+    /// For steps of `period`, s, and the diagonal of J, kg m^2.
     #[must_use]
-    pub fn new(parameters: &EstimateParameters, period: f32) -> Self {
+    pub fn new(parameters: &EstimateParameters, inertia: &Vector3<f32>, period: f32) -> Self {
         let EstimateParameters { torque_tilt, torque_yaw, torque_smoothing, .. } = *parameters;
         Self {
             averaging: -math::exp_m1(-f64::from(torque_smoothing) * f64::from(period)) as f32,
             level: Vector3::new(torque_tilt, torque_tilt, torque_yaw),
+            inertia_per_period: inertia / period,
+            quarter_differences: (inertia.zxy() - inertia.yzx()) * 0.25,
         }
     }
 
-    /// Takes what was [`observed`] into the `average`, N m.
+    /// What turned the vehicle over an interval beside the torque that acted, N m, body frame.
+    ///
+    /// `angular_velocities` are those at the interval's start and end, rad/s; `torque` the mean of what acted, N m.
+    #[must_use]
+    pub fn observed(&self, angular_velocities: [&Vector3<f32>; 2], torque: &Vector3<f32>) -> Vector3<f32> {
+        let [start, end] = angular_velocities;
+        let sum = start + end;
+        self.inertia_per_period.component_mul(&(end - start))
+            + self.quarter_differences.component_mul(&sum.yzx()).component_mul(&sum.zxy())
+            - torque
+    }
+
+    /// Takes what was [observed](Self::observed) into the `average`, N m.
     #[must_use]
     pub fn averaged(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
         average + (observed - average) * self.averaging

@@ -14,11 +14,10 @@
 //! **Why the rotors may be brought up slowly.** For [`SPOOL_TICKS`] after the rotors' idle a rotor is given a growing part of the way from
 //! its least thrust to the law's: no rotor leaves the range in which the law's own commands are. The reference waits at rest.
 
+use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
-use super::permission::heading;
 use super::reason::{Grounded, field};
 use super::rules::REFUSALS_MAX;
-use super::watch::up;
 use crate::allocation::{Mixer, Thrusts};
 use crate::certificate::certified::Certified;
 use crate::controller::Command;

@@ -1,13 +1,12 @@
 //! What arming, a motor test and the ways of flying need, and why they are refused.
 
 use super::estimate::Estimate;
+use super::leaning::{heading, up};
 use super::reason::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode};
-use super::watch::up;
 use crate::estimator::{EstimatedState, Fault};
 use crate::heading::Heading;
-use crate::math;
-use nalgebra::{Quaternion, Vector2, Vector3};
+use nalgebra::Vector3;
 
 /// The cosine of the greatest tilt that arms, 30 degrees.
 const TILT_COSINE: f32 = 0.866_025_4;
@@ -92,10 +91,4 @@ pub(super) fn to_test(test: &MotorTest, rotors: usize) -> Result<(), Refusal> {
 
 pub(super) fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {
     if condition { Ok(()) } else { Err(refusal) }
-}
-
-/// Which way body x points, seen from above; none straight up or down.
-pub(super) fn heading(q: &Quaternion<f32>) -> Option<Heading> {
-    let forward = Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k));
-    Heading::new(forward / math::sqrt(forward.norm_squared()), 0.0, 0.0).ok()
 }

@@ -6,10 +6,12 @@
 
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
+use super::exchange::{Battery, Inputs, Outcome, Output, PERIOD};
 use super::fence::Fence;
 use super::permission::{self, MotorTest, Start, require};
 use super::reason::{Grounded, Reason, Refusal, field};
 use super::request::Newest;
+use super::request::Request;
 use super::rules::{
     self, Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LEVELLING_MAX,
 };
@@ -17,7 +19,6 @@ use super::rules::{Mode, Transition};
 use super::settings::FlightSettings;
 use super::thrust_check::ThrustCheck;
 use super::watch::{Seen, Watch};
-use super::{Battery, Inputs, Outcome, Output, PERIOD, Request};
 use crate::allocation::geometry::ROTORS_MIN;
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;

@@ -9,11 +9,12 @@
 //! - *Crashed*: tilted by 60 degrees or more and still. A vehicle that recovers in the air from there turns or falls.
 
 use super::chain::{Chain, Flown};
+use super::exchange::{Battery, Inputs};
 use super::lasting::Lasting;
+use super::leaning::up;
 use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, TRACKING_LASTING};
-use super::{Battery, Inputs};
 use crate::estimator::EstimatedState;
-use nalgebra::Quaternion;
+use nalgebra::Vector3;
 
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
@@ -87,10 +88,8 @@ impl Watch {
     ) -> Seen {
         let now = inputs.now;
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
-        let far = flown.filter(|_| mode.is_guided()).is_some_and(|flown| {
-            // Written so that a number that is none is far.
-            !(flown.position_error.norm_squared() <= tracking_error_max * tracking_error_max)
-        });
+        let far =
+            flown.filter(|_| mode.is_guided()).is_some_and(|flown| !within(&flown.position_error, tracking_error_max));
         let inexact = mode.flies() && chain.is_some_and(|chain| !chain.is_exact());
         let lying =
             mode.is_armed() && state.is_some_and(|state| is_still(state) && up(&state.state.attitude) < LYING_COSINE);
@@ -109,8 +108,7 @@ impl Watch {
         };
         let doubtful = match (mode, state, flown, chain) {
             (Mode::Descending, Some(state), Some(flown), Some(chain)) => {
-                // Written so that a number that is none does not fit.
-                !(chain.unexpected(flown, state).norm_squared() <= UNEXPECTED * UNEXPECTED)
+                !within(&chain.unexpected(flown, state), UNEXPECTED)
             }
             _ => false,
         };
@@ -139,6 +137,11 @@ impl Watch {
     }
 }
 
+/// Whether a vector is at most so long. One that is made of no numbers is not.
+fn within(vector: &Vector3<f32>, most: f32) -> bool {
+    vector.norm_squared() <= most * most
+}
+
 fn is_still(state: &EstimatedState) -> bool {
     let (speed, rate) = STILL;
     let state = &state.state;
@@ -155,9 +158,4 @@ fn is_held_up(state: &EstimatedState, asked: f32, jerked: bool) -> bool {
     let falling = if jerked { after_a_jerk } else { without };
     let turns = state.state.angular_velocity.norm_squared() < STILL.1 * STILL.1;
     turns && asked < falling && state.acceleration.norm_squared() < measured * measured
-}
-
-/// e3 . R e3: the cosine of the tilt.
-pub(super) fn up(q: &Quaternion<f32>) -> f32 {
-    1.0 - 2.0 * (q.i * q.i + q.j * q.j)
 }

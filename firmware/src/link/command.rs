@@ -17,7 +17,8 @@
 use super::frame::{Frame, Header};
 use super::origin::{Origin, Place};
 use super::streams;
-use super::telemetry::{Kind, vehicle};
+use super::telemetry::kind::Kind;
+use super::telemetry::vehicle;
 use crate::frames;
 use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};

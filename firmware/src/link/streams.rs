@@ -1,6 +1,6 @@
 //! What is sent by the clock, and how often: a table that a ground station may change.
 
-use super::telemetry::Kind;
+use super::telemetry::kind::Kind;
 use crate::parameters::table::Name;
 
 /// How often a message goes out unless somebody says otherwise.

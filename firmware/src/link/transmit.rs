@@ -4,7 +4,8 @@
 
 use super::origin::Origin;
 use super::streams::{Schedule, interval_of_rate};
-use super::telemetry::{Kind, View, vehicle};
+use super::telemetry::kind::Kind;
+use super::telemetry::{View, vehicle};
 use super::time_sync;
 use super::unknown::UnknownCommand;
 use super::writer::Writer;
@@ -110,7 +111,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             origin: shared.origin.get().map_or_else(Origin::default, |origin| origin.value),
         };
         let system = self.system();
-        kind.write(&view, system, &mut self.writer)
+        view.write(kind, system, &mut self.writer)
     }
 
     /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.

@@ -1,6 +1,6 @@
 //! What the vehicle answers, and to what.
 
-use crate::link::telemetry::Kind;
+use crate::link::telemetry::kind::Kind;
 use crate::parameters::table::Name;
 use controller_core::flight::Request;
 use mavlink::dialects::common::{MavCmd, MavMissionResult, MavResult};

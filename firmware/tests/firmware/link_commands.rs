@@ -4,7 +4,7 @@ use crate::support::receiver::{Fed, Local, report, texts};
 use crate::support::{patched, v1, v2, v2_of_payload};
 use controller_core::flight::{Mode, MotorTest, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
-use firmware::link::telemetry::Kind;
+use firmware::link::telemetry::kind::Kind;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, Ping, REPLIES, REQUESTS, Reply};
 use mavlink::MessageData;

@@ -1,7 +1,7 @@
 //! The table: in this mode, if this holds, go there, for this reason.
 
 use super::{Condition, Mode};
-use crate::flight::Reason;
+use crate::flight::reason::Reason;
 
 /// One row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
