@@ -8,7 +8,7 @@ use crate::count::Cost;
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
-use controller_core::flight::{Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use controller_core::flight::{FlightSettings, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::math;
 use controller_core::reference::Trajectory;
@@ -27,6 +27,7 @@ use static_cell::{ConstStaticCell, StaticCell};
 /// Ticks of standing, of going up, and of the circle that is measured.
 const STANDING: u64 = 200;
 const RISING: u64 = 500;
+const FLYING: u64 = STANDING + 20;
 const CIRCLING: u64 = 1_000;
 
 /// Ticks that a pose is late.
@@ -46,7 +47,8 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
     let shared: Shared<NoopRawMutex> = Shared::new();
     let Some(Ok(outputs)) = configuration.rotors().map(|rotors| Outputs::new(rotors, 0.0)) else { return false };
     let estimator = ESTIMATOR.init_with(|| Estimator::new(&Settings::bmi088(configuration.vehicle())));
-    let mut pilot = Pilot::new(Ok(certified), &GovernorLimits::default(), estimator, MEMORY.take());
+    let mut pilot =
+        Pilot::new(Ok(certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, MEMORY.take());
     let mut control = Control::new(&shared, &mut pilot, outputs);
     let tick: Tick<'_> = black_box(Control::tick);
     let mut body = Body::standing(*configuration.vehicle());
@@ -59,9 +61,13 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
             let _ = shared.poses.put(pose);
         }
         shared.ground_station.put((), now);
-        if number == STANDING {
-            let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-            let _ = shared.request(Asked { request: Request::Arm, command });
+        let asked = match number {
+            STANDING => Some((Request::Arm, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)),
+            FLYING => Some((Request::FlySetpoints, MavCmd::MAV_CMD_DO_SET_MODE)),
+            _ => None,
+        };
+        if let Some((request, command)) = asked {
+            let _ = shared.request(Asked { request, command });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {
