@@ -19,6 +19,16 @@ pub trait Clock {
     fn until(&self, time: u64) -> impl Future<Output = ()>;
 }
 
+impl<C: Clock> Clock for &C {
+    fn now(&self) -> u64 {
+        (*self).now()
+    }
+
+    fn until(&self, time: u64) -> impl Future<Output = ()> {
+        (*self).until(time)
+    }
+}
+
 /// A peripheral that did not do what it was asked to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]

@@ -20,6 +20,7 @@
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
+//! | [`repeat`] | motor commands sent again while they are young |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
@@ -52,6 +53,7 @@ mod pace;
 pub mod parameters;
 pub mod redundant;
 mod registers;
+pub mod repeat;
 pub mod replay;
 pub mod shared;
 pub mod status;

@@ -20,5 +20,6 @@ mod link_setpoints;
 mod link_tasks;
 mod link_telemetry;
 mod parameters;
+mod repeat;
 mod status;
 mod support;

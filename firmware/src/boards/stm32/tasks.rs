@@ -14,6 +14,7 @@ use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
+use crate::repeat::{self, Repeater};
 use crate::{boot, imu, link, status};
 use controller_core::flight::Pilot;
 use embassy_executor::Executor;
@@ -23,6 +24,7 @@ use static_cell::StaticCell;
 
 type Shared = crate::shared::Shared<CriticalSectionRawMutex>;
 type Hil = hil::Hil<CriticalSectionRawMutex>;
+type Repeated = repeat::Repeated<CriticalSectionRawMutex>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
@@ -38,7 +40,11 @@ pub fn run() -> ! {
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
-    spawner.spawn(control(shared, hil, pilot, outputs, board.motors, board.watchdog).unwrap());
+    // Beside control: one that hangs without giving way sends nothing more.
+    static REPEATED: StaticCell<Repeated> = StaticCell::new();
+    let repeated = REPEATED.init_with(Repeated::new);
+    spawner.spawn(repeat_commands(repeated, board.motors).unwrap());
+    spawner.spawn(control(shared, hil, pilot, outputs, repeated, board.watchdog).unwrap());
 
     SENSOR_INTERRUPT.set_priority(Priority::P7);
     let spawner = SENSOR.start(SENSOR_INTERRUPT);
@@ -61,11 +67,17 @@ async fn control(
     hil: &'static Hil,
     pilot: &'static mut Pilot<'static>,
     outputs: Outputs,
-    pins: BoardMotors,
+    repeated: &'static Repeated,
     mut watchdog: BoardWatchdog,
 ) {
+    let pins = Repeater { repeated, clock: SystemClock };
     let mut motors = SelectedMotors { pins, hil, wanted: &shared.hil, clock: SystemClock };
     Control::new(shared, pilot, outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
+}
+
+#[embassy_executor::task]
+async fn repeat_commands(repeated: &'static Repeated, mut motors: BoardMotors) {
+    repeat::run(repeated, &mut motors, &SystemClock).await;
 }
 
 #[embassy_executor::task]

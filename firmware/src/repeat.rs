@@ -1,0 +1,79 @@
+//! The motors' last command, sent again and again while it is young.
+//!
+//! Many speed controllers refuse or stutter on less than 250 frames a second, and control decides a hundred times a second. In between,
+//! its last command is repeated every [`INTERVAL`]; a new one goes out at once. A command of [`COMMAND_AGE_MAX`] is repeated no more:
+//! without frames a speed controller stops its motor, so a control task that hangs silences the motors, whatever it said last. One
+//! that hangs without giving way keeps this task from running at all, which is silence too.
+
+use crate::deadline::within;
+use crate::hardware::{Clock, Fault, MotorCommand, Motors};
+use crate::shared::Latest;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use embassy_sync::signal::Signal;
+
+/// Time between frames, us: 1 kHz at most, and not much less.
+pub const INTERVAL: u64 = 1_000;
+
+/// The age at which a command is repeated no more, us: a control tick that is missed is bridged, two are not.
+pub const COMMAND_AGE_MAX: u64 = 20_000;
+
+/// How long a frame may take to write, us.
+const WRITING_MAX: u64 = 500;
+
+/// What passes between control and the task that repeats.
+pub struct Repeated<M: RawMutex> {
+    command: Latest<M, MotorCommand>,
+    /// There is a new command.
+    asked: Signal<M, ()>,
+    /// What became of the last frame, and the time of the command in it, us.
+    written: Signal<M, (u64, Result<(), Fault>)>,
+}
+
+impl<M: RawMutex> Repeated<M> {
+    /// No command yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { command: Latest::new(), asked: Signal::new(), written: Signal::new() }
+    }
+}
+
+impl<M: RawMutex> Default for Repeated<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The motors as control sees them: a command is written when its first frame is.
+pub struct Repeater<'a, M: RawMutex, C> {
+    /// Where commands are put.
+    pub repeated: &'a Repeated<M>,
+    /// The board's time.
+    pub clock: C,
+}
+
+impl<M: RawMutex, C: Clock> Motors for Repeater<'_, M, C> {
+    async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
+        let now = self.clock.now();
+        self.repeated.command.put(command, now);
+        self.repeated.asked.signal(());
+        loop {
+            // The frame that was on its way was another command's.
+            let (time, written) = self.repeated.written.wait().await;
+            if time >= now {
+                return written;
+            }
+        }
+    }
+}
+
+/// Writes commands to the motors and repeats them, for ever.
+pub async fn run<M: RawMutex>(repeated: &Repeated<M>, motors: &mut impl Motors, clock: &impl Clock) -> ! {
+    loop {
+        // Whichever comes first: a new command, or the time to repeat the last.
+        let _ = within(clock, INTERVAL, repeated.asked.wait()).await;
+        let young = repeated.command.get().filter(|command| command.age(clock.now()) < COMMAND_AGE_MAX);
+        let Some(command) = young else { continue };
+        let written = within(clock, WRITING_MAX, motors.write(command.value)).await.unwrap_or(Err(Fault));
+        repeated.written.signal((command.time, written));
+    }
+}

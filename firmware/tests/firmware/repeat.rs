@@ -1,0 +1,113 @@
+//! Motor commands repeated: how often, how long, and what a task that hangs leaves of them.
+
+use crate::support::Simulated;
+use core::cell::{Cell, RefCell};
+use core::future::{Future, pending};
+use embassy_futures::join::join;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::hardware::{Clock, Fault, MotorCommand, Motors};
+use firmware::repeat::{Repeated, Repeater, run};
+
+/// Pins that note each frame with its time, us, and fail or hang when they are told to.
+struct Pins<'a> {
+    clock: &'a Simulated,
+    frames: &'a RefCell<Vec<(u64, MotorCommand)>>,
+    does: &'a Cell<Does>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Does {
+    Well,
+    Fail,
+    Hang,
+}
+
+impl Motors for Pins<'_> {
+    async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
+        match self.does.get() {
+            Does::Well => {
+                self.frames.borrow_mut().push((self.clock.now(), command));
+                Ok(())
+            }
+            Does::Fail => Err(Fault),
+            Does::Hang => pending().await,
+        }
+    }
+}
+
+fn command(level: f32) -> MotorCommand {
+    MotorCommand::Run([level; 4])
+}
+
+/// The frames of a control task over `duration` us.
+fn frames<F: Future>(
+    duration: u64,
+    does: &Cell<Does>,
+    control: impl FnOnce(&'static Simulated, &'static Repeated<NoopRawMutex>) -> F,
+) -> Vec<(u64, MotorCommand)> {
+    let frames = RefCell::default();
+    let clock: &'static Simulated = Box::leak(Box::default());
+    let repeated: &'static Repeated<NoopRawMutex> = Box::leak(Box::new(Repeated::new()));
+    let mut pins = Pins { clock, frames: &frames, does };
+    let tasks = join(run(repeated, &mut pins, clock), control(clock, repeated));
+    clock.run(duration, tasks, |_| ());
+    frames.into_inner()
+}
+
+/// A new command every 10 ms, 0.01 more each time, until `end`, us; then nothing.
+async fn flies(clock: &Simulated, repeated: &Repeated<NoopRawMutex>, end: u64) {
+    let mut repeater = Repeater { repeated, clock };
+    let mut level = 0.1;
+    while clock.now() < end {
+        assert_eq!(repeater.write(command(level)).await, Ok(()));
+        level += 0.01;
+        clock.until(clock.now() / 10_000 * 10_000 + 10_000).await;
+    }
+    pending::<()>().await;
+}
+
+#[test]
+fn a_command_goes_out_at_once_and_again_every_millisecond() {
+    let frames = frames(100_000, &Cell::new(Does::Well), |clock, repeated| flies(clock, repeated, 200_000));
+    assert!((95..=112).contains(&frames.len()), "{}", frames.len());
+    assert!(frames.windows(2).all(|pair| pair[1].0 - pair[0].0 <= 2_000), "{frames:?}");
+    for tick in 1..10 {
+        let first = frames.iter().find(|(_, sent)| *sent == command(0.1 + 0.01 * tick as f32));
+        let first = first.or_else(|| frames.iter().find(|(time, _)| *time >= tick * 10_000)).unwrap();
+        assert!(first.0 - tick * 10_000 <= 1_000, "{first:?}");
+    }
+}
+
+#[test]
+fn a_control_task_that_hangs_silences_the_motors_within_20_ms() {
+    let frames = frames(200_000, &Cell::new(Does::Well), |clock, repeated| flies(clock, repeated, 50_000));
+    let last = frames.last().unwrap().0;
+    assert!((58_000..60_000).contains(&last), "{last}");
+}
+
+#[test]
+fn nothing_is_sent_before_the_first_command() {
+    let frames = frames(50_000, &Cell::new(Does::Well), |clock, _| async move { clock.until(u64::MAX).await });
+    assert!(frames.is_empty());
+}
+
+#[test]
+fn control_hears_of_a_frame_that_failed_or_hung() {
+    for wrong in [Does::Fail, Does::Hang] {
+        let does = Cell::new(wrong);
+        let heard = RefCell::new(Vec::new());
+        let sent = frames(30_000, &does, |clock, repeated| {
+            let (does, heard) = (&does, &heard);
+            async move {
+                let mut repeater = Repeater { repeated, clock };
+                heard.borrow_mut().push(repeater.write(command(0.2)).await);
+                does.set(Does::Well);
+                clock.until(10_000).await;
+                heard.borrow_mut().push(repeater.write(command(0.3)).await);
+                clock.until(u64::MAX).await;
+            }
+        });
+        assert_eq!(heard.into_inner(), [Err(Fault), Ok(())]);
+        assert!(sent.iter().any(|(_, sent)| *sent == command(0.3)));
+    }
+}
