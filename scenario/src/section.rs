@@ -62,7 +62,8 @@ impl<'a> Section<'a> {
                 let nearest = nearest.copied().unwrap_or_default();
                 let all = known.join(", ");
                 Err(FieldError::new(
-                    self.path_of(key),
+                    // A key may hold line ends, and whatever else a terminal acts on.
+                    self.path_of(&key.escape_debug().to_string()),
                     format!("unknown key, did you mean \"{nearest}\"? (allowed: {all})"),
                 ))
             }
