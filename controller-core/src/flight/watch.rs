@@ -76,6 +76,74 @@ pub(super) struct Seen {
     pub imu_doubtful: bool,
 }
 
+/// What there is to look at in a tick: the estimate, and what the last tick flew.
+struct Look<'a> {
+    mode: Mode,
+    state: Option<&'a EstimatedState>,
+    chain: Option<&'a Chain<'a>>,
+    flown: Option<&'a Flown>,
+}
+
+impl Look<'_> {
+    /// Whether the vehicle is farther than `most`, m, from its reference.
+    fn is_far(&self, most: f32) -> bool {
+        self.mode.is_guided() && self.flown.is_some_and(|flown| !within(&flown.position_error, most))
+    }
+
+    /// Whether the rotors do not give what the law asks for.
+    fn is_inexact(&self) -> bool {
+        self.mode.flies() && self.chain.is_some_and(|chain| !chain.is_exact())
+    }
+
+    /// Whether the vehicle lies still on its side or its back.
+    fn lies(&self) -> bool {
+        let lies = |state| is_still(state) && up(&state.state.attitude) < LYING_COSINE;
+        self.mode.is_armed() && self.state.is_some_and(lies)
+    }
+
+    /// Whether it stands still where it should be going down, by the estimate.
+    fn is_left_behind(&self) -> bool {
+        let (Mode::Landing, Some(state), Some(flown)) = (self.mode, self.state, self.flown) else { return false };
+        is_still(state) && flown.reference.position.z + GONE_ON < state.state.position.z
+    }
+
+    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only where nothing
+    /// but the IMU is left.
+    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        let (Mode::Descending, Some(state), Some(chain), Some(flown)) = (self.mode, self.state, self.chain, self.flown)
+        else {
+            return None;
+        };
+        Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
+    }
+
+    /// Whether something stops a vehicle that goes down.
+    fn jerks(&self) -> bool {
+        self.chain.is_some_and(Chain::sinks) && self.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > JERK)
+    }
+
+    /// Whether it should accelerate downwards and does not, `jerked` before or not.
+    fn is_held_up(&self, jerked: bool) -> bool {
+        let (after_a_jerk, without, measured) = HELD_UP;
+        let falling = if jerked { after_a_jerk } else { without };
+        self.by_imu().is_some_and(|(_, asked, state)| {
+            asked < falling && within(&state.acceleration, measured) && within(&state.state.angular_velocity, STILL.1)
+        })
+    }
+
+    /// Whether the IMU feels what the rotors cannot be the reason of.
+    fn is_unexpected(&self) -> bool {
+        self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED))
+    }
+
+    /// Whether a vehicle that is levelled turns, or is not level.
+    fn turns(&self) -> bool {
+        self.by_imu().is_some_and(|(_, _, EstimatedState { state, .. })| {
+            !within(&state.angular_velocity, TURNING) || up(&state.attitude) < LYING_COSINE
+        })
+    }
+}
+
 impl Watch {
     /// Looks at what the last tick led to.
     pub fn tick(
@@ -86,48 +154,23 @@ impl Watch {
         tracking_error_max: f32,
         inputs: &Inputs,
     ) -> Seen {
-        let now = inputs.now;
+        let Inputs { now, battery, is_late, .. } = *inputs;
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
-        let far =
-            flown.filter(|_| mode.is_guided()).is_some_and(|flown| !within(&flown.position_error, tracking_error_max));
-        let inexact = mode.flies() && chain.is_some_and(|chain| !chain.is_exact());
-        let lying =
-            mode.is_armed() && state.is_some_and(|state| is_still(state) && up(&state.state.attitude) < LYING_COSINE);
-        self.jerked = match (mode, state, flown, chain) {
-            (Mode::Descending, Some(state), Some(flown), Some(chain)) => {
-                self.jerked || chain.sinks() && chain.unexpected(flown, state).z > JERK
-            }
-            _ => false,
-        };
-        let on_ground = match (mode, state, flown, chain) {
-            (Mode::Landing, Some(state), Some(flown), _) => is_still(state) && is_left_behind(state, flown),
-            (Mode::Descending, Some(state), Some(flown), Some(chain)) => {
-                is_held_up(state, chain.asked_acceleration(flown), self.jerked)
-            }
-            _ => false,
-        };
-        let doubtful = match (mode, state, flown, chain) {
-            (Mode::Descending, Some(state), Some(flown), Some(chain)) => {
-                !within(&chain.unexpected(flown, state), UNEXPECTED)
-            }
-            _ => false,
-        };
-        let turning = mode == Mode::Descending
-            && state.is_some_and(|EstimatedState { state, .. }| {
-                state.angular_velocity.norm_squared() > TURNING * TURNING || up(&state.attitude) < LYING_COSINE
-            });
-        let is_standing = mode.flies() && chain.is_some_and(Chain::is_standing);
-        let battery_low = self.low.is_so(inputs.battery == Battery::Low, BATTERY_LASTING, now);
+        let look = Look { mode, state, chain, flown };
+        self.jerked = mode == Mode::Descending && (self.jerked || look.jerks());
+        let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
+        let on_ground = look.is_left_behind() || look.is_held_up(self.jerked);
+        let doubtful = self.doubtful.is_so(look.is_unexpected(), DOUBT_LASTING, now);
+        let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
         Seen {
-            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now),
-            saturated: self.saturated.is_so(inexact, SATURATION_LASTING, now),
-            landed: self.resting.is_so(on_ground, GROUND_LASTING, now) || is_standing,
-            crashed: self.lying.is_so(lying, GROUND_LASTING, now),
-            battery_low: battery_low && !self.low_is_told,
-            battery_critical: self.critical.is_so(inputs.battery == Battery::Critical, BATTERY_LASTING, now),
-            imu_doubtful: self.doubtful.is_so(doubtful, DOUBT_LASTING, now)
-                | self.turning.is_so(turning, TURNING_LASTING, now),
-            overrun: self.late.is_so(inputs.is_late, OVERRUN_LASTING, now),
+            tracking_lost: self.tracking.is_so(look.is_far(tracking_error_max), TRACKING_LASTING, now),
+            saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
+            landed: self.resting.is_so(on_ground, GROUND_LASTING, now) || stands,
+            crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
+            battery_low: self.low.is_so(battery == Battery::Low, BATTERY_LASTING, now) && !self.low_is_told,
+            battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
+            imu_doubtful: doubtful || turning,
+            overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
         }
     }
 
@@ -137,25 +180,12 @@ impl Watch {
     }
 }
 
+fn is_still(state: &EstimatedState) -> bool {
+    let (speed, rate) = STILL;
+    within(&state.state.velocity, speed) && within(&state.state.angular_velocity, rate)
+}
+
 /// Whether a vector is at most so long. One that is made of no numbers is not.
 fn within(vector: &Vector3<f32>, most: f32) -> bool {
     vector.norm_squared() <= most * most
-}
-
-fn is_still(state: &EstimatedState) -> bool {
-    let (speed, rate) = STILL;
-    let state = &state.state;
-    state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate
-}
-
-fn is_left_behind(state: &EstimatedState, flown: &Flown) -> bool {
-    flown.reference.position.z + GONE_ON < state.state.position.z
-}
-
-/// Whether a vehicle that should accelerate upwards by `asked`, m/s^2, and does not, stands on something.
-fn is_held_up(state: &EstimatedState, asked: f32, jerked: bool) -> bool {
-    let (after_a_jerk, without, measured) = HELD_UP;
-    let falling = if jerked { after_a_jerk } else { without };
-    let turns = state.state.angular_velocity.norm_squared() < STILL.1 * STILL.1;
-    turns && asked < falling && state.acceleration.norm_squared() < measured * measured
 }

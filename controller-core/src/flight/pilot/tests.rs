@@ -2,8 +2,9 @@
 
 extern crate std;
 use super::super::example;
+use super::super::reason::field;
 use super::super::rules::REFUSALS_MAX;
-use super::super::{Pose, Reason, Stamped, Velocity};
+use super::super::{Pose, Reason, Request, Stamped, Velocity};
 use super::*;
 use crate::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use nalgebra::{Quaternion, Vector3};

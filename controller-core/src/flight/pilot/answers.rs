@@ -1,0 +1,118 @@
+//! What is granted of what is asked for.
+
+use super::Pilot;
+use crate::allocation::geometry::ROTORS_MIN;
+use crate::flight::chain::Chain;
+use crate::flight::estimate::Estimate;
+use crate::flight::exchange::{Battery, Inputs};
+use crate::flight::permission::{self, Start, require};
+use crate::flight::reason::{Refusal, field};
+use crate::flight::request::Request;
+use crate::flight::rules::{GROUND_STATION_SILENCE_MAX, Mode};
+use crate::flight::watch::Seen;
+use crate::governor::Setpoint;
+
+impl<'m> Pilot<'m> {
+    /// Everything that arming needs.
+    pub(super) fn may_arm(&self, inputs: &Inputs, estimate: &Estimate) -> Result<Start, Refusal> {
+        self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
+        require(!inputs.killed, Refusal::Killed)?;
+        require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
+        permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
+    }
+
+    /// Readies the chain for a flight from here.
+    pub(super) fn begin(&mut self, inputs: &Inputs, estimate: &Estimate) -> Result<(), Refusal> {
+        let start = self.may_arm(inputs, estimate)?;
+        let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
+        chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
+    }
+
+    /// Whether a request is granted. Granting one readies the chain for it.
+    pub(super) fn answer(
+        &mut self,
+        request: Request,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        seen: &Seen,
+    ) -> Result<(), Refusal> {
+        // Whatever is asked for in the tick of a disarm command came before it.
+        require(!inputs.disarm, Refusal::DisarmCommanded)?;
+        match request {
+            Request::Arm => {
+                permission::to_turn_motors(self.mode)?;
+                self.begin(inputs, estimate)
+            }
+            Request::Disarm => require(!self.is_airborne(), Refusal::InTheAir),
+            Request::MotorTest(test) => {
+                permission::to_turn_motors(self.mode)?;
+                require(!inputs.killed, Refusal::Killed)?;
+                permission::to_test(&test, self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
+                self.test = test;
+                Ok(())
+            }
+            Request::TakeOff(height) => self.take_off(height, inputs, estimate),
+            Request::FlySetpoints => {
+                let may = self.mode.may_arm() || self.mode == Mode::Idling || self.mode.is_guided();
+                require(may && self.mode != Mode::Landing, Refusal::NotInTheAir)?;
+                require(!self.mode.is_guided() || self.newest.fresh(inputs.now).is_some(), Refusal::NoSetpoints)?;
+                self.wants_setpoints = true;
+                Ok(())
+            }
+            Request::Hold => {
+                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                self.with_chain(|chain| {
+                    chain.hold();
+                    Ok(())
+                })
+            }
+            Request::GoTo(setpoint) => {
+                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                self.accept(&setpoint)
+            }
+            Request::Land => {
+                let may = self.mode == Mode::Idling || self.mode.flies();
+                require(may, Refusal::NotInTheAir)
+            }
+        }
+    }
+
+    pub(super) fn take_off(
+        &mut self,
+        height: Option<f32>,
+        inputs: &Inputs,
+        estimate: &Estimate,
+    ) -> Result<(), Refusal> {
+        require(self.mode == Mode::Idling, Refusal::NotIdling)?;
+        let height = height.unwrap_or(self.settings.take_off_height);
+        require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
+        require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
+        self.begin(inputs, estimate)?;
+        self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))?;
+        self.rising_to = height + self.chain.as_ref().map_or(0.0, |chain| chain.reference().position.z);
+        Ok(())
+    }
+
+    pub(super) fn with_chain(
+        &mut self,
+        act: impl FnOnce(&mut Chain<'m>) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded)).and_then(act)
+    }
+
+    /// Whether what makes a vehicle land, whoever would like to fly on, is so.
+    pub(super) fn must_land(&self, seen: &Seen, estimate: &Estimate) -> bool {
+        let Seen { battery_critical, tracking_lost, saturated, overrun, .. } = *seen;
+        battery_critical || tracking_lost || saturated || overrun || self.is_outside(estimate)
+    }
+
+    pub(super) fn is_outside(&self, estimate: &Estimate) -> bool {
+        let state = estimate.state.as_ref();
+        self.mode.is_guided() && state.is_some_and(|estimated| !self.fence.contains(&estimated.state.position))
+    }
+
+    pub(super) fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)?;
+        self.with_chain(|chain| chain.accept(setpoint).map_err(Refusal::Setpoint))
+    }
+}

@@ -1,0 +1,97 @@
+//! What the rules need to know in a tick.
+
+use super::Pilot;
+use crate::estimator::Fault;
+use crate::flight::chain::Chain;
+use crate::flight::estimate::Estimate;
+use crate::flight::exchange::Inputs;
+use crate::flight::reason::Refusal;
+use crate::flight::request::Request;
+use crate::flight::rules::{
+    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LEVELLING_MAX, Mode,
+};
+use crate::flight::watch::Seen;
+use crate::measurement::is_fresh;
+
+/// How near the height of its take-off the reference has to be, m, and how slow, m/s.
+const TAKEN_OFF: (f32, f32) = (0.01, 0.01);
+
+impl Pilot<'_> {
+    /// What was asked for and granted.
+    pub(super) fn requested(
+        &mut self,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        answer: Option<Result<(), Refusal>>,
+    ) -> Conditions {
+        let granted = inputs.request.filter(|_| answer == Some(Ok(())));
+        let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
+        let fresh = self.wants_setpoints && self.newest.fresh(inputs.now).is_some();
+        let setpoints = fresh && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
+        Conditions::NONE
+            .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
+            .with(Condition::Killed, inputs.killed)
+            .with(Condition::ArmingPermitted, is(|request| *request == Request::Arm))
+            .with(Condition::MotorTestPermitted, is(|request| matches!(request, Request::MotorTest(_))))
+            .with(Condition::Requested, inputs.request.is_some())
+            .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
+            .with(Condition::HoldRequested, is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
+            .with(Condition::LandRequested, is(|request| *request == Request::Land))
+            .with(Condition::SetpointsRequested, setpoints)
+    }
+
+    /// What happened besides.
+    pub(super) fn happened(
+        &mut self,
+        conditions: Conditions,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        seen: &Seen,
+    ) -> Conditions {
+        let elapsed = inputs.now.saturating_sub(self.since);
+        if elapsed < LEVELLING_MAX {
+            self.poses_lie = matches!(estimate.health.last, Some(Err(_)));
+        }
+        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie);
+        let regained = match (self.mode, &mut self.chain, &estimate.state) {
+            (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
+            _ => false,
+        };
+        let patience = (self.settings.ground_station_patience * 1e6) as u64;
+        conditions
+            .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
+            .with(Condition::Uncertified, self.chain.is_err())
+            .with(Condition::MotorTestOver, elapsed >= self.test.duration)
+            .with(Condition::IdlingOver, elapsed >= IDLING_MAX)
+            .with(Condition::TakenOff, self.has_taken_off())
+            .with(Condition::Landed, seen.landed)
+            .with(Condition::Crashed, seen.crashed)
+            .with(Condition::ImuStale, estimate.state.is_none())
+            .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
+            .with(Condition::ImuDoubtful, seen.imu_doubtful)
+            .with(Condition::PoseRegained, regained)
+            .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
+            .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
+            .with(Condition::GroundStationGone, self.is_silent(inputs, patience))
+            .with(Condition::SetpointsLost, self.newest.has_ended(inputs.now))
+            .with(Condition::BatteryLow, seen.battery_low)
+            .with(Condition::BatteryCritical, seen.battery_critical)
+            .with(Condition::FenceBreached, self.is_outside(estimate))
+            .with(Condition::TrackingLost, seen.tracking_lost)
+            .with(Condition::Saturated, seen.saturated)
+            .with(Condition::Overrun, seen.overrun)
+    }
+
+    pub(super) fn has_taken_off(&self) -> bool {
+        let (near, slow) = TAKEN_OFF;
+        self.chain.as_ref().is_ok_and(|chain| {
+            let reference = chain.reference();
+            (reference.position.z - self.rising_to).abs() < near && reference.velocity.norm_squared() < slow * slow
+        })
+    }
+
+    /// Whether the ground station has been silent for so long, us.
+    pub(super) fn is_silent(&self, inputs: &Inputs, patience: u64) -> bool {
+        !inputs.ground_station.is_some_and(|heard| is_fresh(heard, patience.saturating_sub(1), inputs.now))
+    }
+}
