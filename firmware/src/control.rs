@@ -125,6 +125,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
+            killed: self.shared.killed.get().is_some_and(|killed| killed.value),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
             setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),

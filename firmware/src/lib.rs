@@ -18,6 +18,7 @@
 //! | [`outputs`] | thrusts to motor commands |
 //! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
+//! | [`radio`] | a transmitter in somebody's hands: arming, kill switch, sticks |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`repeat`] | motor commands sent again while they are young |
@@ -51,6 +52,7 @@ pub mod mounting;
 pub mod outputs;
 mod pace;
 pub mod parameters;
+pub mod radio;
 pub mod redundant;
 mod registers;
 pub mod repeat;

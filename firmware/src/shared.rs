@@ -8,6 +8,8 @@
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
+//! | radio | [`Shared::killed`]; [`Shared::sticks`] | control; link | as last heard; 0.5 s |
+//! | radio | [`Shared::ground_station`], [`Shared::setpoint`], [`Shared::requests`] | control | as the link's |
 //! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
 //! | link | [`Shared::origin`] | link, its other half | until another comes |
 //! | status | [`Shared::voltage`] | control, link | 1 s |
@@ -80,6 +82,10 @@ pub struct Shared<M: RawMutex> {
     pub setpoint: Latest<M, Setpoint>,
     /// Requests for control, in the order they came. Put them in with [`Self::request`].
     pub requests: Queue<M, Asked, REQUESTS>,
+    /// Whether the kill switch of a radio was on when it was heard last; so it stays.
+    pub killed: Latest<M, bool>,
+    /// Whether a radio's sticks fly, by its switch.
+    pub sticks: Latest<M, bool>,
     /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
     pub disarm: Flag,
     /// Answers to requests. Put them in with [`Self::answer`].
@@ -121,6 +127,8 @@ impl<M: RawMutex> Shared<M> {
             ground_station: Latest::new(),
             setpoint: Latest::new(),
             requests: Queue::new(),
+            killed: Latest::new(),
+            sticks: Latest::new(),
             disarm: Flag::new(),
             answers: Queue::new(),
             origin: Latest::new(),
@@ -168,12 +176,13 @@ impl<M: RawMutex> Shared<M> {
         self.disarm.raise();
     }
 
-    /// Answers a request, and announces a refusal. An answer that finds no room is dropped: its sender asks again for want of
+    /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its sender asks again for want of
     /// one.
-    pub fn answer(&self, command: MavCmd, result: Result<(), Refusal>) {
+    pub fn answer(&self, command: Option<MavCmd>, result: Result<(), Refusal>) {
         if let Err(refusal) = result {
             self.announce(Event::Refused(refusal));
         }
+        let Some(command) = command else { return };
         let result = if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED };
         let _ = self.answers.put(Reply::Command { command, result });
         self.outgoing.signal(());

@@ -36,6 +36,9 @@ const SPOOL_TICKS: u32 = 100;
 /// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
 const DRIFT: f32 = 0.05;
 
+/// The speed across at which a vehicle may go down, m/s.
+const AT_REST: f32 = 0.05;
+
 /// The least speed of a descent by the IMU alone, m/s.
 const DESCENT: f32 = 0.7;
 
@@ -208,8 +211,12 @@ impl<'m> Chain<'m> {
         self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep })
     }
 
-    /// Goes down at `speed`, m/s; to be said again each tick.
-    pub fn sink(&mut self, speed: f32) {
+    /// Comes to rest across, then goes down at `speed`, m/s; to be said again each tick. Both at once would brake as slowly as the
+    /// vertical bounds have it.
+    pub fn come_down(&mut self, speed: f32) {
+        if self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
+            return self.governor.stop();
+        }
         let motion = Motion::Velocity(Vector3::new(0.0, 0.0, -speed));
         // A number within its range, as the settings have it; refused, the reference stops.
         let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });

@@ -216,7 +216,7 @@ impl<'m> Pilot<'m> {
             chain.fly_level(estimated, now.saturating_sub(self.since) >= LEVELLING_MAX)
         } else {
             if self.mode == Mode::Landing {
-                chain.sink(self.settings.landing_speed);
+                chain.come_down(self.settings.landing_speed);
             }
             chain.fly(&estimated.state)
         };

@@ -125,6 +125,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         transmitter,
         simulator_receiver,
         simulator_transmitter,
+        radio: None,
         storage: ParameterFlash::new(p.FLASH, pac::IWDG),
         restart,
     }

@@ -26,6 +26,7 @@ use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, TIM1, USART1, USART2,
+    USART6,
 };
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
 use embassy_stm32::spi::Spi;
@@ -49,6 +50,7 @@ bind_interrupts!(
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         USART1 => usart::InterruptHandler<USART1>;
         USART2 => usart::BufferedInterruptHandler<USART2>;
+        USART6 => usart::BufferedInterruptHandler<USART6>;
     }
 );
 
@@ -84,7 +86,7 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
-/// The second time, and where a clock makes no 921,600 baud.
+/// The second time, and where a clock makes no 921,600 or 420,000 baud.
 #[must_use]
 pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
@@ -119,6 +121,9 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let uart = BufferedUart::new(p.USART2, p.PA3, p.PA2, to, from, Interrupts, link::config());
     let uart = uart.expect("USART2's clock makes no 921,600 baud");
     let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
+    let (to, from) = link::radio_rings();
+    let uart = BufferedUart::new(p.USART6, p.PC7, p.PC6, to, from, Interrupts, link::radio_config());
+    let (radio, _) = link::simulator_halves(uart.expect("USART6's clock makes no 420,000 baud"));
 
     Board {
         imu,
@@ -130,6 +135,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         transmitter,
         simulator_receiver,
         simulator_transmitter,
+        radio: Some(radio),
         storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
         restart,
     }

@@ -17,6 +17,7 @@ use super::unknown::command_of;
 use crate::frames;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
+use crate::radio::SILENCE as RADIO_SILENCE;
 use crate::shared::{Asked, Event, Ping, Procedure, Reply, Severity, Shared, Traffic};
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
@@ -206,6 +207,12 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
+        let sticks = self.shared.sticks.get();
+        if sticks.is_some_and(|sticks| sticks.value && sticks.age(frame.time) <= RADIO_SILENCE) {
+            self.refused();
+            self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
+            return;
+        }
         let state = self.shared.report.get().and_then(|report| report.value.state);
         match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
@@ -258,7 +265,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
-                let asked = self.shared.request(Asked { request, command: call.command });
+                let asked = self.shared.request(Asked { request, command: Some(call.command) });
                 return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }
             Action::ForceDisarm => self.shared.request_disarm(),

@@ -76,7 +76,8 @@ impl Here {
     }
 
     /// Ahead, left, up in the law's world.
-    fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
+    #[must_use]
+    pub fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
         let (cosine, sine) = (self.ahead.x, self.ahead.y);
         Vector3::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z)
     }

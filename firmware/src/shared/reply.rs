@@ -14,8 +14,8 @@ pub type Ping = mavlink::dialects::common::PING_DATA;
 pub struct Asked {
     /// What for.
     pub request: Request,
-    /// The command it came by.
-    pub command: MavCmd,
+    /// The command it came by, if it was one.
+    pub command: Option<MavCmd>,
 }
 
 /// What is to be calibrated of the inertial sensors: see [`crate::imu`].

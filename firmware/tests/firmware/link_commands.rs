@@ -57,7 +57,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
         let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, command: ARM_DISARM });
+        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM) });
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }

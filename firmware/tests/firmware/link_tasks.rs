@@ -185,8 +185,8 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    shared.answer(command, Ok(()));
-    shared.answer(command, Err(Refusal::PosesUnsettled));
+    shared.answer(Some(command), Ok(()));
+    shared.answer(Some(command), Err(Refusal::PosesUnsettled));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
     shared.replies.put(Reply::Command { command: other, result }).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
@@ -207,7 +207,7 @@ fn commands_are_answered_with_number_and_result() {
 fn what_is_said_to_an_idle_line_goes_out_at_once() {
     type Say = fn(&Local);
     let say: [(Say, u32); 3] = [
-        (|shared| shared.answer(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared| shared.answer(Some(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM), Ok(())), COMMAND_ACK_DATA::ID),
         (|shared| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
         (|shared| shared.announce(Event::new(Severity::Information, "now")), STATUSTEXT_DATA::ID),
     ];

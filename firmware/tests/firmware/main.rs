@@ -20,6 +20,7 @@ mod link_setpoints;
 mod link_tasks;
 mod link_telemetry;
 mod parameters;
+mod radio;
 mod repeat;
 mod status;
 mod support;

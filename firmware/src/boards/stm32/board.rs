@@ -1,7 +1,7 @@
 //! What a board hands to its tasks.
 
 use super::light::Lamp;
-use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::restart::Cause;
 use super::storage::ParameterFlash;
 
@@ -25,6 +25,8 @@ pub struct Board<Imu, Motors, Watchdog, Battery> {
     pub simulator_receiver: SimulatorReceiver,
     /// What a simulator receives.
     pub simulator_transmitter: SimulatorTransmitter,
+    /// Bytes from a radio's receiver, where the board has a line for it.
+    pub radio: Option<RadioReceiver>,
     /// Where parameters live.
     pub storage: ParameterFlash,
     /// Why the chip started.

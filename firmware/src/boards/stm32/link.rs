@@ -19,6 +19,9 @@ pub type Transmitter = UartTx<'static, Async>;
 /// Bytes that arrive from a simulator.
 pub type SimulatorReceiver = BufferedUartRx<'static>;
 
+/// Bytes that arrive from a radio.
+pub type RadioReceiver = BufferedUartRx<'static>;
+
 /// Bytes that leave for a simulator.
 pub type SimulatorTransmitter = BufferedUartTx<'static>;
 
@@ -33,6 +36,24 @@ pub fn simulator_rings() -> (&'static mut [u8], &'static mut [u8]) {
     static TO: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
     static FROM: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
     (TO.init([0; SIMULATOR_RING]), FROM.init([0; SIMULATOR_RING]))
+}
+
+/// Bytes from a radio: 12 ms of a full line. The other half is never used.
+const RADIO_RING: usize = 512;
+
+/// Room for those bytes, in the order (to, from). Once.
+pub fn radio_rings() -> (&'static mut [u8], &'static mut [u8]) {
+    static TO: StaticCell<[u8; 16]> = StaticCell::new();
+    static FROM: StaticCell<[u8; RADIO_RING]> = StaticCell::new();
+    (TO.init([0; 16]), FROM.init([0; RADIO_RING]))
+}
+
+/// 420,000 baud, as receivers of CRSF speak.
+#[must_use]
+pub fn radio_config() -> Config {
+    let mut config = config();
+    config.baudrate = 420_000;
+    config
 }
 
 /// The simulator's two halves, for two tasks.

@@ -5,7 +5,7 @@
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR};
 use super::light::Lamp;
-use super::link::{Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::storage::ParameterFlash;
 use crate::boards::chosen::{
     self, BoardBattery, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
@@ -15,7 +15,7 @@ use crate::hil::{self, SelectedMotors};
 use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
 use crate::repeat::{self, Repeater};
-use crate::{boot, imu, link, status};
+use crate::{boot, imu, link, radio, status};
 use controller_core::flight::Pilot;
 use embassy_executor::Executor;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -56,6 +56,9 @@ pub fn run() -> ! {
         spawner.spawn(transmit(shared, board.transmitter).unwrap());
         spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
         spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
+        if let Some(radio) = board.radio {
+            spawner.spawn(listen(shared, radio).unwrap());
+        }
         spawner.spawn(show(shared, board.light, board.battery).unwrap());
         spawner.spawn(keep(shared, parameters).unwrap());
     })
@@ -103,6 +106,11 @@ async fn simulated_sensors(shared: &'static Shared, hil: &'static Hil, line: Sim
 #[embassy_executor::task]
 async fn simulated_motors(shared: &'static Shared, hil: &'static Hil, line: SimulatorTransmitter) {
     hil::transmit(hil, line, &SystemClock, shared).await;
+}
+
+#[embassy_executor::task]
+async fn listen(shared: &'static Shared, line: RadioReceiver) {
+    radio::receive(line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]

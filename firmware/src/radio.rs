@@ -1,0 +1,187 @@
+//! A radio transmitter in somebody's hands: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000 baud).
+//!
+//! | channel | what | low | middle | high |
+//! |---|---|---|---|---|
+//! | 1, 2, 4 | sticks: right, forward, yaw to the right | | rest | |
+//! | 3 | stick: up | down | rest | up |
+//! | 5 | arm | disarm, on the ground | | arm |
+//! | 6 | who flies | whoever is on the link | hold | the sticks |
+//! | 7 | kill switch | | | every motor stops |
+//!
+//! - A switch acts when it is moved, not where it is found: a transmitter that is turned on arms nothing. The kill switch alone acts as
+//!   it stands, and stays as it was last heard when the receiver falls silent.
+//! - The sticks ask for velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as anybody's setpoints;
+//!   what comes from the link is then refused. On the ground they begin a flight when the stick is pushed up.
+//! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`] no longer
+//!   is; its setpoints cease, and the vehicle holds, as for any other.
+
+pub mod sticks;
+
+use crate::hardware::Clock;
+use crate::shared::{Asked, Event, Severity, Shared};
+use controller_core::flight::{Mode, Request};
+use embassy_futures::select::{Either, select};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use embedded_io_async::Read;
+use sticks::Sticks;
+use uf_crsf::CrsfParser;
+use uf_crsf::packets::Packet;
+
+/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not hear its transmitter.
+pub const SILENCE: u64 = 500_000;
+
+/// The longest wait for bytes, us, and the wait after a line that failed.
+const WAIT: u64 = 100_000;
+const RECOVERY: u64 = 10_000;
+
+/// Bytes read at once.
+const CHUNK: usize = 64;
+
+/// Channel values at -1, 0 and 1.
+const LEAST: f32 = 172.0;
+const CENTRE: f32 = 992.0;
+const MOST: f32 = 1811.0;
+
+/// Where a switch stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Switch {
+    Low,
+    Middle,
+    High,
+}
+
+impl Switch {
+    fn at(value: f32) -> Self {
+        match value {
+            value if value < -0.5 => Self::Low,
+            value if value > 0.5 => Self::High,
+            _ => Self::Middle,
+        }
+    }
+}
+
+/// What a frame of channels says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Frame {
+    sticks: Sticks,
+    arm: Switch,
+    flies: Switch,
+    killed: bool,
+}
+
+impl Frame {
+    fn of(channels: &[u16; 16]) -> Self {
+        let [right, forward, up, yaw, arm, flies, kill, ..] = channels.map(scaled);
+        let sticks = Sticks { forward, right, up, yaw };
+        Self { sticks, arm: Switch::at(arm), flies: Switch::at(flies), killed: Switch::at(kill) == Switch::High }
+    }
+}
+
+/// -1 to 1.
+fn scaled(value: u16) -> f32 {
+    let from_centre = f32::from(value) - CENTRE;
+    let most = if from_centre < 0.0 { CENTRE - LEAST } else { MOST - CENTRE };
+    (from_centre / most).clamp(-1.0, 1.0)
+}
+
+/// Receives for ever.
+pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    let mut parser = CrsfParser::new();
+    let mut radio = Radio::new(shared);
+    let mut chunk = [0; CHUNK];
+    loop {
+        let wake = clock.now().saturating_add(WAIT);
+        match select(line.read(&mut chunk), clock.until(wake)).await {
+            Either::First(Ok(count @ 1..)) => {
+                let now = clock.now();
+                let mut bytes = chunk.get(..count).unwrap_or(&chunk);
+                while let Some(packet) = parser.next_packet(&mut bytes) {
+                    if let Ok(Packet::RCChannels(channels)) = packet {
+                        radio.take(&channels.0, now);
+                    }
+                }
+            }
+            Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
+            Either::Second(()) => {}
+        }
+        radio.listen(clock.now());
+    }
+}
+
+/// What the transmitter said last.
+pub struct Radio<'a, M: RawMutex> {
+    shared: &'a Shared<M>,
+    last: Option<(Frame, u64)>,
+}
+
+impl<'a, M: RawMutex> Radio<'a, M> {
+    /// Nothing heard yet.
+    #[must_use]
+    pub fn new(shared: &'a Shared<M>) -> Self {
+        Self { shared, last: None }
+    }
+
+    /// Acts on channels that came at `now`, us.
+    pub fn take(&mut self, channels: &[u16; 16], now: u64) {
+        let frame = Frame::of(channels);
+        self.shared.ground_station.put((), now);
+        self.shared.killed.put(frame.killed, now);
+        self.shared.sticks.put(frame.flies == Switch::High, now);
+        // Switches act when they are moved while somebody is heard.
+        if let Some((before, _)) = self.last.replace((frame, now)) {
+            self.moved(&before, &frame);
+        } else {
+            self.shared.announce(Event::new(Severity::Information, "Radio heard"));
+        }
+        if frame.flies == Switch::High {
+            self.steer(&frame.sticks, now);
+        }
+    }
+
+    /// Notices silence.
+    pub fn listen(&mut self, now: u64) {
+        if self.last.is_some_and(|(_, heard)| now.saturating_sub(heard) > SILENCE) {
+            self.last = None;
+            self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
+        }
+    }
+
+    fn moved(&self, before: &Frame, frame: &Frame) {
+        if frame.arm != before.arm {
+            match frame.arm {
+                Switch::High => self.ask(Request::Arm),
+                Switch::Low => self.ask(Request::Disarm),
+                Switch::Middle => {}
+            }
+        }
+        if frame.flies != before.flies {
+            match frame.flies {
+                Switch::Middle => self.ask(Request::Hold),
+                Switch::Low | Switch::High => {}
+            }
+        }
+    }
+
+    /// Puts down what the sticks ask for. On the ground only a stick that is pushed up does.
+    fn steer(&self, sticks: &Sticks, now: u64) {
+        let Some(report) = self.shared.report.get().map(|report| report.value) else { return };
+        let begins = report.mode == Mode::Idling && sticks.begin();
+        if !(report.is_airborne || begins || report.mode == Mode::Flying) {
+            return;
+        }
+        if let Some(setpoint) = report.state.as_ref().and_then(|state| sticks.setpoint(state)) {
+            self.shared.setpoint.put(setpoint, now);
+        }
+        if begins || matches!(report.mode, Mode::Holding | Mode::TakingOff) && !sticks.rest() {
+            self.ask(Request::FlySetpoints);
+        }
+        if report.mode == Mode::Flying && sticks.land() {
+            self.ask(Request::Land);
+        }
+    }
+
+    fn ask(&self, request: Request) {
+        // Where there is no room, the next frame asks again, or its pilot does.
+        let _ = self.shared.request(Asked { request, command: None });
+    }
+}

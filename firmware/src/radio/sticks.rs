@@ -1,0 +1,69 @@
+//! What sticks ask for: a velocity ahead, to the right and up, and a rate of turn, as a setpoint for the governor.
+//!
+//! Within [`DEAD`] of their rest they ask for nothing; from there on in proportion, so that nothing jumps.
+
+use crate::link::setpoint::Here;
+use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::state::State;
+use nalgebra::Vector3;
+
+/// The part of its way that a stick may be from its rest and still be there.
+const DEAD: f32 = 0.06;
+
+/// The greatest speeds that sticks ask for, m/s, across and up or down; and the greatest rate of turn, rad/s.
+const ACROSS: f32 = 3.0;
+const VERTICAL: f32 = 1.0;
+const TURNING: f32 = 1.0;
+
+/// How far up a stick begins a flight, and how far down it asks to land.
+const BEGINS: f32 = 0.3;
+const LANDS: f32 = -0.95;
+
+/// Sticks, each from -1 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sticks {
+    /// Pushed forward.
+    pub forward: f32,
+    /// Pushed to the right.
+    pub right: f32,
+    /// Pushed up.
+    pub up: f32,
+    /// Turned to the right.
+    pub yaw: f32,
+}
+
+impl Sticks {
+    /// Whether they ask for nothing.
+    #[must_use]
+    pub fn rest(&self) -> bool {
+        [self.forward, self.right, self.up, self.yaw].iter().all(|stick| live(*stick) == 0.0)
+    }
+
+    /// Whether they begin a flight.
+    #[must_use]
+    pub fn begin(&self) -> bool {
+        self.up > BEGINS
+    }
+
+    /// Whether they ask to land: all the way down.
+    #[must_use]
+    pub fn land(&self) -> bool {
+        self.up < LANDS
+    }
+
+    /// What they ask of a vehicle in this state; none where it points straight up or down.
+    #[must_use]
+    pub fn setpoint(&self, state: &State) -> Option<Setpoint> {
+        // Ahead, left, up.
+        let velocity = Vector3::new(live(self.forward), -live(self.right), 0.0) * ACROSS;
+        let velocity = Here::of(state)?.turned(&velocity) + Vector3::z() * (live(self.up) * VERTICAL);
+        // To the right is clockwise from above.
+        Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(-live(self.yaw) * TURNING) })
+    }
+}
+
+/// A stick's way beyond its rest, -1 to 1.
+fn live(stick: f32) -> f32 {
+    let beyond = (stick.abs() - DEAD).max(0.0) / (1.0 - DEAD);
+    if stick < 0.0 { -beyond } else { beyond }
+}

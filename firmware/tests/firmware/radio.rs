@@ -1,0 +1,188 @@
+//! A radio's frames in, bytes as its receiver sends them: what switches and sticks do, and what silence does.
+
+use crate::support::Simulated;
+use crate::support::line::{Delivery, Incoming, Line};
+use crate::support::receiver::{Fed, Local, texts};
+use controller_core::flight::{Mode, Request};
+use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::state::State;
+use core::f32::consts::FRAC_PI_2;
+use firmware::radio::{Radio, SILENCE, receive};
+use firmware::shared::Report;
+use mavlink::dialects::common::{MavFrame, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Channel values at the ends and in the middle.
+const LOW: u16 = 172;
+const MIDDLE: u16 = 992;
+const HIGH: u16 = 1811;
+
+/// Sticks at rest; armed, flown by and killed as switches say.
+fn channels(arm: u16, flies: u16, kill: u16) -> [u16; 16] {
+    let mut channels = [MIDDLE; 16];
+    channels[4..7].copy_from_slice(&[arm, flies, kill]);
+    channels
+}
+
+const AT_REST: [u16; 16] = {
+    let mut channels = [MIDDLE; 16];
+    (channels[4], channels[5], channels[6]) = (LOW, LOW, LOW);
+    channels
+};
+
+/// The frame that a receiver makes of channels: eleven bits each, least significant first, and DVB-S2's checksum.
+fn frame(channels: &[u16; 16]) -> Vec<u8> {
+    let mut bits = 0_u128;
+    let mut payload = vec![];
+    let mut held = 0;
+    for channel in channels {
+        bits |= u128::from(*channel) << held;
+        held += 11;
+        while held >= 8 {
+            payload.push(bits as u8);
+            bits >>= 8;
+            held -= 8;
+        }
+    }
+    let mut frame = vec![0xC8, payload.len() as u8 + 2, 0x16];
+    frame.extend(payload);
+    let checksum = frame[2..].iter().fold(0_u8, |checksum, byte| {
+        (0..8).fold(checksum ^ byte, |crc, _| if crc & 0x80 == 0 { crc << 1 } else { crc << 1 ^ 0xD5 })
+    });
+    frame.push(checksum);
+    frame
+}
+
+fn requests(shared: &Local) -> Vec<Request> {
+    std::iter::from_fn(|| shared.requests.take()).map(|asked| asked.request).collect()
+}
+
+/// A vehicle in this mode, pointing to the left of world x.
+fn report(shared: &Local, mode: Mode, is_airborne: bool) {
+    let attitude = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2).into_inner();
+    let zero = Vector3::zeros();
+    let state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
+    shared.report.put(Report { mode, is_airborne, state: Some(state), ..Report::NONE }, 0);
+}
+
+#[test]
+fn bytes_in_pieces_with_noise_between_them_become_switches() {
+    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
+    let mut bytes = vec![0x55, 0xC8, 0xFF];
+    for kill in [LOW, LOW, HIGH] {
+        bytes.extend(frame(&channels(LOW, LOW, kill)));
+        bytes.extend([0x00, 0x16]);
+    }
+    line.borrow_mut().extend(bytes.chunks(7).map(|piece| Delivery::Bytes(piece.to_vec())));
+    clock.run(300_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    assert!(shared.killed.get().unwrap().value);
+    assert!(shared.ground_station.get().is_some());
+    // One with a wrong checksum is none.
+    let (shared, line) = (Local::new(), Line::default());
+    let mut wrong = frame(&channels(LOW, LOW, HIGH));
+    *wrong.last_mut().unwrap() ^= 1;
+    line.borrow_mut().push_back(Delivery::Bytes(wrong));
+    Simulated::default().run(300_000, receive(Incoming(&line), &Simulated::default(), &shared), |_| ());
+    assert!(shared.killed.get().is_none());
+}
+
+#[test]
+fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
+    let shared = Local::new();
+    let mut radio = Radio::new(&shared);
+    // Turned on with the arm switch up.
+    radio.take(&channels(HIGH, LOW, LOW), 0);
+    radio.take(&channels(HIGH, LOW, LOW), 20_000);
+    assert!(requests(&shared).is_empty());
+    radio.take(&channels(LOW, LOW, LOW), 40_000);
+    assert_eq!(requests(&shared), [Request::Disarm]);
+    radio.take(&channels(HIGH, LOW, LOW), 60_000);
+    assert_eq!(requests(&shared), [Request::Arm]);
+    radio.take(&channels(HIGH, MIDDLE, LOW), 80_000);
+    assert_eq!(requests(&shared), [Request::Hold]);
+    // Silent for a while, it is as if it were turned on again.
+    radio.listen(80_001 + SILENCE);
+    radio.take(&channels(LOW, LOW, LOW), 1_000_000);
+    assert!(requests(&shared).is_empty());
+    assert_eq!(texts(&shared), ["Radio heard", "Radio lost", "Radio heard"]);
+}
+
+#[test]
+fn the_kill_switch_stays_as_it_was_heard() {
+    let shared = Local::new();
+    let mut radio = Radio::new(&shared);
+    radio.take(&channels(LOW, LOW, HIGH), 0);
+    radio.listen(10_000_000);
+    assert!(shared.killed.get().unwrap().value);
+    radio.take(&AT_REST, 20_000_000);
+    assert!(!shared.killed.get().unwrap().value);
+}
+
+/// What sticks (right, forward, up, yaw; -1 to 1) put down as a setpoint in a mode, and what they ask for.
+fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>, Vec<Request>) {
+    let shared = Local::new();
+    report(&shared, mode, is_airborne);
+    let mut radio = Radio::new(&shared);
+    let mut channels = channels(HIGH, HIGH, LOW);
+    for (channel, stick) in channels.iter_mut().zip(sticks) {
+        *channel = (f32::from(MIDDLE) + stick * 819.0).round() as u16;
+    }
+    radio.take(&channels, 5);
+    (shared.setpoint.get().map(|setpoint| setpoint.value), requests(&shared))
+}
+
+#[test]
+fn sticks_ask_for_velocities_from_where_the_vehicle_points() {
+    let (setpoint, requests) = steered(Mode::Flying, true, [0.0, 1.0, 0.0, 0.0]);
+    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(rate) }) = setpoint else { panic!() };
+    // Ahead is world y.
+    assert!((velocity - Vector3::new(0.0, 3.0, 0.0)).norm() < 0.01 && rate == 0.0, "{velocity}");
+    assert!(requests.is_empty());
+    let (setpoint, _) = steered(Mode::Flying, true, [1.0, 0.0, -0.5, 1.0]);
+    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(rate) }) = setpoint else { panic!() };
+    // To the right of it is world x; to the right is clockwise from above.
+    assert!((velocity.x - 3.0).abs() < 0.01 && velocity.y.abs() < 0.01 && velocity.z < -0.4, "{velocity}");
+    assert!((rate + 1.0).abs() < 0.01, "{rate}");
+    // A hand that trembles asks for nothing.
+    let (setpoint, _) = steered(Mode::Flying, true, [0.05, -0.05, 0.05, 0.05]);
+    let zero = Setpoint { motion: Motion::Velocity(Vector3::zeros()), turn: Turn::Rate(0.0) };
+    assert_eq!(setpoint, Some(zero));
+}
+
+#[test]
+fn on_the_ground_only_a_stick_that_is_pushed_up_begins_a_flight() {
+    for mode in [Mode::Checks, Mode::Ready, Mode::Stopped, Mode::Locked] {
+        assert_eq!(steered(mode, false, [0.0, 0.0, 1.0, 0.0]), (None, vec![]), "{mode:?}");
+    }
+    assert_eq!(steered(Mode::Idling, false, [0.0; 4]), (None, vec![]));
+    let (setpoint, requests) = steered(Mode::Idling, false, [0.0, 0.0, 0.6, 0.0]);
+    assert!(setpoint.is_some());
+    assert_eq!(requests, [Request::FlySetpoints]);
+}
+
+#[test]
+fn in_the_air_sticks_take_over_when_they_are_moved_and_land_when_all_the_way_down() {
+    assert!(steered(Mode::Holding, true, [0.0; 4]).1.is_empty());
+    assert_eq!(steered(Mode::Holding, true, [0.0, 0.4, 0.0, 0.0]).1, [Request::FlySetpoints]);
+    assert_eq!(steered(Mode::Flying, true, [0.0, 0.0, -1.0, 0.0]).1, [Request::Land]);
+    // What lands is left to land.
+    assert!(steered(Mode::Landing, true, [0.0, 0.4, 0.0, 0.0]).1.is_empty());
+}
+
+#[test]
+fn while_the_sticks_fly_nobody_else_does() {
+    let shared = Local::new();
+    Radio::new(&shared).take(&channels(HIGH, HIGH, LOW), 0);
+    let target = SET_POSITION_TARGET_LOCAL_NED_DATA {
+        type_mask: PositionTargetTypemask::from_bits_retain(0b1101_1111_1000),
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        ..Default::default()
+    };
+    let mut fed = Fed::new(&shared);
+    fed.message(&target, 100_000);
+    assert!(shared.setpoint.get().is_none());
+    assert!(texts(&shared).contains(&"Setpoint refused: the sticks fly".to_owned()));
+    // Silent, it flies no more.
+    fed.message(&target, 2_000_000);
+    assert!(shared.setpoint.get().is_some());
+}
