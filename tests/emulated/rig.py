@@ -33,6 +33,10 @@ TICK = 0.01
 # The hardest touchdown that any way down may end with, m/s.
 TOUCHDOWN_MAX = 1.2
 
+# The longest that motors may turn on the ground after it, s: as long as it must look like the ground, and a reference that is
+# brought below it.
+GROUND_FOUND_MAX = 1.5
+
 # What flies: the files that .ci/emulated_flight has just built.
 SIMULATOR = pathlib.Path(os.environ["SIMULATOR"])
 IMAGE = pathlib.Path(os.environ["IMAGE"])
@@ -151,6 +155,7 @@ class Rig:
         off = min(row["t"] for row in self.rows if row["t"] > time and row["armed"] == 0)
         print(f"    touched down at {speed:.3f} m/s, leaning {lean:.1f} degrees; motors off {off - time:.2f} s later")
         assert speed < TOUCHDOWN_MAX and lean < 10.0, self.summary
+        assert off - time < GROUND_FOUND_MAX, off - time
         last = self.rows[-1]
         assert last["armed"] == 0 and last["thrust"] < 0.05 and abs(last["pz"]) < 0.01, last
         assert all(row["armed"] == 0 for row in self.rows if row["t"] >= off)
