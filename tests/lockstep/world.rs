@@ -54,7 +54,7 @@ struct Body {
     left: f64,
     /// What the accelerometer says, m/s^2, body.
     force: Vector3<f64>,
-    /// How fast it last came down on the ground, m/s.
+    /// How fast it came down on the ground, m/s, when it was fastest.
     touchdown: Option<f64>,
 }
 
@@ -140,7 +140,7 @@ impl World {
         self.0.voltage.set(Some(voltage));
     }
 
-    /// How fast it last came down on the ground, m/s.
+    /// How fast it came down on the ground, m/s, when it was fastest: what lifts its weight nearly all hops.
     pub fn touchdown(&self) -> Option<f64> {
         self.0.body.borrow().touchdown
     }
@@ -186,7 +186,7 @@ impl Body {
         let after = self.plant.state();
         if after.position.z <= 0.0 && after.velocity.z <= 0.0 {
             if before.position.z > 0.0 {
-                self.touchdown = Some(-after.velocity.z);
+                self.touchdown = Some(self.touchdown.unwrap_or(0.0).max(-after.velocity.z));
             }
             let position = Vector3::new(before.position.x, before.position.y, 0.0);
             let still = Vector3::zeros();
