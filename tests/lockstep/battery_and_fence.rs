@@ -109,10 +109,10 @@ fn a_velocity_that_leads_out_of_the_fence_ends_in_a_landing() {
         let (end, begin) = (flight.now(), flight.world.pose().position);
         assert!(begin.xy().norm() > fence.0 || begin.z > fence.1, "{begin}");
         flight.until("Outside the fence: landing", 0.1);
-        check_landed(&mut flight, 15.0);
+        check_landed(&mut flight, 25.0);
         // Braking and sinking are one change of velocity, along one direction: that takes longer than to brake alone.
         let (gone_on, braking) = ((flight.world.pose().position - begin).xy().norm(), braking_distance(velocity, end));
         println!("{gone_on:.2} m behind the fence, by holding {braking:.2} m");
-        assert!(gone_on < 2.0 * braking, "{gone_on} m, by holding {braking} m");
+        assert!(gone_on < 2.0 * braking + 0.01, "{gone_on} m, by holding {braking} m");
     }
 }
