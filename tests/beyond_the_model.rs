@@ -5,7 +5,9 @@ use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::controller::Estimates;
-use controller_core::flight::{Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use controller_core::flight::{
+    FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
+};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use host_sim::course::Course;
 use host_sim::flight::Flight;
@@ -91,6 +93,9 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
 /// The tick of arming: the estimate takes a second and a half to prove itself.
 const ARMED: u64 = 200;
 
+/// When it is told to fly.
+const FLOWN: u64 = ARMED + 1;
+
 /// The tick in which something lifts the vehicle off.
 const LIFTED: u64 = 700;
 
@@ -129,11 +134,15 @@ fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
             increments: &[increment],
             poses: &[Stamped { value: PoseMeasurement::new(&pose), time: now }],
             ground_station: Some(now),
-            request: (tick == ARMED).then_some(Request::Arm),
-            setpoint: (tick == ARMED + 1).then_some(setpoint),
+            request: match tick {
+                ARMED => Some(Request::Arm),
+                FLOWN => Some(Request::FlySetpoints),
+                _ => None,
+            },
+            setpoint: (tick == FLOWN).then_some(setpoint),
             ..Inputs::default()
         });
-        if tick < ARMED {
+        if tick < FLOWN {
             continue;
         }
         let (Some(Ok(flown)), Output::Thrusts(thrusts)) = (outcome.flown, outcome.output) else { panic!("not flown") };
@@ -148,7 +157,7 @@ fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
-    let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), estimator, memory);
+    let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory);
     let standing = asked_of_the_rotors(&mut pilot, 1, LIFTED);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
     // Twelve centimetres higher what holds it up is taken for thrust.

@@ -11,18 +11,18 @@ import sys
 
 from printed import as_printed
 from rig import NOISY, TICK, Rig
+from station import HOLDING
 
 START = (1.0, 0.0, 0.0)
 HOVER = (1.0, 0.0, 1.5)
 
-# What the flight rules promise, s; controller-core/src/flight/rules.rs.
+# What the flight rules promise, s; controller-core/src/flight/rules.rs, and the parameter GCS_WAIT.
 COASTING_MAX = 1.0
 LEVELLING_MAX = 1.0
 SILENCE_MAX = 2.5
+SILENCE_LANDS = 10.0
 
-FLYING, HOLDING = 3, 4
-
-# With noise, m: how well a hover is held, and how far telemetry is from the truth. Measured: 3.2 mm and 1.3 mm on both machines.
+# With noise, m: how well a hover is held, and how far telemetry is from the truth. Measured: 2.6 mm and 1.2 mm on both machines.
 NOISY_HOVER = 0.01
 NOISY_ERROR = 0.005
 
@@ -32,21 +32,14 @@ def take_off(station, believed_within=1e-3):
     assert station.distance(START) < believed_within, station.position
     assert not station.armed
     station.wait(1.0)
-    station.command_arm(True)
-    print(f"    hover reached in {station.go(HOVER, 0.05, 20.0):.2f} s")
+    station.arm()
+    print(f"    taken off in {station.take_off(HOVER[2], 20.0):.2f} s")
+    assert station.distance(HOVER) < 0.05, station.position
     station.wait(3.0)
 
 
-def land(station):
-    station.go((station.target[0], station.target[1], 0.0), 0.05, 20.0)
-    station.wait(2.0)
-    station.target = None
-    station.command_arm(False)
-    station.wait(0.5)
-
-
 def flight(machine):
-    """Boot, arm, take position, hover, a step of 1 m, land, disarm: on sensors at 1 kHz with noise, and late poses."""
+    """Boot, arm, take off, hover, a step of 1 m by setpoints, land, disarmed: on sensors at 1 kHz with noise, and late poses."""
     with Rig(machine, sensors=NOISY) as rig:
         station = rig.station
         # Aligned on late poses of 1 mm of noise each: its filter is better than any of them, and has not converged.
@@ -56,15 +49,16 @@ def flight(machine):
         end = station.now
         assert worst <= NOISY_HOVER, worst
         print(f"    hover held within {1e3 * worst:.1f} mm for 5 s, by telemetry")
+        station.disarm_in_the_air()
         there = (HOVER[0], HOVER[1] + 1.0, HOVER[2])
         print(f"    1 m step within 0.1 m in {station.go(there, 0.1, 5.0):.2f} s")
         station.wait(3.0)
         assert station.worst_distance(there, 3.0) <= NOISY_HOVER
-        land(station)
+        print(f"    landed and disarmed in {station.land(15.0):.2f} s")
+        station.wait(0.5)
         rig.land()
         rig.check_pace()
-        assert rig.rows[-1]["armed"] == 0 and rig.rows[-1]["thrust"] < 0.05
-        assert abs(rig.rows[-1]["pz"]) < 0.01
+        rig.check_landed()
         # The simulator's own record: no telemetry in between, and no noise.
         truly = max(math.dist(place, HOVER) for _, place in rig.truth(begin, end))
         print(f"    truly within {1e3 * truly:.1f} mm meanwhile")
@@ -77,7 +71,7 @@ def flight(machine):
 
 
 def vanishing_client(machine):
-    """A ground station that says nothing more, in the middle of a manoeuvre: the vehicle holds, and obeys again."""
+    """A ground station that says nothing more, in the middle of a manoeuvre: the vehicle holds, obeys again, and lands in the end."""
     with Rig(machine) as rig:
         station = rig.station
         take_off(station)
@@ -90,46 +84,56 @@ def vanishing_client(machine):
         print(f"    holding position {after:.2f} s after the last heartbeat")
         # Both times are those of the telemetry that came last: up to two intervals and this machine's delays old.
         assert abs(after - SILENCE_MAX) <= 0.2, after
-        station.wait(6.0)
+        station.wait(5.0)
         assert station.armed and station.mode == HOLDING
         held = station.position
-        worst = station.worst_distance(held, 5.0)
-        print(f"    held within {1e3 * worst:.1f} mm for 5 s, {held[1]:.2f} m along a way of {far} m")
+        worst = station.worst_distance(held, 1.5)
+        print(f"    held within {1e3 * worst:.1f} mm for 1.5 s, {held[1]:.2f} m along a way of {far} m")
         assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
-        station.target, station.alive = None, True
-        took = station.until("the client is heard again", lambda: station.heard("Ground station regained"), 2.0)
-        print(f"    heard again after {took:.2f} s, by telemetry")
-        station.target = (held[0], held[1], 0.0)
-        land(station)
+        # Heard again, it goes on holding until it is told to fly.
+        station.target, station.alive = (held[0], held[1] - 1.0, held[2]), True
+        station.wait(2.0)
+        assert station.mode == HOLDING and station.distance(held) <= 0.05, station.position
+        print(f"    told again, 1 m within 0.1 m in {station.go(station.target, 0.1, 5.0):.2f} s")
+        station.wait(2.0)
+        station.alive, silent = False, station.now
+        station.until("landing", lambda: station.heard("Ground station still lost"), SILENCE_LANDS + 1.0)
+        after = station.heard("Ground station still lost", silent) - station.last_heartbeat
+        print(f"    landing {after:.2f} s after the last heartbeat")
+        assert abs(after - SILENCE_LANDS) <= 0.2, after
+        station.landed(15.0)
         rig.land()
         rig.check_pace()
+        rig.check_landed()
 
 
 def failing_pose(machine):
-    """A pose source that stops at a hover: on by IMU for a second, level at hover thrust for another, then stop."""
-    stops = 14.0
+    """A pose source that stops at a hover: on by IMU for a second, level for another, then down to the ground."""
+    stops = 18.0
     with Rig(machine, ["--pose-until", stops]) as rig:
         station = rig.station
         take_off(station)
-        station.until("stop", lambda: station.heard("Stopped: no believable pose"), stops)
-        station.until("disarmed", lambda: not station.armed, 2.0)
-        lost, stopped = station.heard("Pose lost"), station.heard("Stopped: no believable pose")
-        print(f"    stopped {stopped - lost:.2f} s after the pose was given up, by telemetry")
-        station.wait_for_heartbeats(2)
+        station.until("given up", lambda: station.heard("Pose lost"), stops)
+        took = station.landed(40.0)
+        print(f"    landed {took:.2f} s after the pose was given up, by telemetry")
+        station.wait(0.5)
         rig.land()
         rig.check_pace()
     # By the simulator's record. The last pose answers the last command before `stops` and is true a tick later.
     last_pose = max(row["t"] for row in rig.rows if row["t"] < stops - TICK / 2) + TICK
-    off = min(row["t"] for row in rig.rows if row["t"] > stops and row["armed"] == 0)
-    print(f"    motors off {off - last_pose:.3f} s after the last pose")
-    assert abs(off - last_pose - (COASTING_MAX + LEVELLING_MAX)) <= 2 * TICK + 1e-9, off - last_pose
-    levelling = [row for row in rig.rows if last_pose + COASTING_MAX <= row["t"] < off]
+    given_up = last_pose + COASTING_MAX
+    levelling = [row for row in rig.rows if given_up <= row["t"] < given_up + LEVELLING_MAX]
     lean = max(2.0 * (row["qx"] ** 2 + row["qy"] ** 2) ** 0.5 for row in levelling)
     drop = levelling[0]["pz"] - levelling[-1]["pz"]
     print(f"    levelling: leaned {lean:.4f} rad at most, sank {1e3 * drop:.0f} mm")
     assert lean < 0.02 and abs(drop) < 0.05
-    assert all(row["armed"] == 0 for row in rig.rows if row["t"] >= off)
-    assert rig.rows[-1]["pz"] < 0.01
+    assert all(row["armed"] == 1 for row in levelling)
+    down = rig.touchdowns[0][0] - given_up - LEVELLING_MAX
+    last = rig.rows[-1]
+    away = math.dist((last["px"], last["py"]), HOVER[:2])
+    print(f"    on the ground after {down:.2f} s of going down, {1e3 * away:.0f} mm away")
+    assert down > 1.0, rig.touchdowns
+    rig.check_landed()
 
 
 MACHINES = ["mps2-an386", "mps2-an500"]

@@ -30,6 +30,13 @@ seed = 1
 # Between two commands, s.
 TICK = 0.01
 
+# The hardest touchdown that any way down may end with, m/s.
+TOUCHDOWN_MAX = 1.2
+
+# The longest that motors may turn on the ground after it, s: as long as it must look like the ground, and a reference that is
+# brought below it.
+GROUND_FOUND_MAX = 1.5
+
 # What flies: the files that .ci/emulated_flight has just built.
 SIMULATOR = pathlib.Path(os.environ["SIMULATOR"])
 IMAGE = pathlib.Path(os.environ["IMAGE"])
@@ -118,6 +125,8 @@ class Rig:
         assert pace, self.summary
         self.ticks, self.shortest, self.longest, self.missed = (int(figure) for figure in pace.groups()[:4])
         self.took = float(pace.group(5))
+        touched = re.findall(r"touched the ground at ([\d.]+) s with ([\d.]+) m/s, leaning ([\d.]+) degrees", self.summary)
+        self.touchdowns = [tuple(float(figure) for figure in figures) for figures in touched]
         with open(self.log) as file:
             self.rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
 
@@ -138,6 +147,18 @@ class Rig:
             place = truth[min(bisect.bisect_left(times, time - TICK / 2), len(truth) - 1)][1]
             worst = max(worst, math.dist(position, place))
         return worst
+
+    def check_landed(self):
+        """It came down once, softly and upright, and stands where it came down, its motors off."""
+        assert len(self.touchdowns) == 1, self.summary
+        (time, speed, lean), = self.touchdowns
+        off = min(row["t"] for row in self.rows if row["t"] > time and row["armed"] == 0)
+        print(f"    touched down at {speed:.3f} m/s, leaning {lean:.1f} degrees; motors off {off - time:.2f} s later")
+        assert speed < TOUCHDOWN_MAX and lean < 10.0, self.summary
+        assert off - time < GROUND_FOUND_MAX, off - time
+        last = self.rows[-1]
+        assert last["armed"] == 0 and last["thrust"] < 0.05 and abs(last["pz"]) < 0.01, last
+        assert all(row["armed"] == 0 for row in self.rows if row["t"] >= off)
 
     def check_pace(self):
         """No tick missed, and jitter below 1 % of the period, in emulated time."""

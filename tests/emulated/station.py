@@ -11,6 +11,14 @@ from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 POSITION_ONLY = 0b110111111000
 
 ARM_DISARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+SET_MODE = mavlink.MAV_CMD_DO_SET_MODE
+TAKE_OFF = mavlink.MAV_CMD_NAV_TAKEOFF
+LAND = mavlink.MAV_CMD_NAV_LAND
+
+# PX4's custom modes, as heartbeats carry them.
+HOLDING = 4 << 16 | 3 << 24
+OFFBOARD = 6 << 16
+OFFBOARD_MAIN = 6
 
 
 class Station:
@@ -92,12 +100,48 @@ class Station:
         end = self.heartbeats + count
         self.until("the vehicle's heartbeats", lambda: self.heartbeats >= end, count + 1.0)
 
-    def command_arm(self, armed):
-        self.acknowledged.pop(ARM_DISARM, None)
-        self.line.mav.command_long_send(1, 1, ARM_DISARM, 0, 1.0 if armed else 0.0, 0, 0, 0, 0, 0, 0)
-        self.until("acknowledgement", lambda: ARM_DISARM in self.acknowledged, 2.0)
-        assert self.acknowledged[ARM_DISARM] == mavlink.MAV_RESULT_ACCEPTED, self.acknowledged
-        self.until("armed" if armed else "disarmed", lambda: self.armed == armed, 2.0)
+    def command(self, command, *parameters):
+        """Sends a command and waits for its answer."""
+        self.acknowledged.pop(command, None)
+        self.line.mav.command_long_send(1, 1, command, 0, *parameters, *[0.0] * (7 - len(parameters)))
+        self.until("acknowledgement", lambda: command in self.acknowledged, 2.0)
+        return self.acknowledged[command]
+
+    def order(self, command, *parameters):
+        """Sends a command that must be accepted."""
+        result = self.command(command, *parameters)
+        assert result == mavlink.MAV_RESULT_ACCEPTED, (command, result)
+
+    def arm(self):
+        self.order(ARM_DISARM, 1.0)
+        self.until("armed", lambda: self.armed, 2.0)
+
+    def take_off(self, height, limit):
+        """Takes off by a command; returns how long it took."""
+        self.order(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height)
+        return self.until("take-off", lambda: self.heard("Take-off over"), limit)
+
+    def fly_setpoints(self):
+        """Has the setpoints flown that are sent meanwhile."""
+        self.order(SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, OFFBOARD_MAIN)
+        self.until("flying setpoints", lambda: self.mode == OFFBOARD, 2.0)
+
+    def disarm_in_the_air(self):
+        """Asks to disarm, without force, what flies: that must be refused."""
+        result = self.command(ARM_DISARM, 0.0)
+        assert result == mavlink.MAV_RESULT_DENIED, result
+
+    def land(self, limit):
+        """Lands by a command; returns how long it took."""
+        self.target = None
+        self.order(LAND)
+        return self.landed(limit)
+
+    def landed(self, limit):
+        """Waits until the vehicle has found the ground and disarmed; returns how long it took."""
+        took = self.until("landed", lambda: self.heard("Landed: disarmed"), limit)
+        self.until("disarmed", lambda: not self.armed, 2.0)
+        return took
 
     def distance(self, point):
         return sum((a - b) ** 2 for a, b in zip(self.position, point)) ** 0.5
@@ -106,6 +150,8 @@ class Station:
         """Sends the vehicle to a point; returns the time until it was near."""
         self.target = point
         self.send_setpoint()
+        if self.mode != OFFBOARD:
+            self.fly_setpoints()
         return self.until(f"near {point}", lambda: self.distance(point) <= within, limit)
 
     def worst_distance(self, point, seconds):
@@ -119,5 +165,6 @@ class Station:
         self.until("holding", passed, seconds + 1.0)
         return worst[0]
 
-    def heard(self, words):
-        return next((time for time, text in self.texts if text.startswith(words)), None)
+    def heard(self, words, since=0.0):
+        """When a text that begins so was first heard, from a time on."""
+        return next((time for time, text in self.texts if text.startswith(words) and (time or 0.0) >= since), None)

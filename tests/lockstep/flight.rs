@@ -3,14 +3,15 @@
 use super::clock::SimClock;
 use super::line::Line;
 use super::station::Station;
-use super::world::{SimImu, SimMotors, SimWatchdog, World};
-use controller_core::flight::Pilot;
+use super::world::{Dark, SimBattery, SimImu, SimMotors, SimWatchdog, World};
+use controller_core::flight::{Mode, Pilot};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use firmware::control::Control;
 use firmware::hardware::Clock;
 use firmware::outputs::Outputs;
+use firmware::parameters::table::Name;
 use firmware::shared::{Report, Shared};
-use firmware::{boot, configuration, imu, link};
+use firmware::{boot, configuration, imu, link, status};
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
 use mavlink::dialects::common::MavResult;
@@ -33,7 +34,15 @@ pub struct Flight {
 impl Flight {
     /// Boots the firmware on a vehicle that stands on the ground, with poses and heartbeats coming in.
     pub fn boot() -> Self {
-        Self::with(|shared| boot::start(Box::leak(Box::new(boot::Place::new())), &shared.parameters).unwrap())
+        Self::boot_with(&[])
+    }
+
+    /// The same with parameters that were set before the boot.
+    pub fn boot_with(parameters: &[(Name, f32)]) -> Self {
+        Self::with(|shared| {
+            parameters.iter().for_each(|&(name, value)| shared.parameters.set(name, value).unwrap());
+            boot::start(Box::leak(Box::new(boot::Place::new())), &shared.parameters).unwrap()
+        })
     }
 
     /// The same with what the firmware boots with.
@@ -60,6 +69,9 @@ impl Flight {
         spawner.spawn_local(async move { link::receive::receive(up, &time, shared).await }).unwrap();
         let time = clock.clone();
         spawner.spawn_local(async move { link::transmit::transmit(down, &time, shared).await }).unwrap();
+
+        let (vehicle, time) = (world.clone(), clock.clone());
+        spawner.spawn_local(async move { status::run(Dark, SimBattery(vehicle), &time, shared).await }).unwrap();
 
         let poses = Rc::new(Cell::new(true));
         spawner.spawn_local(world.clone().run()).unwrap();
@@ -89,16 +101,41 @@ impl Flight {
         self.shared.report.get().unwrap().value
     }
 
-    /// Boots, arms and goes up to 1 m.
+    /// Boots, arms, and goes up to 1 m by a setpoint.
     pub fn in_the_air() -> Self {
-        let mut flight = Self::boot();
+        Self::in_the_air_with(&[])
+    }
+
+    /// The same with parameters that were set before the boot.
+    pub fn in_the_air_with(parameters: &[(Name, f32)]) -> Self {
+        let mut flight = Self::boot_with(parameters);
         flight.pass(2.0);
-        flight.station.arm(true);
-        flight.pass(0.1);
-        assert!(flight.report().mode.is_armed(), "{:?}", flight.station.texts());
-        flight.station.go_to([0.0, 0.0, 1.0]);
-        flight.pass(12.0);
+        flight.go_up();
         flight
+    }
+
+    /// Arms, and goes up to 1 m by a setpoint.
+    pub fn go_up(&mut self) {
+        self.station.arm(true);
+        self.pass(0.1);
+        assert_eq!(self.report().mode, Mode::Idling, "{:?}", self.station.texts());
+        self.station.go_to([0.0, 0.0, 1.0]);
+        self.station.fly_setpoints();
+        self.pass(0.1);
+        assert_eq!(self.report().mode, Mode::Flying, "{:?}", self.station.texts());
+        self.pass(12.0);
+    }
+
+    /// Lets time pass until the vehicle says something that begins so; when it did, us.
+    pub fn until(&mut self, words: &str, seconds: f64) -> u64 {
+        let end = self.now() + (seconds * 1e6) as u64;
+        loop {
+            if let Some(time) = self.station.heard(words) {
+                return time;
+            }
+            assert!(self.now() < end, "not within {seconds} s: {words}: {:?}", self.station.texts());
+            self.pass(0.01);
+        }
     }
 
     /// Asks to arm and says what was answered: the acknowledgement, and what was said besides.

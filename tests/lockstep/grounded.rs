@@ -4,7 +4,7 @@ use super::flight::Flight;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::estimator::{Estimator, EstimatorParameters, Settings};
-use controller_core::flight::{Memory, Mode, Pilot};
+use controller_core::flight::{FlightSettings, Memory, Mode, Pilot};
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
 use firmware::configuration;
@@ -27,7 +27,8 @@ fn refused() -> (Flight, &'static str) {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
-    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &GovernorLimits::default(), estimator, memory)));
+    let (limits, flight_settings) = (GovernorLimits::default(), FlightSettings::DEFAULT);
+    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &limits, &flight_settings, estimator, memory)));
     let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap(), 0.0).unwrap()));
     (flight, failed)
 }
@@ -36,7 +37,9 @@ fn refused() -> (Flight, &'static str) {
 fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
     let (mut flight, failed) = refused();
     flight.pass(2.0);
-    assert_eq!((flight.report().mode, flight.station.texts().len()), (Mode::Disarmed, 0));
+    assert_eq!(flight.report().mode, Mode::Locked);
+    let texts: Vec<_> = flight.station.texts().into_iter().map(|(_, text)| text).collect();
+    assert_eq!(texts, ["Locked: not certified to fly"]);
     // Telemetry, watchdog, timing: all as ever.
     assert!(flight.report().state.is_some());
     assert!(flight.now() - flight.world.fed() <= 10_000);
@@ -44,9 +47,10 @@ fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
         let (result, texts) = flight.ask_to_arm();
         assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));
         assert_eq!(texts, [format!("Not certified: {failed:.35}")]);
+        flight.station.fly_setpoints();
         flight.station.go_to([0.0, 0.0, 1.0]);
         flight.pass(0.5);
-        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Disarmed, MotorCommand::Stop));
+        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Locked, MotorCommand::Stop));
     }
     assert_eq!(flight.report().timing.missed, 0);
 }

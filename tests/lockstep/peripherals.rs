@@ -49,7 +49,7 @@ fn a_disarm_command_reaches_motors_that_come_back() {
     let mut flight = Flight::in_the_air();
     flight.world.outputs(Health::Hangs);
     flight.pass(0.05);
-    flight.station.arm(false);
+    flight.station.disarm_by_force();
     flight.pass(0.05);
     assert!(matches!(flight.world.command(), MotorCommand::Run(_)), "they cannot have heard");
     flight.world.outputs(Health::Works);
@@ -72,15 +72,19 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
         flight.pass(0.5);
         assert!(flight.station.heard("Stopped: no IMU for 20 ms").is_some());
         assert_eq!(count(&flight, "IMU does not answer"), 1);
-        let (result, texts) = flight.ask_to_arm();
-        assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));
-        assert_eq!(texts, ["Refused: no IMU sample for 20 ms"]);
+        // Somebody has to look first; then there is still no IMU.
+        for words in ["Refused: stopped in flight; disarm first", "Refused: no IMU sample for 20 ms"] {
+            let (result, texts) = flight.ask_to_arm();
+            assert_eq!((result, texts), (Some(MavResult::MAV_RESULT_DENIED), vec![words.to_owned()]));
+            flight.station.arm(false);
+            flight.pass(0.1);
+        }
         // Back again, it stays stopped until it is armed.
         flight.world.sensor(Health::Works);
         flight.pass(0.5);
         assert_eq!(count(&flight, "IMU answers again"), 1);
         assert_eq!((flight.report().timing.gaps, flight.shared.lost_increments()), (1, 0));
-        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Disarmed, MotorCommand::Stop));
+        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Checks, MotorCommand::Stop));
         // The estimate begins anew, and must have been good for a second.
         flight.pass(2.0);
         assert_eq!(flight.ask_to_arm().0, Some(MavResult::MAV_RESULT_ACCEPTED));

@@ -23,7 +23,7 @@ fn is_refused(flight: &mut Flight, words: &str) {
 fn is_granted(flight: &mut Flight) {
     let (result, texts) = flight.ask_to_arm();
     assert_eq!(result, Some(MavResult::MAV_RESULT_ACCEPTED));
-    assert_eq!(texts, ["Armed"]);
+    assert_eq!(texts, ["Armed: idling"]);
     assert!(matches!(flight.world.command(), MotorCommand::Run(_)));
 }
 

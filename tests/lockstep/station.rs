@@ -95,6 +95,48 @@ impl Station {
         self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(arm)), 0.0, 0.0, 0.0]);
     }
 
+    /// Disarms, in the air as well.
+    pub fn disarm_by_force(&self) {
+        self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [0.0, 21196.0, 0.0, 0.0]);
+    }
+
+    /// Asks for flight by setpoints: PX4's mode OFFBOARD.
+    pub fn fly_setpoints(&self) {
+        self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0, 0.0, 0.0]);
+    }
+
+    /// Asks to hold position: PX4's mode AUTO.LOITER.
+    pub fn hold(&self) {
+        self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 3.0, 0.0]);
+    }
+
+    /// Asks for a take-off, m high.
+    pub fn take_off(&self, height: f32) {
+        self.send(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            command: MavCmd::MAV_CMD_NAV_TAKEOFF,
+            param7: height,
+            target_system: 1,
+            target_component: 1,
+            ..COMMAND_LONG_DATA::DEFAULT
+        }));
+    }
+
+    /// Asks for a landing.
+    pub fn land(&self) {
+        self.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 4]);
+    }
+
+    /// Sets a parameter.
+    pub fn set(&self, name: &str, value: f32) {
+        self.send(&MavMessage::PARAM_SET(PARAM_SET_DATA {
+            param_value: value,
+            param_id: name.into(),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+            target_system: 1,
+            target_component: 1,
+        }));
+    }
+
     /// Asks for a motor, from 1, to turn at so many percent for so many seconds.
     pub fn test_motor(&self, number: u8, percent: f32, seconds: f32) {
         self.command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [f32::from(number), 0.0, percent, seconds]);
@@ -126,6 +168,19 @@ impl Station {
             ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
         };
         self.send(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(data));
+    }
+
+    /// Asks to move at a velocity, m/s, world, with the heading kept.
+    pub fn move_at(&self, [x, y, z]: [f32; 3]) {
+        self.send(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+            // Velocity alone.
+            type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1100_0111),
+            vx: y,
+            vy: x,
+            vz: -z,
+            ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
+        }));
     }
 
     /// A pose as ODOMETRY: the same rotation and vectors in MAVLink's frames, worked out by hand.

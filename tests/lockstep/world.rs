@@ -5,7 +5,7 @@ use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::imu::ImuParameters;
 use controller_core::state::State;
-use firmware::hardware::{Clock, Fault, Imu, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
 use host_sim::plant::Plant;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -32,6 +32,7 @@ struct Inner {
     fed: Cell<u64>,
     outputs: Cell<Health>,
     sensor: Cell<Health>,
+    voltage: Cell<Option<f32>>,
 }
 
 /// How a peripheral does.
@@ -53,6 +54,8 @@ struct Body {
     left: f64,
     /// What the accelerometer says, m/s^2, body.
     force: Vector3<f64>,
+    /// How fast it came down on the ground, m/s, when it was fastest.
+    touchdown: Option<f64>,
 }
 
 /// The rigid body at `state`.
@@ -82,8 +85,9 @@ impl World {
         let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
         let left = (-1e-6 * STEP as f64 / lag).exp();
         let force = Vector3::new(0.0, 0.0, f64::from(configuration.vehicle().gravity));
-        let body =
-            Body { configuration: configuration.clone(), plant, rotors, greatest, speeds: [0.0; MOTORS], left, force };
+        let speeds = [0.0; MOTORS];
+        let configuration = configuration.clone();
+        let body = Body { configuration, plant, rotors, greatest, speeds, left, force, touchdown: None };
         let command = Cell::new((MotorCommand::Stop, 0));
         Self(Rc::new(Inner {
             clock: clock.clone(),
@@ -92,6 +96,7 @@ impl World {
             fed: Cell::new(0),
             outputs: Cell::new(Health::Works),
             sensor: Cell::new(Health::Works),
+            voltage: Cell::new(None),
         }))
     }
 
@@ -128,6 +133,16 @@ impl World {
     /// How the IMU does from now on.
     pub fn sensor(&self, health: Health) {
         self.0.sensor.set(health);
+    }
+
+    /// What there is to measure at the battery from now on, V.
+    pub fn voltage(&self, voltage: f32) {
+        self.0.voltage.set(Some(voltage));
+    }
+
+    /// How fast it came down on the ground, m/s, when it was fastest: what lifts its weight nearly all hops.
+    pub fn touchdown(&self) -> Option<f64> {
+        self.0.body.borrow().touchdown
     }
 
     /// Puts the vehicle down where it is, turned as the angles say, rad.
@@ -170,6 +185,9 @@ impl Body {
         self.plant.act(thrust, &torque);
         let after = self.plant.state();
         if after.position.z <= 0.0 && after.velocity.z <= 0.0 {
+            if before.position.z > 0.0 {
+                self.touchdown = Some(self.touchdown.unwrap_or(0.0).max(-after.velocity.z));
+            }
             let position = Vector3::new(before.position.x, before.position.y, 0.0);
             let still = Vector3::zeros();
             let state = BodyState { position, velocity: still, attitude: before.attitude, angular_velocity: still };
@@ -224,4 +242,20 @@ impl Watchdog for SimWatchdog {
     fn feed(&mut self) {
         self.0.0.fed.set(self.0.0.clock.now());
     }
+}
+
+/// The board's battery.
+pub struct SimBattery(pub World);
+
+impl Battery for SimBattery {
+    async fn voltage(&mut self) -> Option<f32> {
+        self.0.0.voltage.get()
+    }
+}
+
+/// The board's light.
+pub struct Dark;
+
+impl Light for Dark {
+    fn set(&mut self, _on: bool) {}
 }

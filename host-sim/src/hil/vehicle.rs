@@ -8,7 +8,7 @@ use crate::actuators::rotors::SpinningRotors;
 use crate::ground::{Ground, Touchdown};
 use crate::plant::Plant;
 use controller_core::allocation::{Rotor, ThrustCurve};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use std::collections::VecDeque;
@@ -23,7 +23,7 @@ pub struct Moved {
     pub state: BodyState,
     /// Where it was on the way, at as many evenly spaced instants as were asked for; the last is the period's end.
     pub path: Vec<BodyState>,
-    /// What an accelerometer shows then, m/s^2, body frame.
+    /// What an accelerometer shows then, m/s^2, body frame; with it the mean of an impact on the way.
     pub specific_force: Vector3<f64>,
     /// The rotors' thrust then, N.
     pub thrust: f64,
@@ -39,6 +39,8 @@ pub struct HilVehicle {
     rotors: SpinningRotors,
     curves: Vec<ThrustCurve>,
     steps: u64,
+    /// s.
+    period: f64,
     delay: u64,
     /// Plant steps since the start.
     now: u64,
@@ -67,6 +69,7 @@ impl HilVehicle {
             rotors: SpinningRotors::stopped(rotors, scenario.rotor_lag, step),
             curves,
             steps: scenario.timing.steps_per_tick.into(),
+            period: scenario.timing.period(),
             delay: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
@@ -91,6 +94,7 @@ impl HilVehicle {
         let thrust = |(curve, command): (&ThrustCurve, f32)| curve.thrust(command, 1.0);
         let thrusts = self.curves.iter().zip(controls.commands).map(thrust).collect();
         self.waiting.push_back((self.now + self.delay, thrusts));
+        let before = self.plant.state().velocity;
         let (mut thrust, mut touchdown, mut path) = (0.0, None, Vec::new());
         for step in 1..=self.steps {
             while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
@@ -106,7 +110,11 @@ impl HilVehicle {
         }
         self.plant.check().map_err(|error| error.to_string())?;
         let state = *self.plant.state();
-        let specific_force = self.ground.specific_force(&state, thrust);
+        let mut specific_force = self.ground.specific_force(&state, thrust);
+        if touchdown.is_some() {
+            let stopped = (state.velocity - before) / self.period;
+            specific_force += UnitQuaternion::new_unchecked(state.attitude).inverse() * stopped;
+        }
         Ok(Moved { state, path, specific_force, thrust, touchdown })
     }
 }

@@ -72,3 +72,27 @@ fn it_is_seen_at_each_millisecond_on_the_way_and_moves_no_differently_for_that()
         assert!(risen > 0.0 && (risen - mean).abs() < 1e-9, "{risen} {mean}");
     }
 }
+
+#[test]
+fn an_accelerometer_feels_the_impact() {
+    let mut vehicle = HilVehicle::new(&study()).unwrap();
+    let scenario = study();
+    let period = scenario.timing.period();
+    (0..100).for_each(|_| {
+        vehicle.advance(&all(hover() + 0.02), 1).unwrap();
+    });
+    // What it shows while it falls and stops adds up to what the fall and the stop do to the velocity: nothing.
+    let start = vehicle.state().velocity.z;
+    let (mut felt, mut greatest) = (0.0, 0.0_f64);
+    for _ in 0..500 {
+        let moved = vehicle.advance(&all(hover() - 0.02), 1).unwrap();
+        felt += (moved.specific_force.z - 9.81) * period;
+        greatest = greatest.max(moved.specific_force.z);
+        if let Some(touchdown) = moved.touchdown {
+            assert!((greatest - 9.81 - touchdown.speed / period).abs() < 1.0, "{greatest} {touchdown:?}");
+            assert!((felt + start).abs() < 0.05, "{felt} {start}");
+            return;
+        }
+    }
+    panic!("it has not come down: {}", vehicle.state().position);
+}
