@@ -60,9 +60,12 @@ impl Drop for Patience {
 }
 
 fn set(registers: Iwdg, prescaler: Pr, reload: u16) {
-    registers.kr().write(|w| w.set_key(Key::ENABLE));
-    registers.pr().write(|w| w.set_pr(prescaler));
-    registers.rlr().write(|w| w.set_rl(reload));
+    // Food in between would lock the registers again.
+    cortex_m::interrupt::free(|_| {
+        registers.kr().write(|w| w.set_key(Key::ENABLE));
+        registers.pr().write(|w| w.set_pr(prescaler));
+        registers.rlr().write(|w| w.set_rl(reload));
+    });
     // Fed too early, it would start from the old value.
     let _ = (0..SETTLES).find(|_| registers.sr().read().0 & 0b11 == 0);
     registers.kr().write(|w| w.set_key(Key::RESET));
