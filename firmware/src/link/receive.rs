@@ -5,20 +5,15 @@
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
 use super::COMPONENT;
-use super::command::{Action, Call, Repetitions, action};
+use super::command::Repetitions;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
-use super::origin::Origin;
 use super::pose::Poses;
 use super::setpoint::{Here, setpoint};
-use super::telemetry::kind::Kind;
-use super::telemetry::vehicle;
-use super::unknown::command_of;
-use crate::frames;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::radio::SILENCE as RADIO_SILENCE;
-use crate::shared::{Asked, Event, Ping, Procedure, Reply, Severity, Shared, Traffic};
+use crate::shared::{Event, Ping, Reply, Severity, Shared, Traffic};
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -26,11 +21,14 @@ use embedded_io_async::Read;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MISSION_CLEAR_ALL_DATA,
-    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavMissionResult, MavParamType, MavResult, MavType, ODOMETRY_DATA,
-    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA, TIMESYNC_DATA,
+    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA,
+    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    TIMESYNC_DATA,
 };
-use nalgebra::Vector3;
+
+mod commands;
+mod parameters;
+mod places;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -79,24 +77,6 @@ impl Occasionally {
     }
 }
 
-/// A message that says whom it is for.
-trait Addressed {
-    /// System and component.
-    fn target(&self) -> (u8, u8);
-}
-
-impl Addressed for COMMAND_LONG_DATA {
-    fn target(&self) -> (u8, u8) {
-        (self.target_system, self.target_component)
-    }
-}
-
-impl Addressed for COMMAND_INT_DATA {
-    fn target(&self) -> (u8, u8) {
-        (self.target_system, self.target_component)
-    }
-}
-
 /// Acts on frames.
 pub struct Receiver<'a, M: RawMutex> {
     shared: &'a Shared<M>,
@@ -105,6 +85,7 @@ pub struct Receiver<'a, M: RawMutex> {
     commander: Commander,
     pose_refused: Occasionally,
     setpoint_refused: Occasionally,
+    stranger_refused: Occasionally,
     traffic: Traffic,
 }
 
@@ -119,6 +100,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             commander: Commander::default(),
             pose_refused: Occasionally::default(),
             setpoint_refused: Occasionally::default(),
+            stranger_refused: Occasionally::default(),
             traffic: Traffic::default(),
         }
     }
@@ -223,110 +205,6 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    /// Acts on a command, if the message is one of the dialect's; another is answered by its number.
-    fn command<D: Addressed>(&mut self, frame: &Frame<'_>, message: Option<&D>)
-    where
-        for<'m> Call: From<&'m D>,
-    {
-        let Some(message) = message else {
-            let unknown = command_of(frame.message, frame.payload);
-            match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
-                Some((number, _)) => self.shared.reply(Reply::UnknownCommand(number)),
-                None => self.refused(),
-            }
-            return;
-        };
-        let (system, component) = message.target();
-        if !self.is_addressed(system, component) {
-            return;
-        }
-        if self.repetitions.is_repeated(frame) {
-            self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
-            return;
-        }
-        let (call, sender) = (Call::from(message), frame.header.system);
-        let command = call.command;
-        let result = if self.commander.may(&call, sender, self.shared.is_armed(), frame.time) {
-            match self.act(&call) {
-                Some(result) => result,
-                None => return,
-            }
-        } else {
-            self.shared.announce(Event::new(Severity::Warning, "Refused: another station commands"));
-            MavResult::MAV_RESULT_DENIED
-        };
-        self.shared.reply(Reply::Command { command, result });
-    }
-
-    /// Acts on a command; what to answer, unless somebody else does.
-    fn act(&mut self, call: &Call) -> Option<MavResult> {
-        let report = self.shared.report.get();
-        let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
-        let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
-        match action(call, self.shared.is_armed(), &origin, &home) {
-            Action::Ask(request) => {
-                let asked = self.shared.request(Asked { request, command: Some(call.command) });
-                return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
-            }
-            Action::ForceDisarm => self.shared.request_disarm(),
-            Action::EnterHil => self.shared.hil.raise(),
-            Action::Calibrate(procedure) => return self.calibrate(procedure).err(),
-            Action::Answer(result) => return Some(result),
-            Action::Tell(reply) => self.shared.reply(reply),
-            Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
-        }
-        Some(MavResult::MAV_RESULT_ACCEPTED)
-    }
-
-    fn set_origin(&mut self, frame: &Frame<'_>, message: &SET_GPS_GLOBAL_ORIGIN_DATA) {
-        let SET_GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude, target_system } = *message;
-        if !self.is_addressed(target_system, 0) {
-            return;
-        }
-        match Origin::new(latitude, longitude, altitude) {
-            Some(origin) => {
-                self.shared.origin.put(origin, frame.time);
-                self.shared.reply(Reply::Message(Kind::GlobalOrigin));
-            }
-            None => self.refused(),
-        }
-    }
-
-    /// Missions are not flown here: whoever sends one is told.
-    fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let result = MavMissionResult::MAV_MISSION_UNSUPPORTED;
-            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
-        }
-    }
-
-    fn mission_list(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_LIST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::NoMission(frame.header.system, frame.header.component));
-        }
-    }
-
-    /// There is none: that is what was wanted.
-    fn mission_clear(&mut self, frame: &Frame<'_>, message: &MISSION_CLEAR_ALL_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let result = MavMissionResult::MAV_MISSION_ACCEPTED;
-            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
-        }
-    }
-
-    /// Hands it to the IMU task, which answers.
-    fn calibrate(&mut self, procedure: Option<Procedure>) -> Result<(), MavResult> {
-        let refused = if self.shared.is_armed() {
-            "Calibration: only while disarmed"
-        } else if self.shared.hil.is_raised() {
-            "Calibration: a simulator has the sensors"
-        } else {
-            return self.shared.calibrations.put(procedure).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
-        };
-        self.shared.announce(Event::new(Severity::Warning, refused));
-        Err(MavResult::MAV_RESULT_DENIED)
-    }
-
     /// Back to its sender. One that is addressed to somebody is itself an answer.
     fn ping(&mut self, frame: &Frame<'_>, message: &Ping) {
         if (message.target_system, message.target_component) == (0, 0) {
@@ -340,53 +218,6 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         match message.tc1 {
             0 => self.shared.reply(Reply::TimeSync { asked: message.ts1 }),
             _ => self.poses.synchronise(frame, message),
-        }
-    }
-
-    fn list_parameters(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_LIST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::AllParameters);
-        }
-    }
-
-    fn read_parameter(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_READ_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            // A negative index: by name.
-            let name = match usize::try_from(message.param_index) {
-                Ok(index) => Name::from_index(index),
-                Err(_) => message.param_id.to_str().ok().and_then(Name::from_name),
-            };
-            self.reply_with_parameter(name);
-        }
-    }
-
-    fn set_parameter(&mut self, _: &Frame<'_>, message: &PARAM_SET_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let name = message.param_id.to_str().ok().and_then(Name::from_name);
-            if let Some(name) = name {
-                self.set(name, message.param_value, message.param_type);
-            }
-            self.reply_with_parameter(name);
-        }
-    }
-
-    /// Its value, as it is now, answers every question about a parameter.
-    fn reply_with_parameter(&mut self, name: Option<Name>) {
-        match name {
-            Some(name) => self.shared.reply(Reply::Parameter(name)),
-            None => self.refused(),
-        }
-    }
-
-    fn set(&mut self, name: Name, value: f32, kind: MavParamType) {
-        let shared = self.shared;
-        let warn = |words: &dyn Display| shared.announce(Event::new(Severity::Warning, words));
-        if shared.is_armed() {
-            warn(&"Parameters change only while disarmed");
-        } else if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
-            warn(&format_args!("{}: is a REAL32", name.row().name));
-        } else if let Err(error) = shared.parameters.set(name, value) {
-            warn(&error);
         }
     }
 }

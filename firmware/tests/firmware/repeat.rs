@@ -100,10 +100,12 @@ fn control_hears_of_a_frame_that_failed_or_hung() {
             let (does, heard) = (&does, &heard);
             async move {
                 let mut repeater = Repeater { repeated, clock };
-                heard.borrow_mut().push(repeater.write(command(0.2)).await);
+                let written = repeater.write(command(0.2)).await;
+                heard.borrow_mut().push(written);
                 does.set(Does::Well);
                 clock.until(10_000).await;
-                heard.borrow_mut().push(repeater.write(command(0.3)).await);
+                let written = repeater.write(command(0.3)).await;
+                heard.borrow_mut().push(written);
                 clock.until(u64::MAX).await;
             }
         });

@@ -1,0 +1,100 @@
+//! Commands in: whom they are for, who may give them, and who answers.
+
+use super::Receiver;
+use crate::frames;
+use crate::link::command::{Action, Call, action};
+use crate::link::frame::Frame;
+use crate::link::origin::Origin;
+use crate::link::telemetry::vehicle;
+use crate::link::unknown::command_of;
+use crate::shared::{Asked, Event, Procedure, Reply, Severity};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
+use nalgebra::Vector3;
+
+/// A message that says whom it is for.
+pub(super) trait Addressed {
+    /// System and component.
+    fn target(&self) -> (u8, u8);
+}
+
+impl Addressed for COMMAND_LONG_DATA {
+    fn target(&self) -> (u8, u8) {
+        (self.target_system, self.target_component)
+    }
+}
+
+impl Addressed for COMMAND_INT_DATA {
+    fn target(&self) -> (u8, u8) {
+        (self.target_system, self.target_component)
+    }
+}
+
+impl<M: RawMutex> Receiver<'_, M> {
+    /// Acts on a command, if the message is one of the dialect's; another is answered by its number.
+    pub(super) fn command<D: Addressed>(&mut self, frame: &Frame<'_>, message: Option<&D>)
+    where
+        for<'m> Call: From<&'m D>,
+    {
+        let Some(message) = message else {
+            let unknown = command_of(frame.message, frame.payload);
+            match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
+                Some((number, _)) => self.shared.reply(Reply::UnknownCommand(number)),
+                None => self.refused(),
+            }
+            return;
+        };
+        let (system, component) = message.target();
+        if !self.is_addressed(system, component) {
+            return;
+        }
+        if self.repetitions.is_repeated(frame) {
+            self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
+            return;
+        }
+        let (call, sender) = (Call::from(message), frame.header.system);
+        let command = call.command;
+        let result = if self.commander.may(&call, sender, self.shared.is_armed(), frame.time) {
+            match self.act(&call) {
+                Some(result) => result,
+                None => return,
+            }
+        } else {
+            self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
+            MavResult::MAV_RESULT_DENIED
+        };
+        self.shared.reply(Reply::Command { command, result });
+    }
+
+    /// Acts on a command; what to answer, unless somebody else does.
+    pub(super) fn act(&mut self, call: &Call) -> Option<MavResult> {
+        let report = self.shared.report.get();
+        let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
+        let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
+        match action(call, self.shared.is_armed(), &origin, &home) {
+            Action::Ask(request) => {
+                let asked = self.shared.request(Asked { request, command: Some(call.command) });
+                return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            }
+            Action::ForceDisarm => self.shared.request_disarm(),
+            Action::EnterHil => self.shared.hil.raise(),
+            Action::Calibrate(procedure) => return self.calibrate(procedure).err(),
+            Action::Answer(result) => return Some(result),
+            Action::Tell(reply) => self.shared.reply(reply),
+            Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
+        }
+        Some(MavResult::MAV_RESULT_ACCEPTED)
+    }
+    /// Hands it to the IMU task, which answers.
+    pub(super) fn calibrate(&mut self, procedure: Option<Procedure>) -> Result<(), MavResult> {
+        let refused = if self.shared.is_armed() {
+            "Calibration: only while disarmed"
+        } else if self.shared.hil.is_raised() {
+            "Calibration: a simulator has the sensors"
+        } else {
+            return self.shared.calibrations.put(procedure).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+        };
+        self.shared.announce(Event::new(Severity::Warning, refused));
+        Err(MavResult::MAV_RESULT_DENIED)
+    }
+}
