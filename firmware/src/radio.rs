@@ -25,7 +25,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use sticks::Sticks;
 use uf_crsf::CrsfParser;
-use uf_crsf::packets::Packet;
+use uf_crsf::packets::{CrsfPacket, RcChannelsPacked};
 
 /// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not hear its transmitter.
 pub const SILENCE: u64 = 500_000;
@@ -95,8 +95,12 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
             Either::First(Ok(count @ 1..)) => {
                 let now = clock.now();
                 let mut bytes = chunk.get(..count).unwrap_or(&chunk);
-                while let Some(packet) = parser.next_packet(&mut bytes) {
-                    if let Ok(Packet::RCChannels(channels)) = packet {
+                // By its type, because reading every kind of packet would take 12 KB of flash.
+                while let Some(packet) = parser.next_raw_packet(&mut bytes) {
+                    if let Ok(packet) = packet
+                        && packet.raw_packet_type() == RcChannelsPacked::PACKET_TYPE as u8
+                        && let Ok(channels) = RcChannelsPacked::from_bytes(packet.payload())
+                    {
                         radio.take(&channels.0, now);
                     }
                 }
