@@ -309,6 +309,15 @@ fn what_cannot_be_done_in_the_air_is_refused_there() {
 }
 
 #[test]
+fn nothing_turns_while_flash_is_written() {
+    refuses(Handed { is_busy: true, ..at_rest(NOW) }, Refusal::Busy);
+    let mut flight = Flight::settled();
+    flight.inputs.is_busy = true;
+    let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1_000_000 });
+    assert_eq!(answer(&mut flight, test), Err(Refusal::Busy));
+}
+
+#[test]
 fn a_battery_that_is_low_does_not_arm() {
     for battery in [Battery::Low, Battery::Critical] {
         refuses(Handed { battery, ..at_rest(NOW) }, Refusal::BatteryLow);

@@ -19,6 +19,7 @@
 //! | link | [`Shared::hil`] | motors, sensors | until reboot |
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
+//! | parameters | [`Shared::saving`] | control | while it lasts |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
@@ -41,7 +42,7 @@ pub use report::{Report, Timing, Traffic};
 use crate::link::origin::Origin;
 use crate::parameters::Parameters;
 use controller_core::estimator::{Increment, PoseMeasurement};
-use controller_core::flight::{ImuSample, Refusal, Stamped};
+use controller_core::flight::{ImuSample, Mode, Refusal, Stamped};
 use controller_core::governor::Setpoint;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -82,6 +83,8 @@ pub struct Shared<M: RawMutex> {
     pub setpoint: Latest<M, Setpoint>,
     /// Requests for control, in the order they came. Put them in with [`Self::request`].
     pub requests: Queue<M, Asked, REQUESTS>,
+    /// Raised while parameters are written to flash: nothing begins to turn.
+    pub saving: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
     pub killed: Latest<M, bool>,
     /// Whether a radio's sticks fly, by its switch.
@@ -127,6 +130,7 @@ impl<M: RawMutex> Shared<M> {
             ground_station: Latest::new(),
             setpoint: Latest::new(),
             requests: Queue::new(),
+            saving: Flag::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
             disarm: Flag::new(),
@@ -213,6 +217,12 @@ impl<M: RawMutex> Shared<M> {
     #[must_use]
     pub fn is_armed(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed())
+    }
+
+    /// Whether the last report says that a motor turns, or may within a tick.
+    #[must_use]
+    pub fn is_turning(&self) -> bool {
+        self.report.get().is_some_and(|report| report.value.mode.is_armed() || report.value.mode == Mode::MotorTest)
     }
 }
 

@@ -45,6 +45,8 @@ pub struct Inputs<'a> {
     pub disarm: bool,
     /// Whether the kill switch is on.
     pub killed: bool,
+    /// Whether something is under way that may stall the processor: flash that is written.
+    pub is_busy: bool,
     /// What the battery has left.
     pub battery: Battery,
     /// Whether the last tick came to its end too late.

@@ -279,6 +279,8 @@ pub enum Refusal {
     Stopped,
     /// The kill switch is on.
     Killed,
+    /// Flash is being written, which may stall the processor.
+    Busy,
     /// The battery is low.
     BatteryLow,
     /// Motors stop in the air by force only.
@@ -334,6 +336,7 @@ impl fmt::Display for Refusal {
             Self::AlreadyArmed => "Refused: armed already",
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",
+            Self::Busy => "Refused: parameters are being saved",
             Self::BatteryLow => "Refused: the battery is low",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",
             Self::NotIdling => "Refused: arm on the ground first",

@@ -94,6 +94,7 @@ pub struct Handed {
     pub request: Option<Request>,
     pub disarm: bool,
     pub killed: bool,
+    pub is_busy: bool,
     pub battery: Battery,
     pub is_late: bool,
     pub setpoint: Option<Setpoint>,
@@ -101,7 +102,19 @@ pub struct Handed {
 
 impl Handed {
     pub fn to(&self, pilot: &mut Pilot) -> Outcome {
-        let Self { now, increments, poses, ground_station, request, disarm, killed, battery, is_late, setpoint } = self;
+        let Self {
+            now,
+            increments,
+            poses,
+            ground_station,
+            request,
+            disarm,
+            killed,
+            is_busy,
+            battery,
+            is_late,
+            setpoint,
+        } = self;
         pilot.tick(&Inputs {
             now: *now,
             increments,
@@ -110,6 +123,7 @@ impl Handed {
             request: *request,
             disarm: *disarm,
             killed: *killed,
+            is_busy: *is_busy,
             battery: *battery,
             is_late: *is_late,
             setpoint: *setpoint,

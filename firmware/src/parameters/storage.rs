@@ -1,10 +1,10 @@
-//! Parameters in flash: read at boot, written when changed and only while disarmed.
+//! Parameters in flash: read at boot, written when changed and only while no motor turns.
 //!
 //! All values are one record of a [`journal`](super::journal), each known by its place in the table, so a firmware with
 //! more parameters reads what an older one wrote.
 //!
-//! Erasing a sector of internal flash can stall the whole processor for seconds on some boards: another reason to write
-//! only while disarmed. A vehicle that arms during a write on a board that does not stall is not hindered.
+//! Erasing a sector of internal flash can stall the whole processor for seconds on some boards. So nothing is written while a motor
+//! turns, and while something is, none begins to: control refuses.
 
 use super::journal::{Journal, VALUES_MAX};
 use super::table::PARAMETERS;
@@ -52,10 +52,15 @@ impl<F: Flash> Storage<F> {
         loop {
             // A change is announced by the signal; the time limit only makes the wait a bounded one.
             let _ = within(clock, LOOK, shared.parameters.changed.wait()).await;
-            while shared.is_armed() {
+            // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+            shared.saving.raise();
+            while shared.is_turning() {
+                shared.saving.lower();
                 clock.until(clock.now().saturating_add(RETRY)).await;
+                shared.saving.raise();
             }
             self.save(shared);
+            shared.saving.lower();
         }
     }
 

@@ -18,6 +18,11 @@ impl Flag {
         self.0.store(true, Ordering::Release);
     }
 
+    /// Takes it down.
+    pub fn lower(&self) {
+        self.0.store(false, Ordering::Release);
+    }
+
     /// Whether it is raised.
     #[must_use]
     pub fn is_raised(&self) -> bool {

@@ -4,10 +4,10 @@ use crate::support::Simulated;
 use crate::support::chip::{Chip, RECORDS, Words};
 use crate::support::receiver::{Local, report, texts};
 use controller_core::flight::Mode;
-use firmware::hardware::{Flash, Record};
+use firmware::hardware::{Fault, Flash, Record};
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// What a boot finds.
 fn booted<const WORD: usize>(chip: &RefCell<Chip>) -> Local {
@@ -50,14 +50,62 @@ fn values_survive_a_reboot_on_flash_of_4_byte_words() {
 }
 
 #[test]
-fn nothing_is_written_while_armed() {
-    let (chip, shared) = (Chip::erased(), Local::new());
-    kept::<4>(&chip, &shared, 3_000_000, |now| {
-        report(&shared, if now < 2_000_000 { Mode::Flying } else { Mode::Ready }, now);
-        shared.parameters.set(Name::BatteryLow, 10.0).unwrap();
-        assert!(now >= 2_000_000 || chip.borrow().writes == 0);
+fn nothing_is_written_while_a_motor_turns_and_nothing_else_keeps_one_from_turning() {
+    for mode in [Mode::Idling, Mode::Flying, Mode::Descending, Mode::MotorTest] {
+        let (chip, shared) = (Chip::erased(), Local::new());
+        kept::<4>(&chip, &shared, 3_000_000, |now| {
+            report(&shared, if now < 2_000_000 { mode } else { Mode::Ready }, now);
+            shared.parameters.set(Name::BatteryLow, 10.0).unwrap();
+            assert!(now >= 2_000_000 || chip.borrow().writes == 0, "{mode:?}");
+            assert!(!shared.saving.is_raised(), "{mode:?}");
+        });
+        assert_eq!(booted::<4>(&chip).parameters.get(Name::BatteryLow), 10.0);
+    }
+}
+
+/// Flash that counts what is written to it without control's having been warned.
+struct Watched<'a> {
+    words: Words<'a, 4>,
+    shared: &'a Local,
+    unwarned: &'a Cell<u32>,
+}
+
+impl Watched<'_> {
+    fn look(&self) {
+        self.unwarned.set(self.unwarned.get() + u32::from(!self.shared.saving.is_raised()));
+    }
+}
+
+impl Flash for Watched<'_> {
+    const RECORDS: usize = RECORDS;
+
+    fn read(&mut self, place: usize) -> Result<Record, Fault> {
+        self.words.read(place)
+    }
+
+    fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault> {
+        self.look();
+        self.words.write(place, record)
+    }
+
+    fn erase(&mut self, sector: usize) -> Result<(), Fault> {
+        self.look();
+        self.words.erase(sector)
+    }
+}
+
+#[test]
+fn control_is_warned_while_flash_is_written() {
+    let (chip, shared, unwarned) = (Chip::erased(), Local::new(), Cell::new(0));
+    let flash = Watched { words: Words(&chip), shared: &shared, unwarned: &unwarned };
+    let (clock, mut storage) = (Simulated::default(), Storage::load(flash, &shared));
+    let opened = unwarned.replace(0);
+    clock.run(600_000, storage.keep(&clock, &shared), |now| {
+        shared.parameters.set(Name::HorizontalSpeed, 1.0 + now as f32 * 1e-5).unwrap();
     });
-    assert_eq!(booted::<4>(&chip).parameters.get(Name::BatteryLow), 10.0);
+    assert!(chip.borrow().writes > 2 * RECORDS, "{opened}");
+    assert_eq!(unwarned.get(), 0);
+    assert!(!shared.saving.is_raised());
 }
 
 #[test]

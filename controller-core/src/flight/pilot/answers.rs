@@ -17,6 +17,7 @@ impl<'m> Pilot<'m> {
     pub(super) fn may_arm(&self, inputs: &Inputs, estimate: &Estimate) -> Result<Start, Refusal> {
         self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
         require(!inputs.killed, Refusal::Killed)?;
+        require(!inputs.is_busy, Refusal::Busy)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
     }
@@ -47,6 +48,7 @@ impl<'m> Pilot<'m> {
             Request::MotorTest(test) => {
                 permission::to_turn_motors(self.mode)?;
                 require(!inputs.killed, Refusal::Killed)?;
+                require(!inputs.is_busy, Refusal::Busy)?;
                 permission::to_test(&test, self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
                 self.test = test;
                 Ok(())

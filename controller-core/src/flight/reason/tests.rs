@@ -27,6 +27,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::MotorTestDuration,
         Refusal::Stopped,
         Refusal::Killed,
+        Refusal::Busy,
         Refusal::BatteryLow,
         Refusal::InTheAir,
         Refusal::NotIdling,
