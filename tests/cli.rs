@@ -12,6 +12,18 @@ fn directory(test: &str) -> PathBuf {
 }
 
 #[test]
+fn a_recording_is_written_beside_the_log_when_it_is_asked_for() {
+    let directory = directory("recording");
+    let run = host_sim(&directory, &["fly", "--mcap", "--out", "out"]);
+    assert_eq!(status(&run), 0, "{}", stderr(&run));
+    let recording = std::fs::read(directory.join("out/flight.mcap")).unwrap();
+    // Magic at both ends: whole; and what was attached is what was flown.
+    let magic = b"\x89MCAP0\r\n";
+    assert!(recording.starts_with(magic) && recording.ends_with(magic));
+    assert!(recording.windows(PAPER.len()).any(|window| window == PAPER.as_bytes()));
+}
+
+#[test]
 fn without_arguments_it_flies_the_paper() {
     let directory = directory("paper");
     let output = host_sim(&directory, &[]);

@@ -64,6 +64,9 @@ pub enum Command {
         /// Directory for the results [default: flights/<name>]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Write flight.mcap as well, for Foxglove (docs/foxglove-layout.json arranges it): 1.7 KB a control tick
+        #[arg(long)]
+        mcap: bool,
         /// Fly even if log.csv will take more than 1 GB
         #[arg(long)]
         large_log: bool,

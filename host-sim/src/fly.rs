@@ -1,7 +1,7 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
 use crate::claims::{self, Claim};
-use crate::flight::{Flight, FlightError};
+use crate::flight::{Flight, FlightError, Tick};
 use crate::flown::Flown;
 use crate::interrupt::Interrupt;
 use crate::log;
@@ -9,6 +9,7 @@ use crate::plots;
 use crate::plots::canvas::PlotError;
 use crate::plots::record::Record;
 use crate::progress::Progress;
+use crate::recording::Recording;
 use crate::whole_file::WholeFile;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
@@ -76,14 +77,20 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
 }
 
-/// Flies `scenario` and writes log.csv, four figures and report.md into `directory`.
+/// Flies `scenario` and writes log.csv, four figures and report.md into `directory`; and flight.mcap, if it is given the scenario's
+/// `text` to attach.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
 /// older flight in the same directory is touched.
 ///
 /// # Errors
 /// [`FlyError`]; then no file is left behind.
-pub fn fly(scenario: &Scenario, directory: &Path, interrupt: &Interrupt) -> Result<Outcome, FlyError> {
+pub fn fly(
+    scenario: &Scenario,
+    directory: &Path,
+    text: Option<&str>,
+    interrupt: &Interrupt,
+) -> Result<Outcome, FlyError> {
     let verdict = Verdict::of(scenario)?;
     let mut flight = match verdict.certified() {
         Some(certified) => Flight::certified(scenario, certified),
@@ -91,7 +98,8 @@ pub fn fly(scenario: &Scenario, directory: &Path, interrupt: &Interrupt) -> Resu
     }?;
     std::fs::create_dir_all(directory).map_err(failed(directory))?;
     let mut log = Output::create(directory, "log.csv")?;
-    let (flown, record) = log_flight(scenario, &mut flight, &mut log, interrupt)?;
+    let mut recording = text.map(|text| Recorder::create(directory, scenario, text)).transpose()?;
+    let (flown, record) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
 
     let outcome =
         Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) };
@@ -104,6 +112,7 @@ pub fn fly(scenario: &Scenario, directory: &Path, interrupt: &Interrupt) -> Resu
         ("report.md", report(scenario, &outcome)),
     ];
     let mut outputs = vec![log];
+    outputs.extend(recording.map(Recorder::finish).transpose()?);
     for (name, text) in texts {
         let mut output = Output::create(directory, name)?;
         output.write(|file| file.write_all(text.as_bytes()))?;
@@ -122,6 +131,7 @@ fn log_flight(
     scenario: &Scenario,
     flight: &mut Flight,
     log: &mut Output,
+    mut recording: Option<&mut Recorder>,
     interrupt: &Interrupt,
 ) -> Result<(Flown, Record), FlyError> {
     let ticks = scenario.timing.ticks;
@@ -135,6 +145,9 @@ fn log_flight(
         interrupted(interrupt)?;
         let tick = flight.tick()?;
         log.write(|file| log::write_row(file, &tick))?;
+        if let Some(recording) = &mut recording {
+            recording.take(&tick)?;
+        }
         flown.observe(&tick);
         record.observe(&tick);
         if done % TICKS_PER_SHOW == 0 {
@@ -162,6 +175,32 @@ impl Output {
 
     fn write(&mut self, write: impl FnOnce(&mut WholeFile) -> io::Result<()>) -> Result<(), FlyError> {
         write(&mut self.file).map_err(failed(&self.path))
+    }
+}
+
+/// flight.mcap, while it is written.
+struct Recorder {
+    recording: Recording<WholeFile>,
+    path: PathBuf,
+}
+
+impl Recorder {
+    fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
+        let Output { file, path } = Output::create(directory, "flight.mcap")?;
+        let rotors = scenario.configuration.rotors();
+        let places: Vec<[f64; 3]> =
+            rotors.into_iter().flat_map(|rotors| rotors.iter()).map(|rotor| rotor.position.cast().into()).collect();
+        let recording = Recording::begin(file, &scenario.name, text, &places).map_err(failed(&path))?;
+        Ok(Self { recording, path })
+    }
+
+    fn take(&mut self, tick: &Tick) -> Result<(), FlyError> {
+        self.recording.take(tick).map_err(failed(&self.path))
+    }
+
+    fn finish(self) -> Result<Output, FlyError> {
+        let file = self.recording.finish().map_err(failed(&self.path))?;
+        Ok(Output { file, path: self.path })
     }
 }
 

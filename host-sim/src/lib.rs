@@ -13,7 +13,7 @@
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
-//! | [`log`], [`plots`] | log.csv and the figures |
+//! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
 
 pub mod actuators;
@@ -35,6 +35,7 @@ pub mod plant;
 pub mod plots;
 pub mod progress;
 pub mod reality;
+pub mod recording;
 pub mod sensors;
 pub mod table;
 pub mod tune;

@@ -34,8 +34,8 @@ fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
         Err(message) => explain(&message),
         Ok(Arguments { command }) => match command {
-            None => run_fly(None, None, false),
-            Some(Command::Fly { file, out, large_log }) => run_fly(file.as_deref(), out, large_log),
+            None => run_fly(None, None, false, false),
+            Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Certify { file }) => run_certify(file.as_deref()),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Law { file }) => run_law(file.as_deref()),
@@ -77,6 +77,12 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
     file.map_or_else(Scenario::paper, Scenario::load).map_err(|error| error.to_string())
 }
 
+/// What a scenario was read from.
+fn text_of(file: Option<&Path>) -> Result<String, String> {
+    let read = |file: &Path| std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()));
+    file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
+}
+
 fn watch() -> Result<Interrupt, String> {
     Interrupt::watch().map_err(|error| format!("signals cannot be watched: {error}"))
 }
@@ -90,7 +96,7 @@ fn status(holds: bool, signal: Option<u8>) -> ExitCode {
     }
 }
 
-fn run_fly(file: Option<&Path>, out: Option<PathBuf>, large_log: bool) -> Result<ExitCode, String> {
+fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
     let scenario = load(file)?;
     if let Some(size) = large(&scenario) {
         let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
@@ -102,7 +108,8 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, large_log: bool) -> Result
         eprintln!("{named}{size}");
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
-    let outcome = match fly(&scenario, &directory, &watch()?) {
+    let text = mcap.then(|| text_of(file)).transpose()?;
+    let outcome = match fly(&scenario, &directory, text.as_deref(), &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
             eprintln!("error: {}: {error}", scenario.name);
