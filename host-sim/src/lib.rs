@@ -14,7 +14,7 @@
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`plots`] | log.csv and the figures |
-//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
 pub mod campaign;
@@ -36,6 +36,7 @@ pub mod plots;
 pub mod progress;
 pub mod reality;
 pub mod sensors;
+pub mod sitl;
 pub mod table;
 pub mod tune;
 pub mod vehicle;
