@@ -29,6 +29,9 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+/// What the camera's clock is ahead of the vehicle's, us. It is never zero: an answer to TIMESYNC that says zero is a question.
+const CAMERA_AHEAD: u64 = 1_000_000_000;
+
 /// The world of one vehicle; clones are the same world.
 #[derive(Clone)]
 pub struct World(Rc<Inner>);
@@ -125,7 +128,7 @@ impl World {
     pub fn answer_time_sync(&self, asked: i64) {
         let mut bytes = Vec::new();
         let mut body = self.0.body.borrow_mut();
-        body.encoder.time_sync(asked, self.0.clock.now(), &mut bytes);
+        body.encoder.time_sync(asked, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
         body.line.push(&bytes);
     }
 
@@ -180,7 +183,7 @@ impl Body {
             let (position, attitude) = (pose.position(), pose.attitude());
             let told = ToldPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer = Answer { poses: vec![Stamped { value: told, time }], samples: Vec::new() };
+            let answer = Answer { poses: vec![Stamped { value: told, time: time + CAMERA_AHEAD }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }
