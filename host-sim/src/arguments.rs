@@ -271,7 +271,8 @@ impl SitlArguments {
         if ports.local == ports.offboard || ports.local == ports.ground || ports.offboard == ports.ground {
             return Err("--offboard-port, --ground-port, --local-port: must be three ports".to_owned());
         }
-        let named = [("--offboard-port", ports.offboard), ("--ground-port", ports.ground), ("--local-port", ports.local)];
+        let named =
+            [("--offboard-port", ports.offboard), ("--ground-port", ports.ground), ("--local-port", ports.local)];
         if let Some((name, _)) = named.into_iter().find(|(_, port)| *port == 0) {
             return Err(format!("{name}: must be from 1 to 65535, found 0"));
         }

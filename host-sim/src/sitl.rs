@@ -158,7 +158,10 @@ impl Sitl {
             parser: Parser::new(),
         };
         let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
-        spawn(&spawner, async move { Control::new(shared, pilot, outputs).run(&time, &mut motors, &mut watchdog).await });
+        spawn(
+            &spawner,
+            async move { Control::new(shared, pilot, outputs).run(&time, &mut motors, &mut watchdog).await },
+        );
         let (mut sensor, time) = (world.clone(), clock.clone());
         spawn(&spawner, async move { imu::run(shared, &time, &mut sensor).await });
         let (ear, time) = (up.clone(), clock.clone());

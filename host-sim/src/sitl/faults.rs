@@ -128,7 +128,9 @@ mod tests {
 
     #[test]
     fn what_is_no_fault_is_refused_with_the_way_to_write_one() {
-        for text in ["pose", "pose@", "pose@x", "pose@5..4", "pose@-1", "pose@NaN", "wing@3", "battery=x@3", "battery=-1@2"] {
+        for text in
+            ["pose", "pose@", "pose@x", "pose@5..4", "pose@-1", "pose@NaN", "wing@3", "battery=x@3", "battery=-1@2"]
+        {
             let refused = text.parse::<Fault>().unwrap_err().to_string();
             assert!(refused.contains("WHAT@START..END"), "{text}: {refused}");
         }

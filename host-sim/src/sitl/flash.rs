@@ -35,7 +35,10 @@ impl DeskFlash {
         };
         if image.len() != flash.records.len() * BYTES {
             let wanted = flash.records.len() * BYTES;
-            return Err(format!("--parameters {}: is no file of parameters: it has not {wanted} bytes", path.display()));
+            return Err(format!(
+                "--parameters {}: is no file of parameters: it has not {wanted} bytes",
+                path.display()
+            ));
         }
         for (record, bytes) in flash.records.iter_mut().zip(image.chunks_exact(BYTES)) {
             for (word, bytes) in record.iter_mut().zip(bytes.as_chunks().0) {

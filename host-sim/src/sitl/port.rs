@@ -147,6 +147,9 @@ mod tests {
     fn a_port_that_is_taken_is_named_with_a_way_out() {
         let (_taken, local) = client();
         let refused = Port::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
-        assert!(refused.starts_with(&format!("--local-port {local}: ")) && refused.contains("choose another"), "{refused}");
+        assert!(
+            refused.starts_with(&format!("--local-port {local}: ")) && refused.contains("choose another"),
+            "{refused}"
+        );
     }
 }

@@ -145,9 +145,7 @@ impl World {
         let commands = match command {
             MotorCommand::Stop => [0.0; MOTORS],
             MotorCommand::Run(commands) => commands,
-            MotorCommand::One { motor, level } => {
-                std::array::from_fn(|index| if index == motor { level } else { 0.0 })
-            }
+            MotorCommand::One { motor, level } => std::array::from_fn(|index| if index == motor { level } else { 0.0 }),
         };
         let mut body = self.0.body.borrow_mut();
         let mut thrusts = [0.0; MOTORS];
@@ -183,7 +181,8 @@ impl Body {
             let (position, attitude) = (pose.position(), pose.attitude());
             let told = ToldPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer = Answer { poses: vec![Stamped { value: told, time: time + CAMERA_AHEAD }], samples: Vec::new() };
+            let answer =
+                Answer { poses: vec![Stamped { value: told, time: time + CAMERA_AHEAD }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }
