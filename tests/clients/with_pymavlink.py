@@ -200,7 +200,10 @@ def flight(client):
     client.rest(4.0)
     assert client.mode == (4, 3), client.mode
     held = client.position
+    client.counts = {}
     client.rest(5.0)
+    target = client.counts["POSITION_TARGET_LOCAL_NED"]
+    assert abs(target - 5 * RATES["POSITION_TARGET_LOCAL_NED"]) <= 2, f"POSITION_TARGET_LOCAL_NED: {target} in 5 s"
     assert math.dist(held, client.position) < 0.1, (held, client.position)
     assert client.command(m.MAV_CMD_NAV_LAND) == ACCEPTED
     client.until(lambda _: not client.armed, 20.0, "landed and disarmed")
