@@ -6,14 +6,7 @@
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::{ExtendedLaw, LawParameters, PaperLaw};
 use nalgebra::Vector3;
-use scenario::Scenario;
-use scenario::verdict::Verdict;
-
-/// The rate of the firmware's control task, Hz.
-const RATE: f64 = 100.0;
-
-/// Rotors that the boards have outputs for.
-const ROTORS: usize = 4;
+use scenario::{Scenario, board};
 
 /// What is to be built in.
 #[derive(Debug)]
@@ -26,29 +19,15 @@ pub struct Embedded {
 
 /// What the scenario in `text`, of the file `name`, becomes.
 ///
-/// One whose sampled loops are unstable or without margin is refused: no board works that out, so nothing else would keep it on
-/// the ground. One that is not certified is built all the same, with a warning. The board itself refuses to arm with it: it boots,
+/// What the firmware cannot fly is refused ([`board`]). One that is not certified is built all the same, with a warning. The board itself refuses to arm with it: it boots,
 /// answers, tests its motors, and names the inequality.
 ///
 /// # Errors
 /// One line: the file, the field or the loop, and what is wrong.
 pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
     let scenario = Scenario::parse(text, name).map_err(|error| error.to_string())?;
-    let rate = 1.0 / scenario.timing.period();
-    if (rate - RATE).abs() > 1e-9 {
-        return Err(format!("{name}: control.rate: the firmware flies at {RATE} Hz, found {rate}"));
-    }
-    let Some(rotors) = scenario.configuration.rotors() else {
-        return Err(format!("{name}: rotors: missing; a board needs to know what its {ROTORS} motors turn"));
-    };
-    if rotors.len() != ROTORS {
-        return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
-    }
-    let verdict = Verdict::of(&scenario).map_err(|error| format!("{name}: {error}"))?;
-    if let Some(lack) = verdict.lacking() {
-        return Err(format!("{name}: {lack}; what cannot be flown is not built"));
-    }
-    let warning = verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm"));
+    let warning = board::check(&scenario, name)?;
+    let rotors = scenario.configuration.rotors().ok_or_else(|| format!("{name}: rotors: missing"))?;
     Ok(Embedded { source: source(&scenario, rotors), warning })
 }
 

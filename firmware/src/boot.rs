@@ -48,7 +48,19 @@ pub fn start<M: RawMutex>(
     place: &'static Place,
     parameters: &Parameters<M>,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
-    let configuration = configuration::embedded()?;
+    start_with(place, parameters, configuration::embedded()?)
+}
+
+/// The same of another configuration than the embedded one, on a machine that reads scenario files.
+///
+/// # Errors
+/// If it has no rotors, or not as many as there are motors.
+#[inline]
+pub fn start_with<M: RawMutex>(
+    place: &'static Place,
+    parameters: &Parameters<M>,
+    configuration: Configuration,
+) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
     let curve = parameters.get(Name::ThrustCurve);
     let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
     let limits = GovernorLimits {

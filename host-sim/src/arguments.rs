@@ -3,6 +3,9 @@
 use clap::{ArgGroup, Args, Parser, Subcommand};
 use host_sim::hil::Session;
 use host_sim::hil::port::Address;
+use host_sim::sitl;
+use host_sim::sitl::faults::Fault;
+use host_sim::sitl::port::Ports;
 use host_sim::tune::requirements::Requirements;
 use scenario::stability::LoopMargin;
 use std::path::PathBuf;
@@ -30,6 +33,7 @@ Examples:
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
                                              the vehicle alone, for firmware in an emulator or on a board
+  host-sim sitl                              the firmware and a vehicle, for MAVLink clients on UDP 14540 and 14550
 
 A scenario file is TOML: start from one in scenarios/ or vehicles/; docs/scenario-file.md describes every key.
 
@@ -89,7 +93,42 @@ pub enum Command {
     /// Be the vehicle of a flight controller that runs elsewhere, lock-step over MAVLink.
     #[command(after_help = HIL_HELP)]
     Hil(HilArguments),
+    /// Run the firmware's own tasks with a simulated vehicle; MAVLink clients connect by UDP on this machine.
+    #[command(after_help = SITL_HELP)]
+    Sitl(SitlArguments),
 }
+
+/// What a session with MAVLink clients is asked to be.
+#[derive(Args)]
+pub struct SitlArguments {
+    /// Scenario file: vehicle, rotors, gains, delay, [estimator], wind and the like [default: vehicles/study.toml, built in]
+    pub file: Option<PathBuf>,
+    /// How many times as fast as the desk's the vehicle's time passes, 0.1 to 100
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    speed: f64,
+    /// End after so much vehicle time, s [default: at Ctrl-C]
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+    /// Let something fail: pose, gyro, accelerometer, motors, ground-station or battery=VOLTS; may be given again
+    #[arg(long = "fault", value_name = "WHAT@START..END")]
+    faults: Vec<Fault>,
+    /// Keep parameters in this file from one session to the next
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
+    /// Port at which offboard clients listen
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().offboard)]
+    offboard_port: u16,
+    /// Port at which ground stations listen
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().ground)]
+    ground_port: u16,
+    /// Port from which all is sent, and which answers whoever speaks to it
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().local)]
+    local_port: u16,
+}
+
+/// The fastest session: no desk is faster.
+const SPEED_MAX: f64 = 100.0;
+const SPEED_MIN: f64 = 0.1;
 
 /// What a session with a flight controller is asked to be.
 #[derive(Args)]
@@ -197,6 +236,58 @@ With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0
 Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too many for a period of 10 ms.
 
 Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is then 130 or 143.";
+
+const SITL_HELP: &str = "\
+The vehicle stands on the ground below the file's initial position. Its poses come from a camera inside, as ODOMETRY: a client need send
+none. Without [estimator] in the file the sensors are a BMI088 and a camera with that section's defaults; [reference] and [sensors] do not
+count. Connect, and wait until it is ready (about 4 s):
+
+  MAVSDK        connect udpin://127.0.0.1:14540
+  pymavlink     mavutil.mavlink_connection(\"udpin:127.0.0.1:14540\")
+  MAVProxy      mavproxy.py --master=udp:127.0.0.1:14550
+  QGroundControl finds it by itself on 14550
+
+A client commands by heartbeats: one a second, before it arms and ever after. docs/sitl.md has whole examples.
+
+Faults, in seconds of the vehicle's time:
+  --fault pose@12..15          no pose arrives for 3 s
+  --fault gyro@20              the IMU falls silent, for good; accelerometer, motors: likewise
+  --fault ground-station@10..40  what clients send is lost, and what is sent to them
+  --fault battery=9.8@30       the battery shows 9.8 V (set BAT_LOW or BAT_CRIT above it)
+
+A line of status each second, and every text of the vehicle's, go to standard output. The exit status is 0 after --duration, 130 or 143
+when interrupted, 2 for what cannot be used.";
+
+impl SitlArguments {
+    /// The session.
+    ///
+    /// # Errors
+    /// Names the argument that is no speed, no time, or no set of ports.
+    pub fn session(&self) -> Result<sitl::Session, String> {
+        if !(SPEED_MIN..=SPEED_MAX).contains(&self.speed) {
+            return Err(format!("--speed: must be from {SPEED_MIN} to {SPEED_MAX}, found {}", self.speed));
+        }
+        if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
+            return Err(format!("--duration: must not be negative, found {duration}"));
+        }
+        let ports = Ports { offboard: self.offboard_port, ground: self.ground_port, local: self.local_port };
+        if ports.local == ports.offboard || ports.local == ports.ground || ports.offboard == ports.ground {
+            return Err("--offboard-port, --ground-port, --local-port: must be three ports".to_owned());
+        }
+        let named =
+            [("--offboard-port", ports.offboard), ("--ground-port", ports.ground), ("--local-port", ports.local)];
+        if let Some((name, _)) = named.into_iter().find(|(_, port)| *port == 0) {
+            return Err(format!("{name}: must be from 1 to 65535, found 0"));
+        }
+        Ok(sitl::Session {
+            ports,
+            speed: self.speed,
+            duration: self.duration,
+            faults: self.faults.clone(),
+            parameters: self.parameters.clone(),
+        })
+    }
+}
 
 impl HilArguments {
     /// Where the other side is to be found.

@@ -14,7 +14,7 @@
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
-//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`] | the commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
 pub mod campaign;
@@ -37,6 +37,7 @@ pub mod progress;
 pub mod reality;
 pub mod recording;
 pub mod sensors;
+pub mod sitl;
 pub mod table;
 pub mod tune;
 pub mod vehicle;

@@ -2,7 +2,7 @@
 
 mod arguments;
 
-use arguments::{Arguments, Command, HilArguments, TuneArguments};
+use arguments::{Arguments, Command, HilArguments, SitlArguments, TuneArguments};
 use clap::Parser;
 use host_sim::certify::certify;
 use host_sim::claims;
@@ -12,11 +12,12 @@ use host_sim::hil::{self, End, HilError};
 use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
+use host_sim::sitl::{self, SitlError};
 use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
 use host_sim::tune::{Tuned, output, tune, widest_bounds};
 use host_sim::whole_file::WholeFile;
-use scenario::{Scenario, bounds, check_name};
+use scenario::{STUDY, Scenario, bounds, check_name};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
+            Some(Command::Sitl(arguments)) => run_sitl(&arguments),
         },
     };
     outcome.unwrap_or_else(|message| {
@@ -161,6 +163,28 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
             Ok(status(false, None))
         }
         Err(error) => Err(error.to_string()),
+    }
+}
+
+fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
+    let session = arguments.session()?;
+    let scenario = match &arguments.file {
+        Some(file) => Scenario::load(file),
+        None => Scenario::parse(STUDY, "vehicles/study.toml (built in)"),
+    };
+    let scenario = scenario.map_err(|error| error.to_string())?;
+    // Whoever has stopped to read is none the less a pilot.
+    let show = |line: &str| drop(print_text(&format!("{line}\n")));
+    match sitl::run(&scenario, &session, &watch()?, show) {
+        Ok(summary) => {
+            print_text(&format!("{}: {summary}\n", scenario.name))?;
+            Ok(status(true, summary.signal))
+        }
+        Err(error @ SitlError::Diverged(_)) => {
+            eprintln!("error: {}: {error}", scenario.name);
+            Ok(status(false, None))
+        }
+        Err(SitlError::Input(what)) => Err(what),
     }
 }
 

@@ -117,6 +117,24 @@ impl RealVehicle {
         }
     }
 
+    /// The same vehicle before its motors are told anything: no rotor turns.
+    #[must_use]
+    pub fn switched_off(mut self) -> Self {
+        self.propulsion.stop();
+        self
+    }
+
+    /// Asks each rotor for a thrust, N, and moves the vehicle for one plant step. For a flight controller that allocates by itself:
+    /// without the scenario's delay.
+    ///
+    /// # Errors
+    /// [`Diverged`].
+    pub fn drive(&mut self, thrusts: &[f32]) -> Result<(), Diverged> {
+        self.propulsion.command(thrusts);
+        self.advance();
+        if self.state.is_finite() { Ok(()) } else { Err(Diverged) }
+    }
+
     /// The present state of its origin.
     #[must_use]
     pub fn state(&self) -> &BodyState {

@@ -19,6 +19,9 @@ use toml::Table;
 /// The paper's Section VI, built in.
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
+/// What the firmware flies if nobody chooses, built in.
+pub const STUDY: &str = include_str!("../../vehicles/study.toml");
+
 /// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
 const MODEL_SECTIONS: [&str; 13] = [
     "name",

@@ -16,9 +16,10 @@
 //! and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`], which
-//! is about the small motions of the [`sampled_loop`].
+//! is about the small motions of the [`sampled_loop`]; [`board`], whether the firmware can.
 
 pub mod actuation;
+pub mod board;
 pub mod body;
 pub mod bounds;
 pub mod extended;
@@ -33,4 +34,4 @@ pub mod timing;
 pub mod vehicle;
 pub mod verdict;
 
-pub use file::{PAPER, Scenario, ScenarioError, check_name};
+pub use file::{PAPER, STUDY, Scenario, ScenarioError, check_name};

@@ -71,6 +71,8 @@ struct Source {
     arrived: u64,
     /// When what that said was true, us; none before the first.
     stamped: Option<u64>,
+    /// What it was taken to have been under way, us.
+    delay: u64,
 }
 
 /// Turns messages into poses.
@@ -105,12 +107,12 @@ impl Poses {
             }
             _ => return Ok(None),
         };
-        let time = self.listen(frame, time, delay)?;
-        Ok(Some(Stamped { value, time }))
+        Ok(self.listen(frame, time, delay)?.map(|time| Stamped { value, time }))
     }
 
-    /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us.
-    fn listen(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<u64, PoseRefusal> {
+    /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us, or none where
+    /// that is not after what was taken last.
+    fn listen(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<Option<u64>, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
         let fresh = Source {
@@ -121,6 +123,7 @@ impl Poses {
             sync: TimeSync::default(),
             arrived: frame.time,
             stamped: None,
+            delay,
         };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
@@ -137,12 +140,15 @@ impl Poses {
                 Some(frame.time)
             }
         };
+        let delay = source.delay(time, delay);
+        let stamp = stamp.map(|stamp| stamp.saturating_sub(delay)).ok_or(PoseRefusal::Repeated)?;
         // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
-        let later = |&stamp: &u64| source.stamped.is_none_or(|last| stamp > last);
-        let stamp = stamp.map(|stamp| stamp.saturating_sub(source.delay(time, delay)));
-        let stamp = stamp.filter(later).ok_or(PoseRefusal::Repeated)?;
-        (source.arrived, source.stamped) = (frame.time, Some(stamp));
-        Ok(stamp)
+        if source.stamped.is_some_and(|last| stamp <= last) {
+            // Better knowledge of the delay sets stamps back: nothing that its sender could help.
+            return if delay > source.delay { Ok(None) } else { Err(PoseRefusal::Repeated) };
+        }
+        (source.arrived, source.stamped, source.delay) = (frame.time, Some(stamp), delay);
+        Ok(Some(stamp))
     }
 }
 

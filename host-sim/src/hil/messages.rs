@@ -4,6 +4,7 @@ use super::answer::{Answer, ToldPose};
 use controller_core::flight::{ImuSample, Stamped};
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
+use firmware::link::time_sync;
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
 };
@@ -57,6 +58,11 @@ impl Encoder {
     pub fn answer(&mut self, answer: &Answer, bytes: &mut Vec<u8>) {
         answer.poses.iter().for_each(|pose| self.odometry(pose, bytes));
         answer.samples.iter().for_each(|sample| self.sensor(sample, bytes));
+    }
+
+    /// Appends the answer, at `now`, us, to a TIMESYNC that was asked at `asked` of its sender's clock.
+    pub fn time_sync(&mut self, asked: i64, now: u64, bytes: &mut Vec<u8>) {
+        self.append(&time_sync::answer(asked, now), bytes);
     }
 
     /// Appends a pose as an ODOMETRY.

@@ -87,6 +87,13 @@ impl Propulsion {
         }
     }
 
+    /// Stops the rotors at once.
+    pub fn stop(&mut self) {
+        if let Some(motors) = &mut self.motors {
+            (motors.commands, motors.speeds) = ([0.0; ROTORS_MAX], [0.0; ROTORS_MAX]);
+        }
+    }
+
     /// Asks each rotor for a thrust, N.
     pub fn command(&mut self, thrusts: &[f32]) {
         if let Some(motors) = &mut self.motors {

@@ -9,7 +9,7 @@
 //! attitude_noise_deg = 0.3             # degrees about each axis, each pose
 //! dropout = 0.0                        # the part of the poses that never arrive
 //! outage = { start = 10.0, duration = 0.5 }   # s: no pose arrives meanwhile
-//! seed = 1
+//! seed = 0
 //! ```
 //!
 //! Every key may be left out; these are the defaults, without the outage. The estimator believes a BMI088 and the poses' noise
@@ -24,6 +24,9 @@ use controller_core::imu::low_pass::LowPass;
 
 /// Samples of the IMU each second.
 pub const IMU_RATE: f64 = 1e3;
+
+/// Noise of a pose's attitude where the file says nothing, degrees.
+const ATTITUDE_NOISE_DEG: f64 = 0.3;
 
 /// What the estimator is fed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +56,21 @@ pub struct Outage {
     pub start: f64,
     /// s.
     pub duration: f64,
+}
+
+impl Default for Estimator {
+    fn default() -> Self {
+        Self {
+            imu_noise: 1.0,
+            pose_every: 10,
+            pose_delay: 20,
+            position_noise: 1e-3,
+            attitude_noise: ATTITUDE_NOISE_DEG.to_radians(),
+            dropout: 0.0,
+            outage: None,
+            seed: 0,
+        }
+    }
 }
 
 impl Estimator {
@@ -108,17 +126,20 @@ pub fn read(root: &Section, timing: &Timing) -> Result<Option<Estimator>, FieldE
         }
         Ok(whole as u64)
     };
-    let rate = Allowed::new(10.0..=200.0, "Hz").number_or(&section, "pose_rate", 100.0)?;
-    let delay = Allowed::new(0.0..=0.15, "s").number_or(&section, "pose_delay", 0.02)?;
+    let default = Estimator::default();
+    let rate = IMU_RATE / default.pose_every as f64;
+    let rate = Allowed::new(10.0..=200.0, "Hz").number_or(&section, "pose_rate", rate)?;
+    let delay = default.pose_delay as f64 / IMU_RATE;
+    let delay = Allowed::new(0.0..=0.15, "s").number_or(&section, "pose_delay", delay)?;
     Ok(Some(Estimator {
-        imu_noise: Allowed::new(0.0..=100.0, "").number_or(&section, "imu_noise", 1.0)?,
+        imu_noise: Allowed::new(0.0..=100.0, "").number_or(&section, "imu_noise", default.imu_noise)?,
         pose_every: milliseconds("pose_rate", IMU_RATE / rate, "the time between two poses")?,
         pose_delay: milliseconds("pose_delay", IMU_RATE * delay, "the delay")?,
-        position_noise: Allowed::new(0.0..=1.0, "m").number_or(&section, "position_noise", 1e-3)?,
+        position_noise: Allowed::new(0.0..=1.0, "m").number_or(&section, "position_noise", default.position_noise)?,
         attitude_noise: Allowed::new(0.0..=30.0, "degrees")
-            .number_or(&section, "attitude_noise_deg", 0.3)?
+            .number_or(&section, "attitude_noise_deg", ATTITUDE_NOISE_DEG)?
             .to_radians(),
-        dropout: Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", 0.0)?,
+        dropout: Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", default.dropout)?,
         outage: section.optional_section("outage")?.map(|outage| read_outage(&outage)).transpose()?,
         seed: seed(&section)?,
     }))

@@ -1,0 +1,262 @@
+//! `sitl`: the firmware's own tasks on a desktop, with MAVLink on UDP for the clients that fly real vehicles.
+//!
+//! ```text
+//! clients -- UDP --> receive -> Shared -> control -> motors -> world
+//!         <-- UDP -- transmit <-'   ^------- IMU, poses, battery <-'
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`clock`], [`line`] | time that moves when every task waits; bytes in memory |
+//! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
+//! | [`port`], `voice` | clients on UDP; what the vehicle says |
+//! | [`pace`] | the vehicle's time against everybody else's |
+//! | [`faults`] | what is to fail, and when |
+//! | [`flash`] | where parameters are kept |
+//!
+//! Control, IMU, both halves of the link, status and parameters are the library's tasks that boards run; here they share
+//! a thread and a simulated clock, which is let go no further than the desk's. The configuration is certified as at a board's boot, and a
+//! scenario that could not be built for a board is refused ([`scenario::board`]).
+
+pub mod clock;
+pub mod faults;
+pub mod flash;
+pub mod line;
+pub mod pace;
+pub mod port;
+mod voice;
+pub mod world;
+
+use crate::interrupt::Interrupt;
+use clock::SimClock;
+use controller_core::flight::Mode;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use faults::{Fault, Faults, Part};
+use firmware::control::Control;
+use firmware::hardware::Clock;
+use firmware::link::frame::Parser;
+use firmware::parameters::storage::Storage;
+use firmware::shared::Shared;
+use firmware::{boot, imu, link, status};
+use flash::DeskFlash;
+use futures::executor::{LocalPool, LocalSpawner};
+use futures::task::LocalSpawnExt;
+use line::Line;
+use pace::Pace;
+use port::{Port, Ports};
+use scenario::{Scenario, board};
+use std::cell::RefCell;
+use std::fmt;
+use std::future::Future;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use voice::Voice;
+use world::World;
+
+/// Time between lines of status, by the desk's clock.
+const STATUS: Duration = Duration::from_secs(1);
+
+/// How a session is run.
+#[derive(Debug, Clone)]
+pub struct Session {
+    /// Where the clients are.
+    pub ports: Ports,
+    /// How many times as fast as the desk's the vehicle's time passes.
+    pub speed: f64,
+    /// Vehicle time after which it ends, s; none: when somebody interrupts.
+    pub duration: Option<f64>,
+    /// What fails.
+    pub faults: Vec<Fault>,
+    /// Where parameters are kept.
+    pub parameters: Option<PathBuf>,
+}
+
+/// Why a session could not be run, or not to its end.
+#[derive(Debug)]
+pub enum SitlError {
+    /// The scenario, a file or a port cannot be used: why, in a line.
+    Input(String),
+    /// The vehicle's motion is not finite any more, at this time, s.
+    Diverged(f64),
+}
+
+impl fmt::Display for SitlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(what) => f.write_str(what),
+            Self::Diverged(time) => write!(f, "at {time} s: the motion is not finite"),
+        }
+    }
+}
+
+/// How a session ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Vehicle time, s.
+    pub time: f64,
+    /// What the vehicle was doing; none before its first tick.
+    pub mode: Option<Mode>,
+    /// Where it really was, m.
+    pub position: [f64; 3],
+    /// Control ticks that were late.
+    pub missed: u32,
+    /// The signal that ended it, if one did.
+    pub signal: Option<u8>,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.position;
+        let why = if self.signal.is_some() { "interrupted" } else { "the duration was over" };
+        let mode = self.mode.map_or("silent", Mode::name);
+        write!(f, "{why} after {:.1} s; {mode}, at {x:.3} {y:.3} {z:.3} m; {} ticks missed", self.time, self.missed)
+    }
+}
+
+/// The firmware and its world on one thread.
+pub struct Sitl {
+    pool: LocalPool,
+    clock: SimClock,
+    world: World,
+    shared: &'static Shared<NoopRawMutex>,
+    port: Rc<RefCell<Port>>,
+    up: Line,
+    faults: Faults,
+    texts: Rc<RefCell<Vec<(u64, String)>>>,
+}
+
+impl Sitl {
+    /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if it will not.
+    ///
+    /// # Errors
+    /// In words: what the firmware cannot fly, and files and ports that cannot be used.
+    pub fn boot(scenario: &Scenario, session: &Session) -> Result<(Self, Option<String>), String> {
+        let warning = board::check(scenario, &scenario.name)?;
+        let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
+        let in_file = |what| format!("{}: {what}", scenario.name);
+        let world = World::new(scenario, &clock, faults.clone(), up.clone()).map_err(in_file)?;
+        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
+        let flash = DeskFlash::open(session.parameters.clone())?;
+
+        // As long as the program: what tasks share is static on a board as well.
+        let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
+        let mut parameters = Storage::load(flash, shared);
+        let place = Box::leak(Box::new(boot::Place::new()));
+        let (pilot, outputs) = boot::start_with(place, &shared.parameters, scenario.configuration.clone())
+            .map_err(|error| in_file(error.to_string()))?;
+
+        let pool = LocalPool::new();
+        let spawner = pool.spawner();
+        let texts = Rc::<RefCell<Vec<_>>>::default();
+        let voice = Voice {
+            clock: clock.clone(),
+            faults: faults.clone(),
+            port: Rc::clone(&port),
+            world: world.clone(),
+            texts: Rc::clone(&texts),
+            parser: Parser::new(),
+        };
+        let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
+        spawn(
+            &spawner,
+            async move { Control::new(shared, pilot, outputs).run(&time, &mut motors, &mut watchdog).await },
+        );
+        let (mut sensor, time) = (world.clone(), clock.clone());
+        spawn(&spawner, async move { imu::run(shared, &time, &mut sensor).await });
+        let (ear, time) = (up.clone(), clock.clone());
+        spawn(&spawner, async move { link::receive::receive(ear, &time, shared).await });
+        let time = clock.clone();
+        spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared).await });
+        let (light, battery, time) = (world.clone(), world.clone(), clock.clone());
+        spawn(&spawner, async move { status::run(light, battery, &time, shared).await });
+        let time = clock.clone();
+        spawn(&spawner, async move { parameters.keep(&time, shared).await });
+        spawn(&spawner, world.clone().run());
+        Ok((Self { pool, clock, world, shared, port, up, faults, texts }, warning))
+    }
+
+    /// Takes what clients have sent, and lets time pass until `end`, us.
+    pub fn pass(&mut self, end: u64) {
+        let (up, silent) = (&self.up, self.faults.has(Part::GroundStation, self.clock.now()));
+        self.port.borrow_mut().receive(|datagram| {
+            if !silent {
+                up.push(datagram);
+            }
+        });
+        self.clock.run(&mut self.pool, end);
+    }
+
+    /// One line: time, mode, position, battery.
+    fn status(&self) -> String {
+        let report = self.shared.report.get().map(|report| report.value);
+        let mode = report.as_ref().map_or("no report", |report| report.mode.name());
+        let place = report.and_then(|report| report.state).map_or_else(
+            || "position unknown".to_owned(),
+            |state| format!("at {:8.3} {:8.3} {:8.3} m", state.position.x, state.position.y, state.position.z),
+        );
+        let battery = self.shared.voltage.get().map_or_else(String::new, |volts| format!("  {:.2} V", volts.value));
+        format!("{:9.2} s  {mode:<11}  {place}{battery}", self.clock.now() as f64 * 1e-6)
+    }
+
+    fn summary(&self, signal: Option<u8>) -> Summary {
+        let report = self.shared.report.get().map(|report| report.value);
+        Summary {
+            time: self.clock.now() as f64 * 1e-6,
+            mode: report.as_ref().map(|report| report.mode),
+            position: self.world.state().position.into(),
+            missed: report.map_or(0, |report| report.timing.missed),
+            signal,
+        }
+    }
+}
+
+fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'static) {
+    // It can only be refused by a pool that is gone.
+    let _ = spawner.spawn_local(async move { drop(task.await) });
+}
+
+/// Runs a session until its duration is over or somebody interrupts; `tell` gets lines to show.
+///
+/// # Errors
+/// [`SitlError`].
+pub fn run(
+    scenario: &Scenario,
+    session: &Session,
+    interrupt: &Interrupt,
+    mut tell: impl FnMut(&str),
+) -> Result<Summary, SitlError> {
+    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
+    warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
+    let Ports { offboard, ground, local } = session.ports;
+    tell(&format!(
+        "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
+        scenario.name
+    ));
+    let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
+    let mut pace = Pace::new(session.speed);
+    let mut shown = Instant::now();
+    loop {
+        let now = sitl.clock.now();
+        if let Some(signal) = interrupt.signal() {
+            return Ok(sitl.summary(Some(signal)));
+        }
+        if end.is_some_and(|end| now >= end) {
+            return Ok(sitl.summary(None));
+        }
+        let next = pace.next(now).min(end.unwrap_or(u64::MAX));
+        pace.wait(next);
+        sitl.pass(next);
+        sitl.world.check().map_err(|_| SitlError::Diverged(next as f64 * 1e-6))?;
+        for (time, text) in sitl.texts.take() {
+            tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+        }
+        if shown.elapsed() >= STATUS {
+            shown += STATUS;
+            tell(&sitl.status());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

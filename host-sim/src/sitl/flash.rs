@@ -1,0 +1,79 @@
+//! Flash for parameters: in memory, and in a file if they are to outlast the program.
+//!
+//! The file is the flash's image, word by word, written whole each time: parameters change seldom.
+
+use crate::whole_file::WholeFile;
+use firmware::hardware::{Fault, Flash, Record};
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// Records in a sector.
+const RECORDS: usize = 16;
+/// Bytes of a record.
+const BYTES: usize = size_of::<Record>();
+const BLANK: Record = [u32::MAX; _];
+
+/// Two sectors.
+#[derive(Debug)]
+pub struct DeskFlash {
+    records: Vec<Record>,
+    file: Option<PathBuf>,
+}
+
+impl DeskFlash {
+    /// What `file` holds, or blank flash where there is none yet.
+    ///
+    /// # Errors
+    /// In words, if the file cannot be read or is something else.
+    pub fn open(file: Option<PathBuf>) -> Result<Self, String> {
+        let mut flash = Self { records: vec![BLANK; 2 * RECORDS], file };
+        let Some(path) = &flash.file else { return Ok(flash) };
+        let image = match std::fs::read(path) {
+            Ok(image) => image,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(flash),
+            Err(error) => return Err(format!("--parameters {}: cannot be read: {error}", path.display())),
+        };
+        if image.len() != flash.records.len() * BYTES {
+            let wanted = flash.records.len() * BYTES;
+            return Err(format!(
+                "--parameters {}: is no file of parameters: it has not {wanted} bytes",
+                path.display()
+            ));
+        }
+        for (record, bytes) in flash.records.iter_mut().zip(image.chunks_exact(BYTES)) {
+            for (word, bytes) in record.iter_mut().zip(bytes.as_chunks().0) {
+                *word = u32::from_le_bytes(*bytes);
+            }
+        }
+        Ok(flash)
+    }
+
+    fn store(&self) -> Result<(), Fault> {
+        let Some(path) = &self.file else { return Ok(()) };
+        let image: Vec<u8> = self.records.iter().flatten().flat_map(|word| word.to_le_bytes()).collect();
+        let write = || {
+            let mut file = WholeFile::create(path)?;
+            file.write_all(&image)?;
+            file.finish()
+        };
+        write().map_err(|_| Fault)
+    }
+}
+
+impl Flash for DeskFlash {
+    const RECORDS: usize = RECORDS;
+
+    fn read(&mut self, place: usize) -> Result<Record, Fault> {
+        self.records.get(place).copied().ok_or(Fault)
+    }
+
+    fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault> {
+        *self.records.get_mut(place).ok_or(Fault)? = *record;
+        self.store()
+    }
+
+    fn erase(&mut self, sector: usize) -> Result<(), Fault> {
+        self.records.chunks_mut(RECORDS).nth(sector).ok_or(Fault)?.fill(BLANK);
+        self.store()
+    }
+}

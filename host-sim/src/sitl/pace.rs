@@ -1,0 +1,46 @@
+//! The vehicle's time against everybody else's.
+//!
+//! Time passes in slices of a millisecond of the desk's. A desk that is too slow, or was asleep, does not catch up with more than
+//! [`LAG_MAX`]: clients would see a vehicle that leaps.
+
+use std::time::{Duration, Instant};
+
+/// The slice, us of the desk's time, and the shortest slice of the vehicle's.
+const SLICE: f64 = 1_000.0;
+
+/// The most that is caught up with.
+const LAG_MAX: Duration = Duration::from_millis(200);
+
+/// What the two clocks have to do with each other.
+#[derive(Debug)]
+pub struct Pace {
+    speed: f64,
+    start: Instant,
+    /// The vehicle's time at the start, us.
+    from: u64,
+}
+
+impl Pace {
+    /// A vehicle whose time passes `speed` times as fast, from zero now.
+    #[must_use]
+    pub fn new(speed: f64) -> Self {
+        Self { speed, start: Instant::now(), from: 0 }
+    }
+
+    /// The end of the slice that begins at `now`, us of the vehicle's time.
+    #[must_use]
+    pub fn next(&self, now: u64) -> u64 {
+        now + (SLICE * self.speed.max(1.0)) as u64
+    }
+
+    /// Waits until the vehicle's time may be `time`, us.
+    pub fn wait(&mut self, time: u64) {
+        let due = Duration::from_secs_f64((time - self.from) as f64 * 1e-6 / self.speed);
+        let passed = self.start.elapsed();
+        if let Some(early) = due.checked_sub(passed) {
+            std::thread::sleep(early);
+        } else if passed - due > LAG_MAX {
+            (self.start, self.from) = (Instant::now(), time);
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The clients: MAVLink over UDP on this machine's loopback, a frame a datagram.
+//!
+//! Everything goes to two addresses, whether anybody is there or not, and to whoever has spoken within the last [`REMEMBERED`] from
+//! another. Nothing from outside this machine gets in.
+
+use std::fmt;
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::time::{Duration, Instant};
+
+/// How long a client that is silent is still sent to.
+const REMEMBERED: Duration = Duration::from_secs(10);
+
+/// The most clients beside the two addresses.
+const CLIENTS: usize = 8;
+
+/// The most datagrams that are taken at once: a flood must not stop time.
+const DATAGRAMS: usize = 64;
+
+/// The ports, all on 127.0.0.1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ports {
+    /// Where a companion computer's software listens.
+    pub offboard: u16,
+    /// Where a ground station listens.
+    pub ground: u16,
+    /// From which all is sent.
+    pub local: u16,
+}
+
+/// PX4's, by which clients know a simulated vehicle.
+impl Default for Ports {
+    fn default() -> Self {
+        Self { offboard: 14540, ground: 14550, local: 14580 }
+    }
+}
+
+/// The local port cannot be had.
+#[derive(Debug)]
+pub struct PortTaken(u16, io::Error);
+
+impl fmt::Display for PortTaken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(port, error) = self;
+        write!(f, "--local-port {port}: cannot be used: {error}")?;
+        if error.kind() == io::ErrorKind::AddrInUse {
+            write!(f, "; end the other program that has it, perhaps another sitl, or choose another port")?;
+        }
+        Ok(())
+    }
+}
+
+/// The socket and who is spoken to.
+#[derive(Debug)]
+pub struct Port {
+    socket: UdpSocket,
+    fixed: [SocketAddr; 2],
+    /// The others, and when they were last heard.
+    clients: Vec<(SocketAddr, Instant)>,
+}
+
+impl Port {
+    /// Opens the local port.
+    ///
+    /// # Errors
+    /// [`PortTaken`].
+    pub fn open(ports: &Ports) -> Result<Self, PortTaken> {
+        let here = |port| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+        let open = || {
+            let socket = UdpSocket::bind(here(ports.local))?;
+            socket.set_nonblocking(true)?;
+            Ok(socket)
+        };
+        let socket = open().map_err(|error| PortTaken(ports.local, error))?;
+        Ok(Self { socket, fixed: [here(ports.offboard), here(ports.ground)], clients: Vec::new() })
+    }
+
+    /// Hands over what has come.
+    pub fn receive(&mut self, mut take: impl FnMut(&[u8])) {
+        let mut datagram = [0; 65_536];
+        for _ in 0..DATAGRAMS {
+            match self.socket.recv_from(&mut datagram) {
+                Ok((length, from)) => {
+                    self.remember(from);
+                    take(&datagram[..length]);
+                }
+                // Whoever is not there says so to the next call that receives.
+                Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
+                Err(_) => break,
+            }
+        }
+    }
+
+    /// Sends one frame to everybody. What does not go out is lost, as on any radio.
+    pub fn send(&mut self, frame: &[u8]) {
+        self.clients.retain(|(_, heard)| heard.elapsed() < REMEMBERED);
+        let others = self.clients.iter().map(|(address, _)| *address);
+        for address in self.fixed.into_iter().chain(others) {
+            let _ = self.socket.send_to(frame, address);
+        }
+    }
+
+    fn remember(&mut self, from: SocketAddr) {
+        let now = Instant::now();
+        if let Some((_, heard)) = self.clients.iter_mut().find(|(address, _)| *address == from) {
+            *heard = now;
+        } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS {
+            self.clients.push((from, now));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A socket on a port that the system chooses.
+    fn client() -> (UdpSocket, u16) {
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        socket.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
+        let port = socket.local_addr().unwrap().port();
+        (socket, port)
+    }
+
+    fn heard(socket: &UdpSocket) -> Vec<u8> {
+        let mut datagram = [0; 64];
+        let length = socket.recv(&mut datagram).unwrap();
+        datagram[..length].to_vec()
+    }
+
+    #[test]
+    fn both_addresses_hear_everything_and_whoever_speaks_is_answered() {
+        let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
+        let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
+        port.send(b"one");
+        assert_eq!((heard(&offboard), heard(&ground)), (b"one".to_vec(), b"one".to_vec()));
+        other.send_to(b"here", port.socket.local_addr().unwrap()).unwrap();
+        std::thread::sleep(Duration::from_millis(50));
+        let mut taken = Vec::new();
+        port.receive(|bytes| taken.extend_from_slice(bytes));
+        assert_eq!(taken, b"here");
+        port.send(b"two");
+        assert_eq!((heard(&other), heard(&ground)), (b"two".to_vec(), b"two".to_vec()));
+    }
+
+    #[test]
+    fn a_port_that_is_taken_is_named_with_a_way_out() {
+        let (_taken, local) = client();
+        let refused = Port::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
+        assert!(
+            refused.starts_with(&format!("--local-port {local}: ")) && refused.contains("choose another"),
+            "{refused}"
+        );
+    }
+}

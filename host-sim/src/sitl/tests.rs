@@ -1,0 +1,158 @@
+use super::*;
+use controller_core::estimator::Fault as EstimatorFault;
+use mavlink::dialects::common::{COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavType};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use scenario::STUDY;
+use std::net::{Ipv4Addr, UdpSocket};
+
+/// A session without a desk's clock, and a client of it.
+struct Flown {
+    sitl: Sitl,
+    client: UdpSocket,
+    local: u16,
+    sequence: u8,
+}
+
+impl Flown {
+    fn boot(text: &str, faults: &[&str], parameters: Option<PathBuf>) -> Self {
+        let socket = || UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let (client, ground, free) = (socket(), socket(), socket());
+        let port = |socket: &UdpSocket| socket.local_addr().unwrap().port();
+        let ports = Ports { offboard: port(&client), ground: port(&ground), local: port(&free) };
+        drop(free);
+        let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+        let session = Session { ports, speed: 1.0, duration: None, faults, parameters };
+        let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
+        assert_eq!(warning, None);
+        Self { sitl, client, local: ports.local, sequence: 0 }
+    }
+
+    fn send(&mut self, message: &impl MessageData) {
+        let mut frame = MAVLinkV2MessageRaw::new();
+        self.sequence = self.sequence.wrapping_add(1);
+        frame.serialize_message_data(MavHeader { system_id: 255, component_id: 190, sequence: self.sequence }, message);
+        self.client.send_to(frame.raw_bytes(), (Ipv4Addr::LOCALHOST, self.local)).unwrap();
+    }
+
+    fn command(&mut self, command: MavCmd, param1: f32) {
+        let data =
+            COMMAND_LONG_DATA { command, param1, target_system: 1, target_component: 1, ..COMMAND_LONG_DATA::DEFAULT };
+        self.send(&data);
+        self.pass(0.1);
+    }
+
+    /// Lets vehicle time pass, s, with a heartbeat every half second.
+    fn pass(&mut self, seconds: f64) {
+        let end = self.sitl.clock.now() + (seconds * 1e6) as u64;
+        while self.sitl.clock.now() < end {
+            let now = self.sitl.clock.now();
+            if now.is_multiple_of(500_000) {
+                self.send(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT });
+            }
+            self.sitl.pass((now + 10_000).min(end));
+        }
+    }
+
+    fn mode(&self) -> Mode {
+        self.sitl.summary(None).mode.unwrap()
+    }
+
+    fn said(&self, text: &str) -> bool {
+        self.sitl.texts.borrow().iter().any(|(_, said)| said.contains(text))
+    }
+
+    /// Ready after 5 s, armed and up at 20 s.
+    fn in_the_air(text: &str, faults: &[&str]) -> Self {
+        let mut flown = Self::boot(text, faults, None);
+        flown.pass(5.0);
+        assert_eq!(flown.mode(), Mode::Ready);
+        flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+        flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+        flown.pass(14.8);
+        assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
+        flown
+    }
+}
+
+#[test]
+fn a_client_arms_takes_off_and_lands_with_late_and_noisy_poses() {
+    let mut flown = Flown::in_the_air(STUDY, &[]);
+    let up = flown.sitl.world.state().position;
+    assert!((up.z - 1.5).abs() < 0.05 && (up.x - 1.0).abs() < 0.05, "{up}");
+    // The camera answered TIMESYNC: the estimate is of where the vehicle is, not of where a pose was 20 ms ago.
+    let health = flown.sitl.shared.report.get().unwrap().value.health;
+    assert!(!health.faults.contain(EstimatorFault::NotStarted) && health.pose_age.unwrap() >= 20_000, "{health:?}");
+    flown.command(MavCmd::MAV_CMD_NAV_LAND, 0.0);
+    flown.pass(12.0);
+    assert!(matches!(flown.mode(), Mode::Checks | Mode::Ready), "{:?}", flown.sitl.texts);
+    // A touchdown ends where the vehicle was after the plant's step.
+    let height = flown.sitl.world.state().position.z;
+    assert!((-1e-3..=0.0).contains(&height), "{height}");
+    assert_eq!(flown.sitl.summary(None).missed, 0);
+}
+
+#[test]
+fn faults_come_at_their_times_and_do_what_the_flight_rules_say() {
+    for (fault, seconds, mode, text) in [
+        ("pose@21..40", 3.0, Mode::Descending, "Pose lost"),
+        ("gyro@22.5", 3.0, Mode::Stopped, "no IMU"),
+        ("ground-station@21..40", 10.5, Mode::Landing, "Ground station still lost: landing"),
+    ] {
+        let mut flown = Flown::in_the_air(STUDY, &[fault]);
+        assert!(!flown.said(text), "{fault}: too early");
+        flown.pass(seconds);
+        assert_eq!((flown.mode(), flown.said(text)), (mode, true), "{fault}: {:?}", flown.sitl.texts);
+    }
+}
+
+#[test]
+fn the_batterys_voltage_is_the_vehicles_and_a_fault_overrules_it() {
+    let battery = "\n[battery]\nfull_voltage = 12.6\nempty_voltage = 10.5\nresistance = 0.03\ncapacity = 2.2\n";
+    let mut flown = Flown::in_the_air(&format!("{STUDY}{battery}"), &["battery=9.8@25"]);
+    let volts = |flown: &Flown| flown.sitl.shared.voltage.get().unwrap().value;
+    assert!((12.0..12.59).contains(&volts(&flown)), "{}", volts(&flown));
+    flown.pass(5.5);
+    assert_eq!(volts(&flown), 9.8);
+    assert!(flown.sitl.status().ends_with("9.80 V"), "{}", flown.sitl.status());
+}
+
+#[test]
+fn wind_blows_in_it() {
+    let wind = "\n[wind]\nsteady = [4.0, 0.0, 0.0]\n";
+    let mut still = Flown::in_the_air(STUDY, &[]);
+    let mut windy = Flown::in_the_air(&format!("{STUDY}{wind}"), &[]);
+    still.pass(3.0);
+    windy.pass(3.0);
+    let lean = |flown: &Flown| {
+        let up = nalgebra::UnitQuaternion::new_normalize(flown.sitl.world.state().attitude) * nalgebra::Vector3::z();
+        up.x
+    };
+    assert!(lean(&still).abs() < 0.01 && lean(&windy) < -0.02, "{} {}", lean(&still), lean(&windy));
+}
+
+#[test]
+fn parameters_outlast_a_session_and_count_at_the_next_boot() {
+    use firmware::parameters::table::Name;
+    let file = std::env::temp_dir().join(format!("sitl-parameters-{}", std::process::id()));
+    let mut first = Flown::boot(STUDY, &[], Some(file.clone()));
+    first.pass(1.0);
+    first.sitl.shared.parameters.set(Name::TakeOffHeight, 3.0).unwrap();
+    first.pass(1.0);
+    let second = Flown::boot(STUDY, &[], Some(file.clone()));
+    assert_eq!(second.sitl.shared.parameters.get(Name::TakeOffHeight), 3.0);
+    std::fs::write(&file, "something else").unwrap();
+    let refused = DeskFlash::open(Some(file.clone())).unwrap_err();
+    std::fs::remove_file(&file).unwrap();
+    assert!(refused.contains("is no file of parameters"), "{refused}");
+}
+
+#[test]
+fn what_no_board_could_fly_is_refused_by_name() {
+    let session = Session { ports: Ports::default(), speed: 1.0, duration: None, faults: Vec::new(), parameters: None };
+    let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();
+    assert!(refused(scenario::PAPER).starts_with("paper: rotors: missing"));
+    let slow = STUDY.replace("lag = 0.030 ", "lag = 1.0 ");
+    assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
+    let coarse = STUDY.replace("step = 0.001", "step = 0.002");
+    assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
+}

@@ -1,0 +1,119 @@
+"""MAVSDK: connect, healthy and armable, parameters, arm, take off, a square offboard, a place on the globe, hold, land."""
+
+import asyncio
+import math
+import sys
+import time
+
+from mavsdk.asyncio import ComponentType, Configuration, Mavsdk
+from mavsdk.asyncio.plugins.action import ActionAsync
+from mavsdk.asyncio.plugins.offboard import OffboardAsync
+from mavsdk.asyncio.plugins.param import ParamAsync
+from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
+from mavsdk.plugins.offboard import PositionNedYaw
+from mavsdk.plugins.telemetry import FlightMode
+
+from vehicle import Vehicle
+
+# Its time-outs are seconds of this desk's: faster vehicles only shorten the flight.
+SPEED = 2.0
+METRES = 111_194.93  # of a degree
+
+
+class Client:
+    def __init__(self, system):
+        self.action, self.offboard = ActionAsync(system), OffboardAsync(system)
+        self.param, self.telemetry = ParamAsync(system), TelemetryAsync(system)
+
+    async def until(self, what, patience, reason):
+        end = time.monotonic() + patience
+        while not await what():
+            assert time.monotonic() < end, f"not within {patience} s: {reason}; at {await self.place()}"
+            await asyncio.sleep(0.05)
+
+    async def place(self):
+        now = (await self.telemetry.position_velocity_ned()).position
+        return now.north_m, now.east_m, now.down_m
+
+    async def near(self, target, within=0.2):
+        return math.dist(await self.place(), target) < within
+
+    async def fly_to(self, target, yaw):
+        await self.offboard.set_position_ned(PositionNedYaw(*target, yaw))
+        await self.until(lambda: self.near(target), 20, f"there: {target}")
+
+
+async def fly(vehicle):
+    configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
+    async with Mavsdk(configuration) as mavsdk:
+        await mavsdk.add_any_connection(f"udpin://127.0.0.1:{vehicle.offboard}")
+        system = await mavsdk.first_autopilot(timeout_s=10.0)
+        assert system is not None, "no autopilot found"
+        client = Client(system)
+        await client.until(client.telemetry.health_all_ok, 20, "health_all_ok")
+        await client.until(lambda: armable(client), 20, "is_armable")
+        print("  mavsdk: healthy and armable", flush=True)
+
+        await client.param.set_param_float("TKO_ALT", 2.5)
+        assert await client.param.get_param_float("TKO_ALT") == 2.5
+        everything = await client.param.get_all_params()
+        assert any(one.name == "FENCE_HEIGHT" for one in everything.float_params)
+        print(f"  mavsdk: {len(everything.float_params)} parameters, one set", flush=True)
+
+        home = await client.place()
+        await client.action.arm()
+        await client.until(client.telemetry.armed, 3, "armed")
+        await client.action.takeoff()
+        await client.until(client.telemetry.in_air, 10, "in the air")
+        await client.until(lambda: client.near((home[0], home[1], home[2] - 1.5)), 20, "1.5 m up")
+        print("  mavsdk: took off", flush=True)
+
+        north, east, up = home[0], home[1], home[2] - 2.0
+        await client.offboard.set_position_ned(PositionNedYaw(north, east, up, 90.0))
+        await client.offboard.start()
+        assert await client.offboard.is_active()
+        for x, y in [(2, 0), (2, 2), (0, 2), (0, 0)]:
+            await client.fly_to((north + x, east + y, up), 90.0)
+        assert (await client.telemetry.flight_mode()) == FlightMode.OFFBOARD
+        await client.offboard.stop()
+        await client.until(lambda: in_mode(client, FlightMode.HOLD), 5, "hold after offboard")
+        print("  mavsdk: flew a square offboard", flush=True)
+
+        here = await client.telemetry.position()
+        latitude, longitude = here.latitude_deg + 3.0 / METRES, here.longitude_deg - 2.0 / METRES
+        was = await client.place()
+        await client.action.goto_location(latitude, longitude, here.absolute_altitude_m + 1.0, 0.0)
+        target = (was[0] + 3.0, was[1] - 2.0, was[2] - 1.0)
+        await client.until(lambda: client.near(target, 0.3), 25, f"there by globe: {target}")
+        print("  mavsdk: went to a place on the globe", flush=True)
+
+        await client.action.hold()
+        await asyncio.sleep(1.0)
+        held = await client.place()
+        await asyncio.sleep(2.0)
+        assert await client.near(held, 0.1), (held, await client.place())
+        await client.action.land()
+        await client.until(lambda: disarmed(client), 30, "landed and disarmed")
+        assert not await client.telemetry.in_air() and abs((await client.place())[2] - home[2]) < 0.1
+        print("  mavsdk: held, landed, disarmed", flush=True)
+
+
+async def armable(client):
+    return (await client.telemetry.health()).is_armable
+
+
+async def in_mode(client, mode):
+    return (await client.telemetry.flight_mode()) == mode
+
+
+async def disarmed(client):
+    return not await client.telemetry.armed()
+
+
+def main():
+    with Vehicle(speed=SPEED) as vehicle:
+        asyncio.run(asyncio.wait_for(fly(vehicle), 150))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,237 @@
+"""pymavlink: every message at its rate, every question answered, and a flight by raw messages."""
+
+import math
+import os
+import sys
+import time
+
+os.environ["MAVLINK20"] = "1"
+from pymavlink import mavutil  # noqa: E402
+from pymavlink.dialects.v20 import common as m  # noqa: E402
+
+from vehicle import Vehicle  # noqa: E402
+
+SPEED = 4.0
+
+# The messages of the table in firmware/src/link/streams.rs, times a second of the vehicle's; 0: on request only.
+RATES = {
+    "HEARTBEAT": 1, "ATTITUDE_QUATERNION": 25, "LOCAL_POSITION_NED": 25, "ATTITUDE": 10, "TIMESYNC": 1, "SYS_STATUS": 1,
+    "EXTENDED_SYS_STATE": 2, "GLOBAL_POSITION_INT": 5, "ODOMETRY": 2, "ESTIMATOR_STATUS": 1, "BATTERY_STATUS": 0.5,
+    "UNKNOWN_436": 1, "HOME_POSITION": 0.5, "SYSTEM_TIME": 0.5, "POSITION_TARGET_LOCAL_NED": 5,
+    "GPS_GLOBAL_ORIGIN": 0, "AUTOPILOT_VERSION": 0, "UNKNOWN_300": 0,
+}  # fmt: skip
+# CURRENT_MODE (436) and PROTOCOL_VERSION (300), which this pymavlink's dialect has not: it counts frames by number.
+# Only while something is flown.
+FLYING_ONLY = {"POSITION_TARGET_LOCAL_NED"}
+
+POSITION = 0b110111111000
+VELOCITY = 0b110111000111
+ACCEPTED, DENIED, UNSUPPORTED = m.MAV_RESULT_ACCEPTED, m.MAV_RESULT_DENIED, m.MAV_RESULT_UNSUPPORTED
+
+
+class Client:
+    def __init__(self, port):
+        self.line = mavutil.mavlink_connection(f"udpin:127.0.0.1:{port}", source_system=255, dialect="common")
+        self.now, self.position, self.yaw, self.mode, self.armed = 0.0, None, 0.0, 0, False
+        self.landed = None
+        self.beaten = self.sent = -10.0
+        self.setpoint = None
+        self.counts = {}
+
+    def step(self):
+        """Takes one message, and sends what is due by the vehicle's time."""
+        message = self.line.recv_match(blocking=True, timeout=5)
+        assert message is not None, "the vehicle is silent"
+        kind = message.get_type()
+        self.counts[kind] = self.counts.get(kind, 0) + 1
+        if kind == "LOCAL_POSITION_NED":
+            self.now, self.position = message.time_boot_ms * 1e-3, (message.x, message.y, message.z)
+        elif kind == "ATTITUDE":
+            self.yaw = message.yaw
+        elif kind == "HEARTBEAT":
+            self.armed = bool(message.base_mode & m.MAV_MODE_FLAG_SAFETY_ARMED)
+            self.mode = (message.custom_mode >> 16 & 255, message.custom_mode >> 24)
+        elif kind == "EXTENDED_SYS_STATE":
+            self.landed = message.landed_state
+        elif kind == "STATUSTEXT":
+            print(f"    {self.now:7.2f} s  {message.text}")
+        if self.now - self.beaten >= 0.5:
+            self.beaten = self.now
+            self.line.mav.heartbeat_send(m.MAV_TYPE_GCS, m.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+        if self.setpoint and self.now - self.sent >= 0.1:
+            self.sent = self.now
+            frame, mask, numbers = self.setpoint
+            x, y, z, vx, vy, vz = numbers
+            self.line.mav.set_position_target_local_ned_send(
+                0, 1, 1, frame, mask, x, y, z, vx, vy, vz, 0, 0, 0, 0, 0
+            )
+        return message
+
+    def until(self, what, patience, reason):
+        """Goes on until what(message) is true, by the vehicle's time; returns that message."""
+        end = self.now + patience
+        while True:
+            message = self.step()
+            if what(message):
+                return message
+            assert self.now < end, f"not within {patience} s: {reason}; at {self.position}, mode {self.mode}"
+
+    def reply(self, kind, patience=2.0, **fields):
+        """The next message of a kind with these fields."""
+        fits = lambda one: one.get_type() == kind and all(getattr(one, k) == v for k, v in fields.items())
+        return self.until(fits, patience, f"{kind} {fields}")
+
+    def command(self, number, *parameters):
+        """Sends COMMAND_LONG and returns its result."""
+        self.line.mav.command_long_send(1, 1, number, 0, *parameters, *[0.0] * (7 - len(parameters)))
+        return self.reply("COMMAND_ACK", command=number).result
+
+    def command_int(self, number, frame, *parameters, x=0, y=0, z=0.0):
+        self.line.mav.command_int_send(1, 1, frame, number, 0, 0, *parameters, *[0.0] * (4 - len(parameters)), x, y, z)
+        return self.reply("COMMAND_ACK", command=number).result
+
+    def fly_to(self, target, patience=15.0, within=0.15):
+        self.setpoint = (m.MAV_FRAME_LOCAL_NED, POSITION, (*target, 0, 0, 0))
+        self.until(lambda _: math.dist(self.position, target) < within, patience, f"there: {target}")
+
+    def rest(self, seconds):
+        end = self.now + seconds
+        while self.now < end:
+            self.step()
+
+
+def numbered(kind):
+    """A message's number."""
+    return int(kind.removeprefix("UNKNOWN_")) if kind.startswith("UNKNOWN_") else getattr(m, f"MAVLINK_MSG_ID_{kind}")
+
+
+def rates(client):
+    """Every message comes as often as the table says."""
+    client.rest(1.0)
+    client.counts = {}
+    start, seconds = client.now, 10.0
+    client.rest(seconds)
+    seconds = client.now - start
+    for kind, rate in RATES.items():
+        expected = 0 if kind in FLYING_ONLY else rate * seconds
+        found = client.counts.get(kind, 0)
+        assert abs(found - expected) <= 2, f"{kind}: {found} in {seconds:.2f} s, {expected:.1f} expected"
+
+
+def questions(client):
+    """Whatever is asked is answered."""
+    for kind in RATES:
+        if kind not in FLYING_ONLY:
+            number = numbered(kind)
+            client.counts[kind] = 0
+            assert client.command(m.MAV_CMD_REQUEST_MESSAGE, number) == ACCEPTED, kind
+            client.until(lambda _: client.counts[kind] > 0, 0.1 if RATES[kind] <= 1 else 2.0, f"{kind} on request")
+    assert client.command(m.MAV_CMD_REQUEST_MESSAGE, m.MAVLINK_MSG_ID_RAW_IMU) == UNSUPPORTED
+    assert client.command(m.MAV_CMD_SET_MESSAGE_INTERVAL, m.MAVLINK_MSG_ID_ODOMETRY, 20_000) == ACCEPTED
+    assert client.command(m.MAV_CMD_GET_MESSAGE_INTERVAL, m.MAVLINK_MSG_ID_ODOMETRY) == ACCEPTED
+    client.counts["ODOMETRY"] = 0
+    client.rest(2.0)
+    assert 96 <= client.counts["ODOMETRY"] <= 104, client.counts["ODOMETRY"]
+    assert client.command(m.MAV_CMD_SET_MESSAGE_INTERVAL, m.MAVLINK_MSG_ID_ODOMETRY, 0) == ACCEPTED
+    # An integer command, one that the dialect has and the vehicle not, and one that nobody has.
+    version = m.MAVLINK_MSG_ID_AUTOPILOT_VERSION
+    client.counts["AUTOPILOT_VERSION"] = 0
+    assert client.command_int(m.MAV_CMD_REQUEST_MESSAGE, m.MAV_FRAME_GLOBAL, version) == ACCEPTED
+    client.until(lambda _: client.counts["AUTOPILOT_VERSION"] == 1, 0.5, "AUTOPILOT_VERSION by COMMAND_INT")
+    assert client.command(m.MAV_CMD_DO_PARACHUTE) == UNSUPPORTED
+    assert client.command(31_999) == UNSUPPORTED
+    client.line.mav.mission_count_send(1, 1, 3)
+    assert client.reply("MISSION_ACK").type == m.MAV_MISSION_UNSUPPORTED
+    client.line.mav.mission_request_list_send(1, 1)
+    assert client.reply("MISSION_COUNT").count == 0
+    client.line.mav.ping_send(0, 7, 0, 0)
+    assert client.reply("PING").seq == 7
+    client.line.mav.timesync_send(0, 123_456)
+    assert client.reply("TIMESYNC", ts1=123_456).tc1 > 0
+
+
+def parameters(client):
+    """All are listed; one is changed, read back, and refused where it makes no sense."""
+    client.line.mav.param_request_list_send(1, 1)
+    names = {}
+    count = client.reply("PARAM_VALUE", param_index=0).param_count
+    names = {0: "SYS_ID"}
+    while len(names) < count:
+        value = client.reply("PARAM_VALUE")
+        names[value.param_index] = value.param_id
+    assert {"SYS_ID", "TKO_ALT", "BAT_LOW", "FENCE_HEIGHT"} <= set(names.values())
+    for asked, kept in [(2.5, 2.5), (1e6, 2.5), (math.nan, 2.5), (1.5, 1.5)]:
+        client.line.mav.param_set_send(1, 1, b"TKO_ALT", asked, m.MAV_PARAM_TYPE_REAL32)
+        assert client.reply("PARAM_VALUE", param_id="TKO_ALT").param_value == kept, asked
+
+
+def flight(client):
+    """Arm, take off, a square of positions, body velocities, hold, land, disarmed."""
+    ready = lambda one: one.get_type() == "SYS_STATUS" and (
+        one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
+    )
+    client.until(ready, 10.0, "ready to arm")
+    assert client.command(m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 2.0) == DENIED, "not armed"
+    home = client.position
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
+    assert client.command(m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 2.0) == ACCEPTED
+    client.until(lambda _: client.position[2] < home[2] - 1.8, 15.0, "2 m up")
+    assert client.armed and client.landed in (m.MAV_LANDED_STATE_TAKEOFF, m.MAV_LANDED_STATE_IN_AIR)
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 0) == DENIED, "disarmed in the air"
+    client.rest(2.0)
+    north, east, down = home
+    offboard = (m.MAV_CMD_DO_SET_MODE, m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, 6, 0)
+    assert client.command(*offboard) == DENIED, "no setpoints"
+    client.setpoint = (m.MAV_FRAME_LOCAL_NED, POSITION, (north, east, down - 2.0, 0, 0, 0))
+    client.rest(0.5)
+    assert client.command(*offboard) == ACCEPTED
+    for x, y in [(2, 0), (2, 2), (0, 2), (0, 0)]:
+        client.fly_to((north + x, east + y, down - 2.0))
+    # Ahead at half a metre a second for four seconds: by where it points, which is east here.
+    start, yaw = client.position, client.yaw
+    client.setpoint = (m.MAV_FRAME_BODY_NED, VELOCITY, (0, 0, 0, 0.5, 0, 0))
+    client.rest(4.0)
+    gone = [now - then for now, then in zip(client.position, start)]
+    ahead = gone[0] * math.cos(yaw) + gone[1] * math.sin(yaw)
+    aside = gone[1] * math.cos(yaw) - gone[0] * math.sin(yaw)
+    assert 1.0 < ahead < 2.2 and abs(aside) < 0.2 and abs(gone[2]) < 0.2, (ahead, aside, gone)
+    client.setpoint = None
+    assert client.command(m.MAV_CMD_DO_SET_MODE, m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, 4, 3) == ACCEPTED
+    client.rest(4.0)
+    assert client.mode == (4, 3), client.mode
+    held = client.position
+    client.counts = {}
+    client.rest(5.0)
+    target = client.counts["POSITION_TARGET_LOCAL_NED"]
+    assert abs(target - 5 * RATES["POSITION_TARGET_LOCAL_NED"]) <= 2, f"POSITION_TARGET_LOCAL_NED: {target} in 5 s"
+    assert math.dist(held, client.position) < 0.1, (held, client.position)
+    assert client.command(m.MAV_CMD_NAV_LAND) == ACCEPTED
+    client.until(lambda _: not client.armed, 20.0, "landed and disarmed")
+    assert client.landed == m.MAV_LANDED_STATE_ON_GROUND and abs(client.position[2] - down) < 0.1, client.position
+
+
+def forced(client):
+    """The force number stops the motors in the air."""
+    client.until(lambda one: client.mode == (4, 1) and not client.armed, 5.0, "on the ground")
+    client.rest(3.0)
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
+    assert client.command(m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 1.0) == ACCEPTED
+    up = client.position[2] - 0.5
+    client.until(lambda _: client.position[2] < up, 10.0, "in the air")
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 0, 21196) == ACCEPTED
+    client.until(lambda _: not client.armed, 2.0, "disarmed by force")
+
+
+def main():
+    with Vehicle(speed=SPEED) as vehicle:
+        client = Client(vehicle.offboard)
+        client.line.wait_heartbeat(timeout=10)
+        assert client.line.target_system == 1, client.line.target_system
+        for part in (rates, questions, parameters, flight, forced):
+            started = time.monotonic()
+            part(client)
+            print(f"  pymavlink {part.__name__}: passed in {time.monotonic() - started:.1f} s", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
