@@ -7,7 +7,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`clock`], [`line`] | time that moves when every task waits; bytes in memory |
+//! | [`clock`], [`mod@line`] | time that moves when every task waits; bytes in memory |
 //! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
 //! | [`port`], `voice` | clients on UDP; what the vehicle says |
 //! | [`pace`] | the vehicle's time against everybody else's |
