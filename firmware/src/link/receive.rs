@@ -39,6 +39,9 @@ const RECOVERY: u64 = 10_000;
 /// How often a kind of refusal is told in words, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
 
+/// How often the time is told at most, us.
+const TIME_INTERVAL: u64 = 20_000;
+
 /// Bytes read at once.
 const CHUNK: usize = 64;
 
@@ -86,6 +89,8 @@ pub struct Receiver<'a, M: RawMutex> {
     pose_refused: Occasionally,
     setpoint_refused: Occasionally,
     stranger_refused: Occasionally,
+    /// When the time may be told again, us.
+    next_time_told: u64,
     traffic: Traffic,
 }
 
@@ -101,6 +106,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             pose_refused: Occasionally::default(),
             setpoint_refused: Occasionally::default(),
             stranger_refused: Occasionally::default(),
+            next_time_told: 0,
             traffic: Traffic::default(),
         }
     }
@@ -216,7 +222,12 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     /// A question is answered, and an answer says what the clocks differ by.
     fn time_sync(&mut self, frame: &Frame<'_>, message: &TIMESYNC_DATA) {
         match message.tc1 {
-            0 => self.shared.reply(Reply::TimeSync { asked: message.ts1 }),
+            // Two clocks at zero would ask each other for ever.
+            0 if frame.time >= self.next_time_told => {
+                self.next_time_told = frame.time.saturating_add(TIME_INTERVAL);
+                self.shared.reply(Reply::TimeSync { asked: message.ts1 });
+            }
+            0 => {}
             _ => self.poses.synchronise(frame, message),
         }
     }

@@ -1,6 +1,6 @@
 //! What sticks ask for: a velocity ahead, to the right and up, and a rate of turn, as a setpoint for the governor.
 //!
-//! Within [`DEAD`] of their rest they ask for nothing; from there on in proportion, so that nothing jumps.
+//! Near their rest they ask for nothing; from there on in proportion, so that nothing jumps.
 
 use crate::link::setpoint::Here;
 use controller_core::governor::{Motion, Setpoint, Turn};
