@@ -30,9 +30,9 @@ seed = 1
 # Between two commands, s.
 TICK = 0.01
 
-# The hardest touchdown that any way down may end with, m/s.
-GRAZE_MAX = 0.01  # m/s
+# The hardest touchdown that any way down may end with, m/s; and how hard it may touch the ground again.
 TOUCHDOWN_MAX = 1.2
+GRAZE_MAX = 0.01
 
 # The longest that motors may turn on the ground after it, s: as long as it must look like the ground, and a reference that is
 # brought below it.
