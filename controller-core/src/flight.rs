@@ -1,7 +1,7 @@
 //! Flight: which of the law's outputs reach the motors, and when.
 //!
 //! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
-//! - [`reason`]: reasons in words, for every transition and every refusal;
+//! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
 //! - `permission`: what arming and a motor test need;
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
@@ -11,7 +11,8 @@
 //! - `fence`: how far it may go;
 //! - [`FlightSettings`]: what an operator may choose about failures;
 //! - `thrust_check`: whether the rotors give what they should;
-//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate.
+//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors are brought up, and
+//!   how a vehicle without a pose goes down.
 //!
 //! An armed vehicle idles until it is told to take off or to fly setpoints; then its rotors are brought up to the law's thrusts within a
 //! second. A landing ends with the ground found and the motors stopped. A vehicle set down by its setpoint keeps turning its
@@ -34,9 +35,12 @@ mod lift_off;
 mod permission;
 pub mod pilot;
 pub mod reason;
+mod refusal;
 mod request;
 pub mod rules;
 mod settings;
+mod sinking;
+mod spool;
 mod thrust_check;
 mod watch;
 
@@ -48,7 +52,8 @@ pub use estimate::SETTLED_AFTER;
 pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
 pub use permission::MotorTest;
 pub use pilot::Pilot;
-pub use reason::{Grounded, Reason, Refusal};
+pub use reason::Reason;
+pub use refusal::{Grounded, Refusal};
 pub use request::{Request, SETPOINT_AGE_MAX};
 pub use rules::{Mode, Transition};
 pub use settings::FlightSettings;

@@ -56,6 +56,9 @@
     deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)
 )]
 
+#[macro_use]
+mod listed;
+
 pub mod allocation;
 pub mod attitude;
 pub mod attitude_reference;

@@ -109,7 +109,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.position;
         let why = if self.signal.is_some() { "interrupted" } else { "the duration was over" };
-        let mode = self.mode.map_or("silent", Mode::name);
+        let mode = self.mode.map_or("silent", Mode::text);
         write!(f, "{why} after {:.1} s; {mode}, at {x:.3} {y:.3} {z:.3} m; {} ticks missed", self.time, self.missed)
     }
 }
@@ -190,7 +190,7 @@ impl Sitl {
     /// One line: time, mode, position, battery.
     fn status(&self) -> String {
         let report = self.shared.report.get().map(|report| report.value);
-        let mode = report.as_ref().map_or("no report", |report| report.mode.name());
+        let mode = report.as_ref().map_or("no report", |report| report.mode.text());
         let place = report.and_then(|report| report.state).map_or_else(
             || "position unknown".to_owned(),
             |state| format!("at {:8.3} {:8.3} {:8.3} m", state.position.x, state.position.y, state.position.z),

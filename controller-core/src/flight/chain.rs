@@ -10,14 +10,13 @@
 //!
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
 //! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
-//!
-//! **Why the rotors may be brought up slowly.** For [`SPOOL_TICKS`] after the rotors' idle a rotor is given a growing part of the way from
-//! its least thrust to the law's: no rotor leaves the range in which the law's own commands are. The reference waits at rest.
 
 use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
-use super::reason::{Grounded, field};
+use super::refusal::{Grounded, field};
 use super::rules::REFUSALS_MAX;
+use super::sinking::Sinking;
+use super::spool::Spool;
 use crate::allocation::{Mixer, Thrusts};
 use crate::certificate::certified::Certified;
 use crate::controller::Command;
@@ -30,17 +29,11 @@ use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
-/// Ticks from the rotors' idle to the law's thrusts.
-const SPOOL_TICKS: u32 = 100;
-
-/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
-const DRIFT: f32 = 0.05;
-
 /// The speed across at which a vehicle may go down, m/s.
 const AT_REST: f32 = 0.05;
 
-/// The least speed of a descent by the IMU alone, m/s.
-const DESCENT: f32 = 0.7;
+/// How near the height of its take-off the reference has to be, m, and how slow, m/s.
+const RISEN: (f32, f32) = (0.01, 0.01);
 
 /// Where a chain's governor and mixer lie, 7 KB and 6 KB. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,30 +66,6 @@ pub struct Flown {
     pub thrust_scale: f32,
 }
 
-/// The vertical motion without a pose, by what the accelerometer adds to it.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Sinking {
-    /// m/s, upwards.
-    speed: f32,
-    /// For how long, s.
-    time: f32,
-    /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
-    last: Option<(f32, u32)>,
-}
-
-impl Sinking {
-    /// One tick on. What the estimate gains between its jumps is the accelerometer's.
-    fn advance(&mut self, estimated: &EstimatedState, period: f32) -> Self {
-        let (now, jumps) = (estimated.state.velocity.z, estimated.jumps);
-        if let Some((before, _)) = self.last.filter(|last| last.1 == jumps) {
-            self.speed += now - before;
-        }
-        self.last = Some((now, jumps));
-        self.time += period;
-        *self
-    }
-}
-
 /// Governor, law and mixer, with what they hand from tick to tick.
 #[derive(Debug, PartialEq)]
 pub(super) struct Chain<'m> {
@@ -109,17 +78,16 @@ pub(super) struct Chain<'m> {
     /// The vehicle's mass, kg, and gravity, m/s^2.
     mass: f32,
     gravity: f32,
-    /// Each rotor's least thrust, N.
-    least: Thrusts,
     period: f32,
+    /// The height of the take-off, m, world.
+    rising_to: f32,
     /// The last tick's.
     reference: Reference,
     thrusts: Option<Thrusts>,
     flown: Option<Flown>,
     /// Whether the rotors give what the law asked for.
     is_exact: bool,
-    /// Ticks since the rotors' idle.
-    spooled: u32,
+    spool: Spool,
     sinking: Sinking,
     /// Ticks in a row without new thrusts.
     refusals: u32,
@@ -166,13 +134,13 @@ impl<'m> Chain<'m> {
             speed: configuration.bounds().horizontal_speed,
             mass: vehicle.mass,
             gravity: vehicle.gravity,
-            least: rotors.iter().map(|rotor| rotor.thrust_min).collect(),
             period,
+            rising_to: 0.0,
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
             flown: None,
             is_exact: true,
-            spooled: 0,
+            spool: Spool::new(rotors.iter().map(|rotor| rotor.thrust_min).collect()),
             sinking: Sinking::default(),
             refusals: 0,
             lift_off: LiftOff::DONE,
@@ -195,7 +163,7 @@ impl<'m> Chain<'m> {
         self.thrusts = None;
         self.flown = None;
         self.is_exact = true;
-        self.spooled = 0;
+        self.spool.restart();
         self.refusals = 0;
         self.lift_off = LiftOff::from(position);
         Ok(())
@@ -206,9 +174,21 @@ impl<'m> Chain<'m> {
     /// # Errors
     /// Names the field the governor refuses.
     pub fn rise(&mut self, height: f32) -> Result<(), &'static str> {
+        self.rising_to = self.reference.position.z + height;
+        self.rise_on()
+    }
+
+    fn rise_on(&mut self) -> Result<(), &'static str> {
         let mut position = self.reference.position;
-        position.z += height;
+        position.z = self.rising_to;
         self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep })
+    }
+
+    /// Whether the reference has come to rest at the height of the take-off.
+    pub fn has_risen(&self) -> bool {
+        let (near, slow) = RISEN;
+        let Reference { position, velocity, .. } = &self.reference;
+        (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
     }
 
     /// Comes to rest across, then goes down at `speed`, m/s; to be said again each tick. Both at once would brake as slowly as the
@@ -225,7 +205,7 @@ impl<'m> Chain<'m> {
     /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s.
     pub fn level(&mut self, sinking: f32) {
         self.reference = resting(&self.reference.position, &self.reference.heading);
-        self.sinking = Sinking { speed: sinking, ..Sinking::default() };
+        self.sinking = Sinking::at(sinking);
         self.law.restart();
     }
 
@@ -240,17 +220,24 @@ impl<'m> Chain<'m> {
     }
 
     /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which may have
-    /// jumped too. Nothing is learnt from the jump. The certificate covers it as it covers any other jump of the reference.
+    /// jumped too, and as far up as it jumped if it `rises`. Nothing is learnt from the jump. The certificate covers it as it covers
+    /// any other jump of the reference.
     ///
     /// # Errors
-    /// As [`Self::start`].
-    pub fn jump(&mut self, state: &State) -> Result<(), InputError> {
+    /// Names the field the governor refuses.
+    pub fn jump(&mut self, before: &State, state: &State, rises: bool) -> Result<(), &'static str> {
         if let Some(heading) = heading(&state.attitude) {
             self.reference.heading = heading;
         }
         self.law.hold_estimates();
         self.lift_off.displace(&state.position);
-        self.regain(state)
+        self.regain(state).map_err(field)?;
+        if rises {
+            self.reference.position = state.position;
+            self.rising_to += state.position.z - before.position.z;
+            self.rise_on()?;
+        }
+        Ok(())
     }
 
     /// Brings the reference to rest.
@@ -276,7 +263,7 @@ impl<'m> Chain<'m> {
     /// # Errors
     /// What the law or the allocation cannot use.
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
-        if self.spooled >= SPOOL_TICKS {
+        if self.spool.is_over() {
             self.reference = self.governor.tick();
         }
         if self.lift_off.stands(state) {
@@ -291,9 +278,8 @@ impl<'m> Chain<'m> {
     /// As [`Self::fly`].
     pub fn fly_level(&mut self, estimated: &EstimatedState, descends: bool) -> Result<Flown, InputError> {
         let State { attitude, angular_velocity, .. } = estimated.state;
-        let Sinking { speed, time, .. } = self.sinking.advance(estimated, self.period);
-        self.reference.velocity.z = if descends { -(DESCENT + DRIFT * time) } else { 0.0 };
-        let velocity = Vector3::new(0.0, 0.0, speed);
+        let velocity = Vector3::new(0.0, 0.0, self.sinking.advance(estimated, self.period));
+        self.reference.velocity.z = if descends { -self.sinking.descent() } else { 0.0 };
         // Without a pose there is nothing to learn from.
         self.law.hold_estimates();
         self.step(&State { position: self.reference.position, velocity, attitude, angular_velocity })
@@ -310,8 +296,7 @@ impl<'m> Chain<'m> {
             self.law.hold_estimates();
         }
         self.refusals = 0;
-        self.spooled = self.spooled.saturating_add(1).min(SPOOL_TICKS);
-        self.thrusts = Some(self.spool(allocation.thrusts));
+        self.thrusts = Some(self.spool.advance(allocation.thrusts));
         let flown = Flown {
             state: *state,
             reference: self.reference,
@@ -323,15 +308,6 @@ impl<'m> Chain<'m> {
         };
         self.flown = Some(flown);
         Ok(flown)
-    }
-
-    /// The part of the way to `thrusts`, N, that the rotors have come.
-    fn spool(&self, mut thrusts: Thrusts) -> Thrusts {
-        if self.spooled < SPOOL_TICKS {
-            let part = self.spooled as f32 / SPOOL_TICKS as f32;
-            thrusts.iter_mut().zip(&self.least).for_each(|(thrust, least)| *thrust = least + part * (*thrust - least));
-        }
-        thrusts
     }
 
     /// What was flown last; none before the first tick.

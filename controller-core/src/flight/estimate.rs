@@ -8,6 +8,8 @@ use crate::estimator::{
     COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Increment, PoseMeasurement, Rejected, Taken,
 };
 use crate::measurement::{Stamped, is_fresh};
+use crate::state::State;
+use nalgebra::Quaternion;
 
 /// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
 pub const SETTLED_AFTER: u64 = 1_000_000;
@@ -20,8 +22,8 @@ pub(super) struct Estimate {
     pub health: Health,
     /// What became of this tick's poses: the last refusal, or else what the last was taken for.
     pub pose: Option<Result<Taken, Rejected>>,
-    /// Whether the state has jumped since the last tick.
-    pub jumped: bool,
+    /// Where the state has jumped since the last tick: the one it would be, had it not.
+    pub jumped_from: Option<State>,
     /// Whether all has been well for [`SETTLED_AFTER`].
     pub settled: bool,
 }
@@ -50,13 +52,15 @@ pub(super) struct Estimation<'m> {
     /// Poses that were believed, and not.
     counts: (u32, u32),
     jumps: u32,
+    /// The state at the last tick, and when that was, us.
+    last: Option<(State, u64)>,
     /// Since when all has been well, us.
     since: Option<u64>,
 }
 
 impl<'m> Estimation<'m> {
     pub fn new(estimator: &'m mut Estimator) -> Self {
-        Self { estimator, counts: (0, 0), jumps: 0, since: None }
+        Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
     }
 
     /// Takes what the IMU did and the poses that came since the last tick, at `now`, us, `armed` or not.
@@ -87,12 +91,21 @@ impl<'m> Estimation<'m> {
         self.since = if steady { self.since.or(Some(now)) } else { None };
         let pose = refused.or(health.last.filter(|_| health.counts != self.counts));
         (self.jumps, self.counts) = (health.jumps, health.counts);
+        let current = state.map(|estimated| (estimated.state, now));
+        let last = core::mem::replace(&mut self.last, current);
         Estimate {
             state,
             health,
             pose,
-            jumped,
+            jumped_from: last.filter(|_| jumped).map(|(state, then)| carried_on(&state, now.saturating_sub(then))),
             settled: self.since.is_some_and(|since| now.saturating_sub(since) >= SETTLED_AFTER),
         }
     }
+}
+
+/// `state` after a tick's `time`, us, of going on and turning as it does; its attitude near unit length only.
+fn carried_on(state: &State, time: u64) -> State {
+    let seconds = time as f32 * 1e-6;
+    let turned = state.attitude * Quaternion::from_imag(state.angular_velocity * (0.5 * seconds));
+    State { position: state.position + state.velocity * seconds, attitude: state.attitude + turned, ..*state }
 }

@@ -1,8 +1,16 @@
 //! The fence: a cylinder about the place where the vehicle was armed.
 
+use super::leaning::heading;
 use super::settings::FlightSettings;
 use crate::governor::{Motion, Setpoint};
-use nalgebra::Vector3;
+use crate::state::State;
+use nalgebra::{Vector2, Vector3};
+
+/// `v` turned about the vertical as the unit vector `from` is to `to`.
+fn turned(v: &Vector3<f32>, from: &Vector2<f32>, to: &Vector2<f32>) -> Vector3<f32> {
+    let (cos, sin) = (from.dot(to), from.x * to.y - from.y * to.x);
+    Vector3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z)
+}
 
 /// How far one may go from where, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,9 +35,14 @@ impl Fence {
         self.home
     }
 
-    /// The frame has moved: what was at `from` is at `to`, m, world.
-    pub fn displace(&mut self, from: &Vector3<f32>, to: &Vector3<f32>) {
-        self.home += to - from;
+    /// The frame has moved and turned about the vertical: a vehicle that was in `before` is found in `after`, at the same instant.
+    pub fn displace(&mut self, before: &State, after: &State) {
+        let home = self.home - before.position;
+        let turned = match (heading(&before.attitude), heading(&after.attitude)) {
+            (Some(before), Some(after)) => turned(&home, &before.direction(), &after.direction()),
+            _ => home,
+        };
+        self.home = after.position + turned;
     }
 
     /// Whether `position`, m, world, is inside. One that is made of no numbers is not.
@@ -53,6 +66,7 @@ impl Fence {
 mod tests {
     use super::*;
     use crate::governor::Turn;
+    use nalgebra::UnitQuaternion;
 
     #[test]
     fn it_is_a_cylinder_about_home_without_a_floor() {
@@ -73,5 +87,23 @@ mod tests {
             assert_eq!(fence.allows(&setpoint), inside);
         }
         assert!(fence.allows(&Setpoint { motion: Motion::Velocity(Vector3::repeat(9.0)), turn: Turn::Keep }));
+    }
+
+    fn state(position: [f32; 3], roll: f32, pitch: f32, yaw: f32) -> State {
+        State {
+            position: position.into(),
+            velocity: Vector3::zeros(),
+            attitude: UnitQuaternion::from_euler_angles(roll, pitch, yaw).into_inner(),
+            angular_velocity: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn it_goes_along_with_a_frame_that_moves_and_turns() {
+        let mut fence = Fence::new(&FlightSettings::DEFAULT);
+        fence.place(&Vector3::new(1.0, 2.0, 0.5));
+        // Three metres ahead of home and two up; then the frame is turned by a quarter to the right and shifted.
+        fence.displace(&state([4.0, 2.0, 2.5], 0.1, 0.2, 0.3), &state([10.0, -7.0, 3.0], 0.1, 0.2, 0.3 + 1.570_796_3));
+        assert!((fence.home() - Vector3::new(10.0, -10.0, 1.0)).norm() < 1e-4, "{}", fence.home());
     }
 }

@@ -9,8 +9,9 @@ pub(super) fn up(q: &Quaternion<f32>) -> f32 {
     1.0 - 2.0 * (q.i * q.i + q.j * q.j)
 }
 
-/// Which way body x points, seen from above; none straight up or down.
+/// Which way body x points, seen from above, whatever the length of `q`; none straight up or down.
 pub(super) fn heading(q: &Quaternion<f32>) -> Option<Heading> {
-    let forward = Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k));
+    let along = q.w * q.w + q.i * q.i - q.j * q.j - q.k * q.k;
+    let forward = Vector2::new(along, 2.0 * (q.i * q.j + q.w * q.k));
     Heading::new(forward / math::sqrt(forward.norm_squared()), 0.0, 0.0).ok()
 }

@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use super::leaning::{heading, up};
-use super::reason::Refusal;
+use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode};
 use crate::estimator::{EstimatedState, Fault};
 use crate::heading::Heading;

@@ -9,7 +9,8 @@ use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Outcome, Output, PERIOD};
 use super::fence::Fence;
 use super::permission::MotorTest;
-use super::reason::{Grounded, Reason};
+use super::reason::Reason;
+use super::refusal::Grounded;
 use super::request::Newest;
 use super::rules::{self, Condition, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
@@ -17,7 +18,7 @@ use super::thrust_check::ThrustCheck;
 use super::watch::{Seen, Watch};
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
-use crate::estimator::{Estimator, Fault};
+use crate::estimator::{EstimatedState, Estimator, Fault};
 use crate::governor::GovernorLimits;
 use nalgebra::Vector3;
 
@@ -32,13 +33,9 @@ pub struct Pilot<'m> {
     estimation: Estimation<'m>,
     watch: Watch,
     fence: Fence,
-    /// Where the vehicle was at the last tick, m, world.
-    last_position: Vector3<f32>,
     /// Whether poses were still refused when the vehicle had levelled: they lie, and what they agree on later is no better.
     poses_lie: bool,
     test: MotorTest,
-    /// The height of the take-off, m, world.
-    rising_to: f32,
     /// The newest setpoint, and whether somebody wants setpoints flown.
     newest: Newest,
     wants_setpoints: bool,
@@ -71,10 +68,8 @@ impl<'m> Pilot<'m> {
             estimation: Estimation::new(estimator),
             watch: Watch::default(),
             fence: Fence::new(&settings),
-            last_position: Vector3::zeros(),
             poses_lie: false,
             test: MotorTest::NONE,
-            rising_to: 0.0,
             newest: Newest::default(),
             wants_setpoints: false,
             thrust_check: ThrustCheck::default(),
@@ -140,13 +135,10 @@ impl<'m> Pilot<'m> {
 
     /// Goes along where the estimate has jumped in flight; whether that was possible.
     fn follow(&mut self, estimate: &Estimate) -> bool {
-        let Some(estimated) = &estimate.state else { return true };
-        let position = estimated.state.position;
-        let from = core::mem::replace(&mut self.last_position, position);
-        match &mut self.chain {
-            Ok(chain) if estimate.jumped && self.mode.flies() => {
-                self.fence.displace(&from, &position);
-                chain.jump(&estimated.state).is_ok()
+        match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
+            (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.flies() => {
+                self.fence.displace(before, state);
+                chain.jump(before, state, self.mode == Mode::TakingOff).is_ok()
             }
             _ => true,
         }

@@ -1,131 +1,87 @@
-//! Reasons in words: for every transition, and for everything that is refused.
+//! Reasons in words, for every transition: a table.
 //!
-//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
-
-use crate::certificate::certified::Refused;
-use crate::error::{InputError, ParameterError};
-use crate::estimator::Fault;
-use core::fmt;
+//! Each fits the 50 characters of a MAVLink STATUSTEXT.
 
 /// The length of a STATUSTEXT, characters.
 pub const TEXT_MAX: usize = 50;
 
-/// Why the mode changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Reason {
-    /// The IMU was heard for the first time.
-    Started,
-    /// The configuration is not certified.
-    NotCertified,
-    /// Everything that arming needs is there.
-    Ready,
-    /// Something of it is missing again.
-    NotReady,
-    /// Arming was requested and granted.
-    Armed,
-    /// A disarm command was granted.
-    Disarmed,
-    /// The kill switch is on.
-    Killed,
-    /// A motor test was requested and granted.
-    MotorTestRequested,
-    /// Another request arrived during a motor test.
-    MotorTestInterrupted,
-    /// The motor test has had its time.
-    MotorTestOver,
-    /// Nobody wanted to fly for [`super::rules::IDLING_MAX`].
-    IdlingOver,
-    /// A take-off was requested and granted.
-    TakeOffCommanded,
-    /// The take-off has reached its height.
-    TakenOff,
-    /// Flight by setpoints was requested and granted.
-    SetpointsCommanded,
-    /// Holding was requested and granted.
-    HoldCommanded,
-    /// Landing was requested and granted.
-    LandCommanded,
-    /// The vehicle stands on the ground.
-    Landed,
-    /// The vehicle lies on its back or its side.
-    Crashed,
-    /// No IMU increment for [`super::rules::IMU_AGE_MAX`], or the estimator lost its state.
-    ImuLost,
-    /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
-    ThrustsRefused,
-    /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
-    PoseLost,
-    /// The same, while idling.
-    PoseLostOnGround,
-    /// Going down by the IMU alone, it does not fit what is commanded.
-    ImuDoubtful,
-    /// Poses are believed again.
-    PoseRegained,
-    /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
-    DescendingOver,
-    /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
-    GroundStationLost,
-    /// The same, while idling.
-    GroundStationLostOnGround,
-    /// The ground station stayed silent while the vehicle held.
-    GroundStationGone,
-    /// A setpoint that must be renewed was not.
-    SetpointsLost,
-    /// The battery is low.
-    BatteryLow,
-    /// The battery is critical.
-    BatteryCritical,
-    /// The vehicle is outside the fence.
-    FenceBreached,
-    /// The vehicle does not follow its reference.
-    TrackingLost,
-    /// The rotors do not give what the law asks for.
-    Saturated,
-    /// Control is late.
-    Overrun,
+worded! {
+    /// Why the mode changed.
+    pub enum Reason {
+        /// The IMU was heard for the first time.
+        Started = "Boot over: checking",
+        /// The configuration is not certified.
+        NotCertified = "Locked: not certified to fly",
+        /// Everything that arming needs is there.
+        Ready = "Ready to arm",
+        /// Something of it is missing again.
+        NotReady = "No longer ready to arm",
+        /// Arming was requested and granted.
+        Armed = "Armed: idling",
+        /// A disarm command was granted.
+        Disarmed = "Disarmed by command",
+        /// The kill switch is on.
+        Killed = "Stopped: kill switch",
+        /// A motor test was requested and granted.
+        MotorTestRequested = "Motor test begins",
+        /// Another request arrived during a motor test.
+        MotorTestInterrupted = "Motor test stopped by another request",
+        /// The motor test has had its time.
+        MotorTestOver = "Motor test over",
+        /// Nobody wanted to fly for [`super::rules::IDLING_MAX`].
+        IdlingOver = "Disarmed: nothing commanded for 10 s",
+        /// A take-off was requested and granted.
+        TakeOffCommanded = "Taking off",
+        /// The take-off has reached its height.
+        TakenOff = "Take-off over: holding position",
+        /// Flight by setpoints was requested and granted.
+        SetpointsCommanded = "Flying setpoints",
+        /// Holding was requested and granted.
+        HoldCommanded = "Holding position by command",
+        /// Landing was requested and granted.
+        LandCommanded = "Landing by command",
+        /// The vehicle stands on the ground.
+        Landed = "Landed: disarmed",
+        /// The vehicle lies on its back or its side.
+        Crashed = "Stopped: lying on its back or side",
+        /// No IMU increment for [`super::rules::IMU_AGE_MAX`], or the estimator lost its state.
+        ImuLost = "Stopped: no IMU for 20 ms, or its data broke off",
+        /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
+        ThrustsRefused = "Stopped: the law refused its input for 50 ms",
+        /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
+        PoseLost = "Pose lost: levelling for 1 s, then going down",
+        /// The same, while idling.
+        PoseLostOnGround = "Disarmed: pose lost",
+        /// Going down by the IMU alone, it does not fit what is commanded.
+        ImuDoubtful = "Stopped: IMU does not fit what was commanded",
+        /// Poses are believed again.
+        PoseRegained = "Pose regained: braking to hold position",
+        /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
+        DescendingOver = "Stopped: neither pose nor ground found in 30 s",
+        /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+        GroundStationLost = "Ground station lost: holding position",
+        /// The same, while idling.
+        GroundStationLostOnGround = "Disarmed: ground station lost",
+        /// The ground station stayed silent while the vehicle held.
+        GroundStationGone = "Ground station still lost: landing",
+        /// A setpoint that must be renewed was not.
+        SetpointsLost = "Setpoints lost: holding position",
+        /// The battery is low.
+        BatteryLow = "Battery low: landing",
+        /// The battery is critical.
+        BatteryCritical = "Battery critical: landing",
+        /// The vehicle is outside the fence.
+        FenceBreached = "Outside the fence: landing",
+        /// The vehicle does not follow its reference.
+        TrackingLost = "Far from where it should be for 5 s: landing",
+        /// The rotors do not give what the law asks for.
+        Saturated = "Rotors at their limits for 1 s: landing",
+        /// Control is late.
+        Overrun = "Control late for 100 ms: landing",
+    }
 }
 
 impl Reason {
-    /// Every reason.
-    pub const ALL: [Self; 35] = [
-        Self::Started,
-        Self::NotCertified,
-        Self::Ready,
-        Self::NotReady,
-        Self::Armed,
-        Self::Disarmed,
-        Self::Killed,
-        Self::MotorTestRequested,
-        Self::MotorTestInterrupted,
-        Self::MotorTestOver,
-        Self::IdlingOver,
-        Self::TakeOffCommanded,
-        Self::TakenOff,
-        Self::SetpointsCommanded,
-        Self::HoldCommanded,
-        Self::LandCommanded,
-        Self::Landed,
-        Self::Crashed,
-        Self::ImuLost,
-        Self::ThrustsRefused,
-        Self::PoseLost,
-        Self::PoseLostOnGround,
-        Self::ImuDoubtful,
-        Self::PoseRegained,
-        Self::DescendingOver,
-        Self::GroundStationLost,
-        Self::GroundStationLostOnGround,
-        Self::GroundStationGone,
-        Self::SetpointsLost,
-        Self::BatteryLow,
-        Self::BatteryCritical,
-        Self::FenceBreached,
-        Self::TrackingLost,
-        Self::Saturated,
-        Self::Overrun,
-    ];
-
     /// Whether the vehicle acts on its own because something is wrong.
     #[must_use]
     pub const fn is_own_doing(self) -> bool {
@@ -167,199 +123,4 @@ impl Reason {
             | Self::Overrun => true,
         }
     }
-
-    /// The reason in words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Started => "Boot over: checking",
-            Self::NotCertified => "Locked: not certified to fly",
-            Self::Ready => "Ready to arm",
-            Self::NotReady => "No longer ready to arm",
-            Self::Armed => "Armed: idling",
-            Self::Disarmed => "Disarmed by command",
-            Self::Killed => "Stopped: kill switch",
-            Self::MotorTestRequested => "Motor test begins",
-            Self::MotorTestInterrupted => "Motor test stopped by another request",
-            Self::MotorTestOver => "Motor test over",
-            Self::IdlingOver => "Disarmed: nothing commanded for 10 s",
-            Self::TakeOffCommanded => "Taking off",
-            Self::TakenOff => "Take-off over: holding position",
-            Self::SetpointsCommanded => "Flying setpoints",
-            Self::HoldCommanded => "Holding position by command",
-            Self::LandCommanded => "Landing by command",
-            Self::Landed => "Landed: disarmed",
-            Self::Crashed => "Stopped: lying on its back or side",
-            Self::ImuLost => "Stopped: no IMU for 20 ms, or its data broke off",
-            Self::ThrustsRefused => "Stopped: the law refused its input for 50 ms",
-            Self::PoseLost => "Pose lost: levelling for 1 s, then going down",
-            Self::PoseLostOnGround => "Disarmed: pose lost",
-            Self::ImuDoubtful => "Stopped: IMU does not fit what was commanded",
-            Self::PoseRegained => "Pose regained: braking to hold position",
-            Self::DescendingOver => "Stopped: neither pose nor ground found in 30 s",
-            Self::GroundStationLost => "Ground station lost: holding position",
-            Self::GroundStationLostOnGround => "Disarmed: ground station lost",
-            Self::GroundStationGone => "Ground station still lost: landing",
-            Self::SetpointsLost => "Setpoints lost: holding position",
-            Self::BatteryLow => "Battery low: landing",
-            Self::BatteryCritical => "Battery critical: landing",
-            Self::FenceBreached => "Outside the fence: landing",
-            Self::TrackingLost => "Far from where it should be for 5 s: landing",
-            Self::Saturated => "Rotors at their limits for 1 s: landing",
-            Self::Overrun => "Control late for 100 ms: landing",
-        }
-    }
 }
-
-impl fmt::Display for Reason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.text())
-    }
-}
-
-/// Why a pilot can never arm until it is made anew, with another configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Grounded {
-    /// This inequality of the certificate fails.
-    Inequality(&'static str),
-    /// This parameter is one that the certificate, the governor or the law cannot work with.
-    Parameter(&'static str),
-    /// The configuration has no rotors.
-    NoRotors,
-}
-
-impl From<ParameterError> for Grounded {
-    fn from(error: ParameterError) -> Self {
-        Self::Parameter(error.field)
-    }
-}
-
-impl From<&Refused> for Grounded {
-    fn from(refused: &Refused) -> Self {
-        match refused {
-            Refused::Fails(certificate) => {
-                let failed = certificate.inequalities().find(|inequality| !inequality.holds());
-                Self::Inequality(failed.map_or("", |inequality| inequality.name))
-            }
-            Refused::Undefined(error) => Self::Parameter(error.field),
-        }
-    }
-}
-
-/// The input that an error is about.
-pub(super) fn field(error: InputError) -> &'static str {
-    match error {
-        InputError::NotFinite { field } | InputError::OutOfRange { field } | InputError::NotARotation { field } => {
-            field
-        }
-        InputError::FallsTooFast => "reference.acceleration",
-    }
-}
-
-impl fmt::Display for Grounded {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
-            Self::Parameter(field) => write!(f, "Cannot fly with {field:.34}"),
-            Self::NoRotors => f.write_str("Cannot fly: the configuration has no rotors"),
-        }
-    }
-}
-
-/// Why a request or a setpoint was refused.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Refusal {
-    /// Nothing certified to fly with.
-    Grounded(Grounded),
-    /// The motors turn already.
-    AlreadyArmed,
-    /// The vehicle was stopped in flight or crashed, and nobody has disarmed it since.
-    Stopped,
-    /// The kill switch is on.
-    Killed,
-    /// Flash is being written, which may stall the processor.
-    Busy,
-    /// The battery is low.
-    BatteryLow,
-    /// Motors stop in the air by force only.
-    InTheAir,
-    /// Only an armed vehicle on the ground takes off.
-    NotIdling,
-    /// Only in the air there is somewhere to hold or land.
-    NotInTheAir,
-    /// What made it land is still so.
-    MustLand,
-    /// No setpoint came in the last second.
-    NoSetpoints,
-    /// A height of no take-off: not in 0.5 m to 50 m.
-    TakeOffHeight,
-    /// The point is outside the fence.
-    OutsideFence,
-    /// A motor test was running; the request has ended it.
-    MotorTestRunning,
-    /// A disarm command came in the same tick.
-    DisarmCommanded,
-    /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
-    ImuStale,
-    /// The estimate is not healthy, for this before all.
-    Estimator(Fault),
-    /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
-    PosesUnsettled,
-    /// The vehicle moves, at 0.2 m/s or 0.2 rad/s or more.
-    Moving,
-    /// Gravity is 10 degrees or more elsewhere for the accelerometer, or not there at all.
-    Gravity,
-    /// Body z is 30 degrees or more from up.
-    Tilted,
-    /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
-    GroundStationSilent,
-    /// The governor cannot start at the vehicle: the field to blame.
-    Reference(&'static str),
-    /// The vehicle has fewer rotors.
-    NoSuchRotor,
-    /// A test level outside (0, [`super::rules::MOTOR_TEST_LEVEL_MAX`]].
-    MotorTestLevel,
-    /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
-    MotorTestDuration,
-    /// A setpoint with a field that is not finite or out of range.
-    Setpoint(&'static str),
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Grounded(grounded) => return grounded.fmt(f),
-            Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
-            Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
-            Self::AlreadyArmed => "Refused: armed already",
-            Self::Stopped => "Refused: stopped in flight; disarm first",
-            Self::Killed => "Refused: the kill switch is on",
-            Self::Busy => "Refused: parameters are being saved",
-            Self::BatteryLow => "Refused: the battery is low",
-            Self::InTheAir => "Refused: in the air; land, or disarm by force",
-            Self::NotIdling => "Refused: arm on the ground first",
-            Self::NotInTheAir => "Refused: not in the air",
-            Self::MustLand => "Refused: what made it land is still so",
-            Self::NoSetpoints => "Refused: no setpoint in the last second",
-            Self::TakeOffHeight => "Refused: take-off height not in 0.5 to 50 m",
-            Self::OutsideFence => "Refused: outside the fence",
-            Self::MotorTestRunning => "Refused: a motor test was running",
-            Self::DisarmCommanded => "Refused: disarm commanded",
-            Self::ImuStale => "Refused: no IMU sample for 20 ms",
-            Self::Estimator(fault) => fault.text(),
-            Self::PosesUnsettled => "Refused: poses not believed for a whole second",
-            Self::Moving => "Refused: the vehicle moves",
-            Self::Gravity => "Refused: gravity is not what accelerometer says",
-            Self::Tilted => "Refused: tilted by 30 degrees or more",
-            Self::GroundStationSilent => "Refused: no ground station for 2.5 s",
-            Self::NoSuchRotor => "Motor test refused: no such rotor",
-            Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
-            Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests;

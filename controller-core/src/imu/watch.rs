@@ -3,7 +3,6 @@
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two triples in a
 //! row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the truth is beyond.
 
-use core::fmt;
 use nalgebra::Vector3;
 
 /// Equal triples in a row after which a sensor is stuck: 20 ms at 1 kHz, as long as a silent one is flown.
@@ -15,60 +14,25 @@ pub const SATURATED_AFTER: u8 = 5;
 /// What of a range counts as its end.
 const FULL_SCALE: f32 = 0.999;
 
-/// What is wrong with the sensor, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum ImuFault {
-    /// A sample that is no number: left out.
-    NotFinite,
-    /// The gyro says the same thing over and over.
-    GyroStuck,
-    /// The gyro has been at full scale.
-    GyroSaturated,
-    /// The accelerometer does not answer: its last word counts on.
-    AccelerometerSilent,
-    /// The accelerometer says the same thing over and over.
-    AccelerometerStuck,
-    /// The accelerometer has been at full scale.
-    AccelerometerSaturated,
-    /// A sample not later than the one before it: left out.
-    Clock,
-    /// More than [`super::BRIDGED_MAX`] without a sample: integration begins anew.
-    Gap,
-}
-
-impl ImuFault {
-    /// Every fault.
-    pub const ALL: [Self; 8] = [
-        Self::NotFinite,
-        Self::GyroStuck,
-        Self::GyroSaturated,
-        Self::AccelerometerSilent,
-        Self::AccelerometerStuck,
-        Self::AccelerometerSaturated,
-        Self::Clock,
-        Self::Gap,
-    ];
-
-    /// The fault in words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::NotFinite => "IMU: sample is not a number",
-            Self::GyroStuck => "IMU: gyro stuck",
-            Self::GyroSaturated => "IMU: gyro at full scale",
-            Self::AccelerometerSilent => "IMU: accelerometer does not answer",
-            Self::AccelerometerStuck => "IMU: accelerometer stuck",
-            Self::AccelerometerSaturated => "IMU: accelerometer at full scale",
-            Self::Clock => "IMU: samples out of order",
-            Self::Gap => "IMU: gap in the samples",
-        }
-    }
-}
-
-impl fmt::Display for ImuFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.text())
+worded! {
+    /// What is wrong with the sensor, the worst first.
+    pub enum ImuFault {
+        /// A sample that is no number: left out.
+        NotFinite = "IMU: sample is not a number",
+        /// The gyro says the same thing over and over.
+        GyroStuck = "IMU: gyro stuck",
+        /// The gyro has been at full scale.
+        GyroSaturated = "IMU: gyro at full scale",
+        /// The accelerometer does not answer: its last word counts on.
+        AccelerometerSilent = "IMU: accelerometer does not answer",
+        /// The accelerometer says the same thing over and over.
+        AccelerometerStuck = "IMU: accelerometer stuck",
+        /// The accelerometer has been at full scale.
+        AccelerometerSaturated = "IMU: accelerometer at full scale",
+        /// A sample not later than the one before it: left out.
+        Clock = "IMU: samples out of order",
+        /// More than [`super::BRIDGED_MAX`] without a sample: integration begins anew.
+        Gap = "IMU: gap in the samples",
     }
 }
 

@@ -1,7 +1,6 @@
 //! What is sent by the clock, and how often: a table that a ground station may change.
 
 use super::telemetry::kind::Kind;
-use crate::parameters::table::Name;
 
 /// How often a message goes out unless somebody says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,7 +9,7 @@ pub enum Rate {
     OnRequest,
     /// Every so many us.
     Every(u64),
-    /// As often as [`Name::TelemetryRate`] says.
+    /// As often as [`crate::parameters::table::Name::TelemetryRate`] says.
     Telemetry,
 }
 
@@ -40,13 +39,31 @@ pub const STREAMS: [(Kind, Rate); 18] = [
 /// The shortest interval that is granted, us: a control tick.
 const SHORTEST: u64 = 10_000;
 
+/// One message: how often it goes out, and when next.
+#[derive(Debug, Clone, Copy)]
+struct Stream {
+    kind: Kind,
+    rate: Rate,
+    /// What was asked for in the table's place, us; never for [`u64::MAX`].
+    asked: Option<u64>,
+    due: u64,
+}
+
+impl Stream {
+    /// How often it goes out where telemetry goes out every `telemetry` us, us; none if only on request.
+    fn interval(&self, telemetry: u64) -> Option<u64> {
+        let interval = self.asked.or(match self.rate {
+            Rate::OnRequest => None,
+            Rate::Every(interval) => Some(interval),
+            Rate::Telemetry => Some(telemetry),
+        });
+        interval.filter(|&interval| interval < u64::MAX)
+    }
+}
+
 /// When each message is due.
 #[derive(Debug)]
-pub struct Schedule {
-    due: [u64; STREAMS.len()],
-    /// What was asked for in the table's place, us; never for [`u64::MAX`].
-    asked: [Option<u64>; STREAMS.len()],
-}
+pub struct Schedule([Stream; STREAMS.len()]);
 
 /// The message of this number, if it can be sent.
 #[must_use]
@@ -58,68 +75,49 @@ impl Schedule {
     /// Everything is due at `now`, us.
     #[must_use]
     pub fn new(now: u64) -> Self {
-        Self { due: [now; STREAMS.len()], asked: [None; STREAMS.len()] }
+        Self(STREAMS.map(|(kind, rate)| Stream { kind, rate, asked: None, due: now }))
     }
 
     /// The first message that is due at `now`, us, where telemetry goes out every `telemetry` us; it is then due an interval later, or
     /// an interval from now if that has passed as well.
     pub fn next_due(&mut self, telemetry: u64, now: u64) -> Option<Kind> {
-        let index = (0..STREAMS.len()).find(|&index| {
-            self.interval(index, telemetry).is_some() && self.due.get(index).is_some_and(|due| now >= *due)
-        })?;
-        let interval = self.interval(index, telemetry)?;
-        let due = self.due.get_mut(index)?;
-        let next = due.saturating_add(interval);
-        *due = if next > now { next } else { now.saturating_add(interval) };
-        STREAMS.get(index).map(|(kind, _)| *kind)
+        self.0.iter_mut().filter(|stream| now >= stream.due).find_map(|stream| {
+            let interval = stream.interval(telemetry)?;
+            let next = stream.due.saturating_add(interval);
+            stream.due = if next > now { next } else { now.saturating_add(interval) };
+            Some(stream.kind)
+        })
     }
 
     /// When something is due next, us.
     #[must_use]
     pub fn next(&self, telemetry: u64) -> u64 {
-        let running = (0..STREAMS.len()).filter(|&index| self.interval(index, telemetry).is_some());
-        running.filter_map(|index| self.due.get(index).copied()).min().unwrap_or(u64::MAX)
+        let running = self.0.iter().filter(|stream| stream.interval(telemetry).is_some());
+        running.map(|stream| stream.due).min().unwrap_or(u64::MAX)
     }
 
     /// Sends a message every `interval` us from now on, as SET_MESSAGE_INTERVAL says it: 0 is the table's rate, below that never.
     pub fn ask(&mut self, kind: Kind, interval: i64, now: u64) {
-        for (index, (listed, _)) in STREAMS.iter().enumerate() {
-            if let (true, Some(asked), Some(due)) =
-                (*listed == kind, self.asked.get_mut(index), self.due.get_mut(index))
-            {
-                *asked = match u64::try_from(interval) {
-                    Ok(0) => None,
-                    Ok(interval) => Some(interval.max(SHORTEST)),
-                    Err(_) => Some(u64::MAX),
-                };
-                *due = now;
-            }
+        for stream in self.0.iter_mut().filter(|stream| stream.kind == kind) {
+            stream.asked = match u64::try_from(interval) {
+                Ok(0) => None,
+                Ok(interval) => Some(interval.max(SHORTEST)),
+                Err(_) => Some(u64::MAX),
+            };
+            stream.due = now;
         }
     }
 
     /// How often a message goes out, us; none if only on request.
     #[must_use]
     pub fn interval_of(&self, kind: Kind, telemetry: u64) -> Option<u64> {
-        (0..STREAMS.len())
-            .find(|&index| STREAMS.get(index).is_some_and(|(listed, _)| *listed == kind))
-            .and_then(|index| self.interval(index, telemetry))
-    }
-
-    fn interval(&self, index: usize, telemetry: u64) -> Option<u64> {
-        let asked = self.asked.get(index).copied().flatten();
-        let interval = asked.or_else(|| match STREAMS.get(index)?.1 {
-            Rate::OnRequest => None,
-            Rate::Every(interval) => Some(interval),
-            Rate::Telemetry => Some(telemetry),
-        });
-        interval.filter(|&interval| interval < u64::MAX)
+        self.0.iter().find(|stream| stream.kind == kind).and_then(|stream| stream.interval(telemetry))
     }
 }
 
-/// The interval of a rate in Hz, which lies within that parameter's range, us.
+/// The interval of a rate, Hz, us. Parameters lie within their ranges, [`crate::parameters::table::Name::TelemetryRate`] above zero.
 #[must_use]
 pub fn interval_of_rate(rate: f32) -> u64 {
-    debug_assert!(Name::TelemetryRate.row().allows(rate));
     (1e6 / rate) as u64
 }
 

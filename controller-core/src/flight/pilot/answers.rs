@@ -6,7 +6,7 @@ use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::{Battery, Inputs};
 use crate::flight::permission::{self, Start, require};
-use crate::flight::reason::{Refusal, field};
+use crate::flight::refusal::{Refusal, field};
 use crate::flight::request::Request;
 use crate::flight::rules::{GROUND_STATION_SILENCE_MAX, Mode};
 use crate::flight::watch::Seen;
@@ -90,9 +90,7 @@ impl<'m> Pilot<'m> {
         require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
         require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
         self.begin(inputs, estimate)?;
-        self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))?;
-        self.rising_to = height + self.chain.as_ref().map_or(0.0, |chain| chain.reference().position.z);
-        Ok(())
+        self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))
     }
 
     pub(super) fn with_chain(

@@ -5,16 +5,13 @@ use crate::estimator::Fault;
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::Inputs;
-use crate::flight::reason::Refusal;
+use crate::flight::refusal::Refusal;
 use crate::flight::request::Request;
 use crate::flight::rules::{
     Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LEVELLING_MAX, Mode,
 };
 use crate::flight::watch::Seen;
 use crate::measurement::is_fresh;
-
-/// How near the height of its take-off the reference has to be, m, and how slow, m/s.
-const TAKEN_OFF: (f32, f32) = (0.01, 0.01);
 
 impl Pilot<'_> {
     /// What was asked for and granted.
@@ -63,7 +60,7 @@ impl Pilot<'_> {
             .with(Condition::Uncertified, self.chain.is_err())
             .with(Condition::MotorTestOver, elapsed >= self.test.duration)
             .with(Condition::IdlingOver, elapsed >= IDLING_MAX)
-            .with(Condition::TakenOff, self.has_taken_off())
+            .with(Condition::TakenOff, self.chain.as_ref().is_ok_and(Chain::has_risen))
             .with(Condition::Landed, seen.landed)
             .with(Condition::Crashed, seen.crashed)
             .with(Condition::ImuStale, estimate.state.is_none())
@@ -80,14 +77,6 @@ impl Pilot<'_> {
             .with(Condition::TrackingLost, seen.tracking_lost)
             .with(Condition::Saturated, seen.saturated)
             .with(Condition::Overrun, seen.overrun)
-    }
-
-    pub(super) fn has_taken_off(&self) -> bool {
-        let (near, slow) = TAKEN_OFF;
-        self.chain.as_ref().is_ok_and(|chain| {
-            let reference = chain.reference();
-            (reference.position.z - self.rising_to).abs() < near && reference.velocity.norm_squared() < slow * slow
-        })
     }
 
     /// Whether the ground station has been silent for so long, us.

@@ -2,7 +2,7 @@
 
 extern crate std;
 use super::super::example;
-use super::super::reason::field;
+use super::super::refusal::field;
 use super::super::rules::REFUSALS_MAX;
 use super::super::{Pose, Reason, Request, Stamped, Velocity};
 use super::*;
@@ -94,7 +94,8 @@ fn a_jump_to_where_the_governor_cannot_start_is_levelled() {
     let (mut pilot, last, broken) = armed();
     let mut state = sound(&broken);
     state.as_mut().unwrap().state.position = Vector3::repeat(1e8);
-    let outcome = pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state, jumped: true, ..broken });
+    let jumped_from = sound(&broken).map(|estimated| estimated.state);
+    let outcome = pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state, jumped_from, ..broken });
     assert_eq!((outcome.mode, outcome.transition.map(|t| t.reason)), (Mode::Descending, Some(Reason::PoseLost)));
 }
 
@@ -110,4 +111,32 @@ fn a_place_where_the_governor_cannot_start_is_blamed_by_name() {
 fn a_pilot_and_its_estimator_take_the_memory_their_documentation_says() {
     assert!(size_of::<Pilot>() < 3_200, "{} bytes", size_of::<Pilot>());
     assert!(size_of::<Estimator>() < 12_000, "{} bytes", size_of::<Estimator>());
+}
+
+#[test]
+fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
+    let (mut pilot, last, broken) = armed();
+    let mut found = sound(&broken);
+    let jumped_from = found.map(|estimated| estimated.state);
+    let here = &mut found.as_mut().unwrap().state;
+    here.position = Vector3::new(3.0, 4.0, -20.0);
+    here.attitude = Quaternion::new(0.8, 0.0, 0.0, 0.6);
+    pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state: found, jumped_from, ..broken });
+    assert!((pilot.fence.home() - Vector3::new(3.0, 4.0, -20.0)).norm() < 1e-4, "{}", pilot.fence.home());
+    // The reference goes on up on its own; the estimate stands for a vehicle that follows it.
+    let mut tick = last + 2;
+    while pilot.mode() == Mode::TakingOff {
+        let reference = *pilot.chain.as_ref().unwrap().reference();
+        let state = found.map(|mut estimated| {
+            (estimated.state.position, estimated.state.velocity) = (reference.position, reference.velocity);
+            estimated
+        });
+        let estimate = Estimate { state, jumped_from: None, ..broken };
+        pilot.decide(&quiet(tick * PERIOD), &estimate);
+        tick += 1;
+        assert!(tick < last + 2_000, "still taking off");
+    }
+    let height = pilot.chain.as_ref().unwrap().reference().position.z + 20.0;
+    assert_eq!(pilot.mode(), Mode::Holding);
+    assert!((height - FlightSettings::DEFAULT.take_off_height).abs() < 0.02, "{height} m");
 }

@@ -1,0 +1,43 @@
+//! The vertical motion without a pose, by what the accelerometer adds to it.
+
+use crate::estimator::EstimatedState;
+
+/// The least speed of a descent by the IMU alone, m/s.
+const DESCENT: f32 = 0.7;
+
+/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
+const DRIFT: f32 = 0.05;
+
+/// How a vehicle that has lost its pose sinks.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Sinking {
+    /// m/s, upwards.
+    speed: f32,
+    /// For how long, s.
+    time: f32,
+    /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
+    last: Option<(f32, u32)>,
+}
+
+impl Sinking {
+    /// Without a pose from now on, at a vertical speed of `speed`, m/s.
+    pub fn at(speed: f32) -> Self {
+        Self { speed, ..Self::default() }
+    }
+
+    /// One tick of `period`, s, on; the vertical speed, m/s. What the estimate gains between its jumps is the accelerometer's.
+    pub fn advance(&mut self, estimated: &EstimatedState, period: f32) -> f32 {
+        let (now, jumps) = (estimated.state.velocity.z, estimated.jumps);
+        if let Some((before, _)) = self.last.filter(|last| last.1 == jumps) {
+            self.speed += now - before;
+        }
+        self.last = Some((now, jumps));
+        self.time += period;
+        self.speed
+    }
+
+    /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.
+    pub fn descent(&self) -> f32 {
+        DESCENT + DRIFT * self.time
+    }
+}
