@@ -13,8 +13,9 @@ use mavlink::dialects::common::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 /// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET, COMMAND_LONG,
-/// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY.
-const LISTENED: [u32; 10] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331];
+/// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN, MISSION_REQUEST_LIST,
+/// MISSION_COUNT, MISSION_CLEAR_ALL.
+const LISTENED: [u32; 15] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45];
 
 #[derive(Debug, Arbitrary)]
 enum Event {

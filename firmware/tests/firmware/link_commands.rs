@@ -1,26 +1,17 @@
 //! Commands, parameters, heartbeats and pings in: what they do, and what is answered.
 
-use crate::support::receiver::{Fed, Local, report, texts};
-use crate::support::{patched, v1, v2, v2_of_payload};
+use crate::support::receiver::{Fed, Local, answer, command, replies, report, texts};
+use crate::support::{patched, v1, v2};
 use controller_core::flight::{Mode, MotorTest, Request};
-use controller_core::governor::{Motion, Setpoint, Turn};
-use firmware::link::telemetry::kind::Kind;
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Asked, Ping, REPLIES, REQUESTS, Reply};
+use firmware::shared::{Asked, REQUESTS, Reply};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA,
-    MISSION_REQUEST_LIST_DATA, MavAutopilot, MavCmd, MavFrame, MavMissionResult, MavParamType, MavResult, MavType,
-    PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavResult, MavType, PARAM_REQUEST_LIST_DATA,
+    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
-use nalgebra::Vector3;
 
 const ARM_DISARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-
-fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
-    let [param1, param2, param3, param4, param5] = parameters;
-    COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
-}
 
 fn arm() -> COMMAND_LONG_DATA {
     command(ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0])
@@ -33,22 +24,6 @@ fn disarm() -> COMMAND_LONG_DATA {
 
 fn requests(shared: &Local) -> usize {
     std::iter::from_fn(|| shared.requests.take()).count()
-}
-
-fn replies(shared: &Local) -> Vec<Reply> {
-    std::iter::from_fn(|| shared.replies.take()).collect()
-}
-
-/// The answer to a command that is not put to control.
-fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
-    let shared = Local::new();
-    report(&shared, mode, 0);
-    Fed::new(&shared).message(message, 0);
-    assert!(shared.requests.take().is_none());
-    match replies(&shared)[..] {
-        [Reply::Command { command, result }] if command == message.command => result,
-        ref other => panic!("{other:?}"),
-    }
 }
 
 #[test]
@@ -220,102 +195,6 @@ fn a_simulator_takes_over_only_while_disarmed() {
 }
 
 #[test]
-fn commands_nobody_knows_are_answered_as_unsupported() {
-    for known in [MavCmd::MAV_CMD_DO_PARACHUTE, MavCmd::MAV_CMD_NAV_WAYPOINT] {
-        assert_eq!(answer(&command(known, [0.0; 5]), Mode::Ready), MavResult::MAV_RESULT_UNSUPPORTED);
-    }
-    // One that is not in the dialect at all is answered by its number, if it is for us.
-    for (target, answers) in [(1, 1), (0, 1), (7, 0)] {
-        for (id, crc, length) in [
-            (COMMAND_LONG_DATA::ID, COMMAND_LONG_DATA::EXTRA_CRC, 33),
-            (COMMAND_INT_DATA::ID, COMMAND_INT_DATA::EXTRA_CRC, 35),
-        ] {
-            let mut payload = vec![0; length];
-            payload[28..30].copy_from_slice(&65_000_u16.to_le_bytes());
-            payload[30] = target;
-            let shared = Local::new();
-            Fed::new(&shared).bytes(&v2_of_payload(1, id, crc, &payload), 0);
-            assert_eq!(replies(&shared), vec![Reply::UnknownCommand(65_000); answers]);
-        }
-    }
-}
-
-#[test]
-fn messages_are_sent_on_request_and_at_rates_that_are_asked_for() {
-    let tell = |command: MavCmd, first: f32, second: f32| {
-        let shared = Local::new();
-        Fed::new(&shared).message(&self::command(command, [first, second, 0.0, 0.0, 0.0]), 0);
-        let replies = replies(&shared);
-        let Some(Reply::Command { result, .. }) = replies.last() else { panic!("{replies:?}") };
-        (replies[..replies.len() - 1].to_vec(), *result)
-    };
-    let (accepted, unsupported) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_UNSUPPORTED);
-    let (request, interval) = (MavCmd::MAV_CMD_REQUEST_MESSAGE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL);
-    assert_eq!(tell(request, 148.0, 0.0), (vec![Reply::Message(Kind::AutopilotVersion)], accepted));
-    assert_eq!(tell(request, 435.0, 0.0).0.len(), 4);
-    assert_eq!(tell(request, 435.0, 2.0), (vec![Reply::Mode(2)], accepted));
-    assert_eq!(tell(request, 435.0, 9.0), (vec![], MavResult::MAV_RESULT_DENIED));
-    let odometry = Reply::Interval { kind: Kind::Odometry, interval: 20_000 };
-    assert_eq!(tell(interval, 331.0, 20_000.0), (vec![odometry], accepted));
-    assert_eq!(tell(interval, 331.0, f32::NAN), (vec![], MavResult::MAV_RESULT_DENIED));
-    for number in [9_999.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert_eq!(tell(request, number, 0.0), (vec![], unsupported), "{number}");
-    }
-}
-
-#[test]
-fn a_place_on_the_globe_is_flown_to_by_command_int() {
-    let goto = |frame: MavFrame, z: f32, param4: f32| COMMAND_INT_DATA {
-        command: MavCmd::MAV_CMD_DO_REPOSITION,
-        target_system: 1,
-        frame,
-        // 10 m north and 20 m west of 0 N, 0 E.
-        x: 899,
-        y: -1_799,
-        z,
-        param4,
-        ..Default::default()
-    };
-    let asked = |message: &COMMAND_INT_DATA| {
-        let shared = Local::new();
-        Fed::new(&shared).message(message, 0);
-        shared.requests.take().map(|asked| asked.request)
-    };
-    for (message, turn) in [
-        (goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, f32::NAN), Turn::Keep),
-        (goto(MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, 3.0, f32::NAN), Turn::Keep),
-        // North: a quarter turn to the left of east, where the law's heading is zero.
-        (goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, 0.0), Turn::Angle { angle: core::f32::consts::FRAC_PI_2, rate: 0.0 }),
-    ] {
-        let Some(Request::GoTo(Setpoint { motion: Motion::Position(position), turn: turned })) = asked(&message) else {
-            panic!("{message:?}")
-        };
-        assert!((position - Vector3::new(-20.0, 10.0, 3.0)).norm() < 0.02, "{position}");
-        assert_eq!(turned, turn);
-    }
-    assert_eq!(asked(&goto(MavFrame::MAV_FRAME_GLOBAL, f32::NAN, 0.0)), None);
-    assert_eq!(asked(&goto(MavFrame::MAV_FRAME_LOCAL_NED, 3.0, 0.0)), None);
-}
-
-#[test]
-fn missions_are_refused_and_there_is_none() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&MISSION_COUNT_DATA { count: 3, target_system: 1, target_component: 1 }, 0);
-    fed.message(&MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
-    fed.message(&MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1 }, 0);
-    fed.message(&MISSION_COUNT_DATA { count: 3, target_system: 9, target_component: 1 }, 0);
-    assert_eq!(
-        replies(&shared),
-        [
-            Reply::Mission(255, 190, MavMissionResult::MAV_MISSION_UNSUPPORTED),
-            Reply::NoMission(255, 190),
-            Reply::Mission(255, 190, MavMissionResult::MAV_MISSION_ACCEPTED),
-        ]
-    );
-}
-
-#[test]
 fn commands_for_other_vehicles_are_left_to_them() {
     for (target_system, target_component, ours) in
         [(0, 0, true), (1, 1, true), (1, 0, true), (2, 1, false), (1, 100, false)]
@@ -351,18 +230,6 @@ fn a_ground_station_or_a_companion_is_heard_by_its_heartbeat_and_nobody_else() {
         Fed::new(&shared).message(&HEARTBEAT_DATA { mavtype, autopilot, ..Default::default() }, 1234);
         assert_eq!(shared.ground_station.get().map(|heard| heard.time), heard.then_some(1234));
     }
-}
-
-#[test]
-fn a_ping_to_everybody_is_answered_and_an_answer_is_not() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 0, target_component: 0 }, 0);
-    fed.message(&Ping { time_usec: 5, seq: 6, target_system: 1, target_component: 1 }, 0);
-    assert_eq!(
-        replies(&shared),
-        [Reply::Ping(Ping { time_usec: 5, seq: 6, target_system: 255, target_component: 190 })]
-    );
 }
 
 fn set(name: &str, param_value: f32) -> PARAM_SET_DATA {
@@ -436,14 +303,4 @@ fn the_vehicle_answers_to_its_new_number_at_once() {
     assert!(!shared.disarm.is_raised());
     fed.message(&COMMAND_LONG_DATA { target_system: 9, ..disarm() }, 0);
     assert!(shared.disarm.is_raised());
-}
-
-#[test]
-fn a_flood_of_questions_overflows_nothing() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    for _ in 0..1000 {
-        fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [148.0, 0.0, 0.0, 0.0, 0.0]), 0);
-    }
-    assert_eq!(replies(&shared).len(), REPLIES);
 }

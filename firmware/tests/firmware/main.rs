@@ -16,6 +16,7 @@ mod link_commands;
 mod link_frames;
 mod link_messages;
 mod link_poses;
+mod link_questions;
 mod link_setpoints;
 mod link_tasks;
 mod link_telemetry;

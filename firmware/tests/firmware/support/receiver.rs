@@ -2,12 +2,13 @@
 
 use super::v2;
 use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::Stamped;
+use controller_core::flight::{Mode, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
-use firmware::shared::{Report, Shared, Text};
+use firmware::shared::{Reply, Report, Shared, Text};
 use mavlink::MessageData;
+use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 
 /// What a single-threaded test shares.
 pub type Local = Shared<NoopRawMutex>;
@@ -54,6 +55,29 @@ pub fn newest(shared: &Local) -> Option<Stamped<PoseMeasurement>> {
 }
 
 /// Control's report, in this mode.
-pub fn report(shared: &Local, mode: controller_core::flight::Mode, time: u64) {
+pub fn report(shared: &Local, mode: Mode, time: u64) {
     shared.report.put(Report { mode, ..Report::NONE }, time);
+}
+
+/// A command for the vehicle with these parameters.
+pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
+    let [param1, param2, param3, param4, param5] = parameters;
+    COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
+}
+
+/// The replies that wait, taken away.
+pub fn replies(shared: &Local) -> Vec<Reply> {
+    std::iter::from_fn(|| shared.replies.take()).collect()
+}
+
+/// The answer to a command that is not put to control.
+pub fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
+    let shared = Local::new();
+    report(&shared, mode, 0);
+    Fed::new(&shared).message(message, 0);
+    assert!(shared.requests.take().is_none());
+    match replies(&shared)[..] {
+        [Reply::Command { command, result }] if command == message.command => result,
+        ref other => panic!("{other:?}"),
+    }
 }

@@ -1,0 +1,81 @@
+//! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch is where the last
+//! frame has it, nothing is armed but by a switch that was seen moving, and what the sticks ask for is made of numbers.
+
+#![no_main]
+
+use arbitrary::Arbitrary;
+use controller_core::flight::{Mode, Request};
+use controller_core::governor::Motion;
+use controller_core::state::State;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::radio::{Radio, SILENCE};
+use firmware::shared::{Report, Shared};
+use libfuzzer_sys::fuzz_target;
+use nalgebra::{Quaternion, Vector3};
+use uf_crsf::packets::{PacketAddress, RcChannelsPacked, write_packet_to_buffer};
+
+/// Above it a switch is high.
+const HIGH: u16 = 1402;
+
+#[derive(Debug, Arbitrary)]
+enum Event {
+    /// Bytes as they are.
+    Bytes(Vec<u8>),
+    /// A frame of channels.
+    Channels([u16; 16]),
+    /// The vehicle says how it is.
+    Report { mode: u8, is_airborne: bool, attitude: [f32; 4] },
+    /// Time passes, us.
+    Wait(u32),
+}
+
+fuzz_target!(|events: Vec<Event>| {
+    let shared: Shared<NoopRawMutex> = Shared::new();
+    let mut radio = Radio::new(&shared);
+    let mut now = 1_000_000_u64;
+    // Whether bytes that are no frame may have been the beginning of one.
+    let mut whole = true;
+    let mut last_frame = None;
+    for event in events {
+        match event {
+            Event::Bytes(bytes) => {
+                radio.feed(&bytes, now);
+                whole = false;
+            }
+            Event::Channels(channels) => {
+                let channels = channels.map(|channel| channel & 0x7FF);
+                let mut frame = [0; 64];
+                let length =
+                    write_packet_to_buffer(&mut frame, PacketAddress::FlightController, &RcChannelsPacked(channels))
+                        .unwrap();
+                let heard = last_frame.replace(now).is_some_and(|last| now - last <= SILENCE);
+                radio.feed(&frame[..length], now);
+                let killed = shared.killed.get().map(|killed| (killed.value, killed.time));
+                assert!(!whole || killed == Some((channels[6] >= HIGH, now)), "{channels:?}: {killed:?}");
+                while let Some(asked) = shared.requests.take() {
+                    assert!(!whole || heard || asked.request != Request::Arm, "armed by the first frame: {channels:?}");
+                }
+            }
+            Event::Report { mode, is_airborne, attitude: [w, i, j, k] } => {
+                let attitude = Quaternion::new(w, i, j, k);
+                let is_rotation = (attitude.norm() - 1.0).abs() < 1e-3;
+                let zero = Vector3::zeros();
+                let state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
+                let report = Report {
+                    mode: Mode::ALL[usize::from(mode) % Mode::ALL.len()],
+                    is_airborne,
+                    state: is_rotation.then_some(state),
+                    ..Report::NONE
+                };
+                shared.report.put(report, now);
+            }
+            Event::Wait(time) => now += u64::from(time),
+        }
+        radio.listen(now);
+        if let Some(setpoint) = shared.setpoint.get() {
+            let Motion::Velocity(velocity) = setpoint.value.motion else { panic!("{setpoint:?}") };
+            assert!(velocity.iter().all(|x| x.abs() <= 4.3), "{setpoint:?}");
+        }
+        shared.disarm.take();
+    }
+});
