@@ -103,7 +103,10 @@ mod tests {
         let mut fence = Fence::new(&FlightSettings::DEFAULT);
         fence.place(&Vector3::new(1.0, 2.0, 0.5));
         // Three metres ahead of home and two up; then the frame is turned by a quarter to the right and shifted.
-        fence.displace(&state([4.0, 2.0, 2.5], 0.1, 0.2, 0.3), &state([10.0, -7.0, 3.0], 0.1, 0.2, 0.3 + 1.570_796_3));
+        fence.displace(
+            &state([4.0, 2.0, 2.5], 0.1, 0.2, 0.3),
+            &state([10.0, -7.0, 3.0], 0.1, 0.2, 0.3 + core::f32::consts::FRAC_PI_2),
+        );
         assert!((fence.home() - Vector3::new(10.0, -10.0, 1.0)).norm() < 1e-4, "{}", fence.home());
     }
 }
