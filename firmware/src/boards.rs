@@ -6,6 +6,7 @@ pub mod crazyflie_bolt;
 pub mod micoair_h743;
 #[cfg(feature = "mps2")]
 pub mod mps2;
+pub mod recorder;
 #[cfg(feature = "stm32")]
 pub mod stm32;
 

@@ -14,6 +14,7 @@ use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
+use crate::recorder::tick::Tick;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
@@ -103,10 +104,14 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
         self.tell_of_the_estimate(&outcome, now);
-        self.report(now, &outcome);
-        let parameters = &self.shared.parameters;
-        let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), self.shared.voltage.get(), now);
-        self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle))
+        let report = self.report(&outcome);
+        self.shared.report.put(report, now);
+        let (parameters, voltage) = (&self.shared.parameters, self.shared.voltage.get());
+        let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
+        let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
+        let voltage = voltage.filter(|voltage| voltage.age(now) <= VOLTAGE_AGE_MAX).map(|voltage| voltage.value);
+        self.shared.recorder.record(report.mode.is_armed(), || Tick { time: now, report, command, voltage });
+        command
     }
 
     /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.
@@ -198,9 +203,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    fn report(&self, now: u64, outcome: &Outcome) {
+    fn report(&self, outcome: &Outcome) -> Report {
         let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
-        let report = Report {
+        Report {
             mode: outcome.mode,
             ready: outcome.ready == Some(Ok(())),
             is_airborne: outcome.is_airborne,
@@ -211,8 +216,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             wrench: flown.map(|flown| flown.wrench),
             thrust_scale: flown.map(|flown| flown.thrust_scale),
             timing: self.timing,
-        };
-        self.shared.report.put(report, now);
+        }
     }
 
     fn complain_about_writing(&mut self, written: Result<(), Fault>) {

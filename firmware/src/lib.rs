@@ -19,6 +19,7 @@
 //! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
 //! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
 //! | [`radio`] | a transmitter in somebody's hands: arming, kill switch, sticks |
+//! | [`recorder`] | the last seconds of the last flight, in memory that outlives a reset |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`repeat`] | motor commands sent again while they are young |
@@ -53,6 +54,7 @@ pub mod outputs;
 mod pace;
 pub mod parameters;
 pub mod radio;
+pub mod recorder;
 pub mod redundant;
 mod registers;
 pub mod repeat;

@@ -10,6 +10,7 @@
 //! | [`streams`] | which messages go out by the clock, and how often |
 //! | [`telemetry`] | what the vehicle knows as messages |
 //! | [`origin`] | a local frame on the globe |
+//! | [`download`] | a recording, part by part |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
@@ -20,6 +21,7 @@
 
 pub mod command;
 mod commander;
+pub mod download;
 pub mod frame;
 pub mod origin;
 pub mod pose;

@@ -20,6 +20,7 @@
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
+//! | control | [`Shared::recorder`] | link | until the next flight |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
@@ -41,6 +42,7 @@ pub use report::{Report, Timing, Traffic};
 
 use crate::link::origin::Origin;
 use crate::parameters::Parameters;
+use crate::recorder::Recorder;
 use controller_core::estimator::{Increment, PoseMeasurement};
 use controller_core::flight::{ImuSample, Mode, Refusal, Stamped};
 use controller_core::governor::Setpoint;
@@ -113,6 +115,8 @@ pub struct Shared<M: RawMutex> {
     pub outgoing: Signal<M, ()>,
     /// What may be set from the ground.
     pub parameters: Parameters<M>,
+    /// The last seconds of the last flight: control writes, the link reads.
+    pub recorder: Recorder<M>,
     /// Events that found one of the queues full.
     lost: AtomicU32,
     lost_increments: AtomicU32,
@@ -145,6 +149,7 @@ impl<M: RawMutex> Shared<M> {
             replies: Queue::new(),
             outgoing: Signal::new(),
             parameters: Parameters::new(),
+            recorder: Recorder::new(),
             lost: AtomicU32::new(0),
             lost_increments: AtomicU32::new(0),
         }

@@ -36,6 +36,7 @@ use firmware::control::Control;
 use firmware::hardware::Clock;
 use firmware::link::frame::Parser;
 use firmware::parameters::storage::Storage;
+use firmware::recorder::ring::{Ring, SLOT};
 use firmware::shared::Shared;
 use firmware::{boot, imu, link, status};
 use flash::DeskFlash;
@@ -53,6 +54,9 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 use voice::Voice;
 use world::World;
+
+/// Ticks that the flight recorder holds: a minute.
+const RECORDED: usize = 6_000;
 
 /// Time between lines of status, by the desk's clock.
 const STATUS: Duration = Duration::from_secs(1);
@@ -142,6 +146,7 @@ impl Sitl {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
         let mut parameters = Storage::load(flash, shared);
+        shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice())));
         let place = Box::leak(Box::new(boot::Place::new()));
         let (pilot, outputs) = boot::start_with(place, &shared.parameters, scenario.configuration.clone())
             .map_err(|error| in_file(error.to_string()))?;

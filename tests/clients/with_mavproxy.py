@@ -12,16 +12,18 @@ import tempfile
 import threading
 import time
 
+import pyulog
 from vehicle import Vehicle
 
-MODULES = "arm,mode,cmdlong,param,link,misc"
+MODULES = "arm,mode,cmdlong,param,link,misc,log"
 
 
 class MAVProxy:
     def __init__(self, port, directory):
+        self.directory = pathlib.Path(directory)
         program = pathlib.Path(sys.executable).parent / "mavproxy.py"
         command = [sys.executable, "-u", program, f"--master=udp:127.0.0.1:{port}", f"--default-modules={MODULES}"]
-        command += ["--logfile", pathlib.Path(directory) / "mav.tlog", "--state-basedir", directory]
+        command += ["--logfile", self.directory / "mav.tlog", "--state-basedir", directory]
         self.process = subprocess.Popen(
             [str(part) for part in command],
             cwd=directory, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -117,6 +119,13 @@ def fly(vehicle, proxy):
     vehicle.wait_for("Landed: disarmed", 30)
     proxy.wait_for("DISARMED", 5)
     print("  MAVProxy: held, was refused a disarming in the air, landed and disarmed", flush=True)
+    # The recorder goes on for two seconds.
+    time.sleep(3.0)
+    proxy.ask("log list", "Log 0  numLogs 1")
+    proxy.ask("log download 0 flight.ulg", "Finished downloading flight.ulg", 60)
+    (ticks,) = pyulog.ULog(str(proxy.directory / "flight.ulg")).data_list
+    assert len(ticks.data["timestamp"]) > 1_500 and ticks.data["airborne"].any(), len(ticks.data["timestamp"])
+    print(f"  MAVProxy: fetched {len(ticks.data['timestamp'])} ticks of the recorder", flush=True)
     proxy.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
     proxy.ask("disarm", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
     print("  MAVProxy: armed and disarmed on the ground", flush=True)

@@ -3,9 +3,11 @@
 import math
 import os
 import sys
+import tempfile
 import time
 
 os.environ["MAVLINK20"] = "1"
+import pyulog  # noqa: E402
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as m  # noqa: E402
 
@@ -222,12 +224,55 @@ def forced(client):
     client.until(lambda _: not client.armed, 2.0, "disarmed by force")
 
 
+def recording(client):
+    """The flight that was just ended by force is listed, fetched over the link, and read by PX4's own reader of logs."""
+    client.rest(3.0)
+    client.line.mav.log_request_list_send(1, 1, 0, 0xFFFF)
+    entry = client.reply("LOG_ENTRY")
+    assert (entry.num_logs, entry.id) == (1, 0), entry
+    client.line.mav.log_request_data_send(1, 1, 0, 0, 0xFFFFFFFF)
+    parts = {}
+    while True:
+        part = client.reply("LOG_DATA")
+        parts[part.ofs] = bytes(part.data[: part.count])
+        if part.count < 90:
+            break
+    # What was lost on the way is asked for again.
+    for offset in range(0, entry.size, 90):
+        while offset not in parts:
+            client.line.mav.log_request_data_send(1, 1, 0, offset, min(90, entry.size - offset))
+            part = client.reply("LOG_DATA", ofs=offset)
+            parts[offset] = bytes(part.data[: part.count])
+    file = b"".join(parts[offset] for offset in sorted(parts))
+    assert len(file) == entry.size, (len(file), entry.size)
+    with tempfile.NamedTemporaryFile(suffix=".ulg") as log:
+        log.write(file)
+        log.flush()
+        ulog = pyulog.ULog(log.name)
+    assert not ulog.file_corruption and ulog.msg_info_dict["sys_name"] == "saturated hybrid feedback"
+    (tick,) = ulog.data_list
+    columns = tick.data
+    steps = {int(step) for step in columns["timestamp"][1:] - columns["timestamp"][:-1]}
+    assert tick.name == "tick" and steps == {10_000}, (tick.name, steps)
+    modes = [int(mode) for mode in columns["mode"]]
+    changes = [mode for at, mode in enumerate(modes) if at == 0 or modes[at - 1] != mode]
+    # Idling, taking off; then stopped motors: in words, as the file itself says.
+    names = dict(entry.split(" ", 1) for entry in ulog.msg_info_dict["modes"].split(", "))
+    assert [names[str(mode)] for mode in changes[:2]] == ["idling", "taking off"], changes
+    flying = columns["airborne"] == 1
+    assert flying.any() and (columns["motors[0]"][flying & (columns["mode"] == 5)] > 0.1).all()
+    assert modes[-1] not in (4, 5, 6, 7, 8, 9) and columns["motors[0]"][-1] == 0.0
+    height = columns["position[2]"]
+    assert 0.4 < height.max() - height[0] < 1.2, height
+    print(f"    {len(modes)} ticks of the recorder, {entry.size} bytes, read by pyulog")
+
+
 def main():
     with Vehicle(speed=SPEED) as vehicle:
         client = Client(vehicle.offboard)
         client.line.wait_heartbeat(timeout=10)
         assert client.line.target_system == 1, client.line.target_system
-        for part in (rates, questions, parameters, flight, forced):
+        for part in (rates, questions, parameters, flight, forced, recording):
             started = time.monotonic()
             part(client)
             print(f"  pymavlink {part.__name__}: passed in {time.monotonic() - started:.1f} s", flush=True)

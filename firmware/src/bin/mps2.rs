@@ -11,11 +11,13 @@ mod target {
     use firmware::boards::mps2::time::BoardClock;
     use firmware::boards::mps2::watchdog::BoardWatchdog;
     use firmware::boards::mps2::{self, executors, exit, idle, uart};
+    use firmware::boards::recorder;
     use firmware::boot;
     use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
     use firmware::link::{receive, transmit};
     use firmware::outputs::Outputs;
+    use firmware::recorder::ring::Ring;
     use firmware::shared::Shared;
     use firmware::status;
 
@@ -35,6 +37,9 @@ mod target {
             exit::fail("the embedded scenario has not four rotors")
         };
         SHARED.hil.raise();
+        if let Some(memory) = recorder::take(false) {
+            SHARED.recorder.attach(Ring::recover(memory));
+        }
 
         let spawner = executors::start_flight();
         spawner.spawn(control(pilot, outputs).unwrap());

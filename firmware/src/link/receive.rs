@@ -20,15 +20,16 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MISSION_CLEAR_ALL_DATA,
-    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA,
-    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    TIMESYNC_DATA,
+    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA,
+    LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA,
+    MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, TIMESYNC_DATA,
 };
 
 mod commands;
 mod parameters;
 mod places;
+mod recordings;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -135,6 +136,10 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             Ping::ID => self.decoded(frame, Self::ping),
             PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
             PARAM_REQUEST_READ_DATA::ID => self.decoded(frame, Self::read_parameter),
+            LOG_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_recordings),
+            LOG_REQUEST_DATA_DATA::ID => self.decoded(frame, Self::read_recording),
+            LOG_REQUEST_END_DATA::ID => self.decoded(frame, Self::end_reading),
+            LOG_ERASE_DATA::ID => self.decoded(frame, Self::erase_recordings),
             PARAM_SET_DATA::ID => self.decoded(frame, Self::set_parameter),
             _ => {}
         }

@@ -2,6 +2,7 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
+use super::download::Download;
 use super::origin::Origin;
 use super::streams::{Schedule, interval_of_rate};
 use super::telemetry::kind::Kind;
@@ -17,7 +18,9 @@ use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
-use mavlink::dialects::common::{COMMAND_ACK_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA};
+use mavlink::dialects::common::{
+    COMMAND_ACK_DATA, LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA,
+};
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIME_MAX: u64 = 100_000;
@@ -53,6 +56,8 @@ struct Speaker<'a, M: RawMutex> {
     schedule: Schedule,
     /// The next of a list of parameters, and when it is due, us.
     list: Option<(usize, u64)>,
+    /// What is still to be sent of a recording.
+    download: Option<Download>,
     writer: Writer,
     /// Lost events that were told of.
     told: u32,
@@ -60,7 +65,7 @@ struct Speaker<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
-        Self { shared, schedule: Schedule::new(now), list: None, writer: Writer::new(), told: 0 }
+        Self { shared, schedule: Schedule::new(now), list: None, download: None, writer: Writer::new(), told: 0 }
     }
 
     fn system(&self) -> u8 {
@@ -79,7 +84,8 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// When something is due, us.
     fn next(&self) -> u64 {
         let list = self.list.map_or(u64::MAX, |(_, time)| time);
-        self.schedule.next(self.telemetry()).min(list)
+        let download = self.download.map_or(u64::MAX, |download| download.due);
+        self.schedule.next(self.telemetry()).min(list).min(download)
     }
 
     /// Writes the first message that is due; whether there is one.
@@ -90,11 +96,26 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 return true;
             }
         }
+        self.listed(now) || self.downloaded(now)
+    }
+
+    /// Writes the next of a list of parameters, if there is one and it is due.
+    fn listed(&mut self, now: u64) -> bool {
         let Some((index, time)) = self.list.filter(|&(_, time)| now >= time) else { return false };
         let name = Name::from_index(index);
         self.list = name.map(|_| (index + 1, time.max(now.saturating_sub(LIST_INTERVAL)) + LIST_INTERVAL));
         let Some(name) = name else { return false };
         self.parameter(name);
+        true
+    }
+
+    /// Writes the next part of a recording, if somebody wants one and it is due.
+    fn downloaded(&mut self, now: u64) -> bool {
+        let Some(download) = self.download.filter(|download| now >= download.due) else { return false };
+        let shared = self.shared;
+        let (message, left) = download.next(now, |offset, out| shared.recorder.read(offset, out));
+        self.download = left;
+        self.say(&message);
         true
     }
 
@@ -158,6 +179,22 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                     interval_us: interval.map_or(-1, |interval| i32::try_from(interval).unwrap_or(i32::MAX)),
                     message_id: kind.number() as u16,
                 });
+            }
+            Reply::Recording => {
+                let size = self.shared.recorder.size();
+                self.say(&LOG_ENTRY_DATA {
+                    size: size.unwrap_or(0),
+                    num_logs: u16::from(size.is_some()),
+                    ..LOG_ENTRY_DATA::DEFAULT
+                });
+            }
+            Reply::RecordingData { count: 0, .. } => {
+                self.download = None;
+                return false;
+            }
+            Reply::RecordingData { offset, count } => {
+                self.download = Some(Download::new(offset, count, now));
+                return false;
             }
             Reply::Interval { kind, interval } => {
                 self.schedule.ask(kind, interval, now);

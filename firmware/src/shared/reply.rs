@@ -67,6 +67,15 @@ pub enum Reply {
     },
     /// MESSAGE_INTERVAL of a message.
     IntervalOf(Kind),
+    /// LOG_ENTRY: the last recording, or that there is none.
+    Recording,
+    /// LOG_DATA of the last recording, from this offset on, so many bytes; of none, and what is sent ends.
+    RecordingData {
+        /// Bytes from its beginning.
+        offset: u32,
+        /// Bytes.
+        count: u32,
+    },
     /// MISSION_COUNT to a system's component: there is none.
     NoMission(u8, u8),
     /// MISSION_ACK to a system's component.

@@ -2,7 +2,7 @@
 
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::{Local, report};
-use crate::support::{Simulated, v2};
+use crate::support::{Simulated, sent, v2};
 use controller_core::flight::{Mode, Refusal};
 use controller_core::state::State;
 use core::cell::RefCell;
@@ -64,18 +64,6 @@ fn a_long_burst_is_received_whole() {
     line.borrow_mut().push_back(Delivery::Bytes(burst));
     clock.run(10_000, receive(Incoming(&line), &clock, &shared), |_| ());
     assert_eq!(shared.traffic.get().unwrap().value.frames, 256);
-}
-
-/// Everything of one type in what was written.
-fn sent<D: MessageData>(written: &RefCell<Vec<u8>>) -> Vec<D> {
-    let mut parser = Parser::new();
-    let mut found = Vec::new();
-    for &byte in written.borrow().iter() {
-        let frame = parser.push(byte, 0);
-        found.extend(frame.and_then(|frame| frame.decode()));
-    }
-    assert_eq!(parser.discarded(), 0);
-    found
 }
 
 /// Transmits for `duration` us.

@@ -22,6 +22,7 @@ mod link_tasks;
 mod link_telemetry;
 mod parameters;
 mod radio;
+mod recorder;
 mod repeat;
 mod status;
 mod support;

@@ -6,14 +6,17 @@ use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::restart::Cause;
 use super::storage::ParameterFlash;
 use crate::boards::chosen::{
     self, BoardBattery, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
 };
+use crate::boards::recorder;
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
+use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::{boot, imu, link, radio, status};
 use controller_core::flight::Pilot;
@@ -35,6 +38,9 @@ pub fn run() -> ! {
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
+    if let Some(memory) = recorder::take(board.restart == Cause::Power) {
+        shared.recorder.attach(Ring::recover(memory));
+    }
     static PLACE: boot::Place = boot::Place::new();
     let (pilot, outputs) = boot::start(&PLACE, &shared.parameters).unwrap();
 

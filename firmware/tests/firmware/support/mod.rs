@@ -6,11 +6,12 @@ pub mod line;
 pub mod receiver;
 pub mod simulator;
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 use core::future::Future;
 use core::pin::pin;
 use core::task::{Context, Poll, Waker};
 use firmware::hardware::Clock;
+use firmware::link::frame::Parser;
 use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 
 /// The ground station of the tests.
@@ -84,4 +85,16 @@ impl Simulated {
             self.0.set(self.0.get() + 1000);
         }
     }
+}
+
+/// Everything of one type in what was written.
+pub fn sent<D: MessageData>(written: &RefCell<Vec<u8>>) -> Vec<D> {
+    let mut parser = Parser::new();
+    let mut found = Vec::new();
+    for &byte in written.borrow().iter() {
+        let frame = parser.push(byte, 0);
+        found.extend(frame.and_then(|frame| frame.decode()));
+    }
+    assert_eq!(parser.discarded(), 0);
+    found
 }

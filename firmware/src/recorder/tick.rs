@@ -1,0 +1,148 @@
+//! What is recorded of a control tick, and how ULog is told.
+//!
+//! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is NaN.
+
+use crate::hardware::{MOTORS, MotorCommand};
+use crate::shared::Report;
+use nalgebra::Vector3;
+
+/// The fields of a record in the order of [`Tick::to_bytes`], in ULog's words. The longest first: ULog knows no gaps.
+pub const FORMAT: &str = "tick:uint64_t timestamp;float[3] position;float[3] velocity;float[4] attitude;\
+float[3] angular_velocity;float[3] reference_position;float[3] reference_velocity;float thrust;float[3] torque;\
+float[4] motors;float voltage;float thrust_scale;float pose_age;uint16_t missed_ticks;uint8_t mode;uint8_t airborne;";
+
+/// Bytes of a record.
+pub const SIZE: usize = 8 + 4 * 30 + 2 + 1 + 1;
+
+/// One control tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tick {
+    /// us since the start.
+    pub time: u64,
+    /// What control tells everybody.
+    pub report: Report,
+    /// What the motors are told.
+    pub command: MotorCommand,
+    /// The battery, V, if it is known.
+    pub voltage: Option<f32>,
+}
+
+impl Tick {
+    /// The record.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; SIZE] {
+        let Self { time, report, command, voltage } = self;
+        let mut record = Writer { bytes: [0; SIZE], at: 0 };
+        record.put(&time.to_le_bytes());
+        let state = report.state.as_ref();
+        record.vector(state.map(|state| &state.position));
+        record.vector(state.map(|state| &state.velocity));
+        record.floats(state.map_or([f32::NAN; 4], |state| {
+            let q = &state.attitude;
+            [q.w, q.i, q.j, q.k]
+        }));
+        record.vector(state.map(|state| &state.angular_velocity));
+        record.vector(report.reference.as_ref().map(|reference| &reference.position));
+        record.vector(report.reference.as_ref().map(|reference| &reference.velocity));
+        record.floats([report.wrench.map_or(f32::NAN, |wrench| wrench.thrust)]);
+        record.vector(report.wrench.as_ref().map(|wrench| &wrench.torque));
+        record.floats(levels(command));
+        record.floats([
+            voltage.unwrap_or(f32::NAN),
+            report.thrust_scale.unwrap_or(f32::NAN),
+            report.health.pose_age.map_or(f32::NAN, |age| age as f32 * 1e-6),
+        ]);
+        record.put(&u16::try_from(report.timing.missed).unwrap_or(u16::MAX).to_le_bytes());
+        record.put(&[report.mode as u8, u8::from(report.is_airborne)]);
+        record.bytes
+    }
+}
+
+/// Each motor's command, 0 to 1; 0 where it is stopped.
+fn levels(command: &MotorCommand) -> [f32; MOTORS] {
+    match command {
+        MotorCommand::Stop => [0.0; MOTORS],
+        MotorCommand::Run(levels) => *levels,
+        MotorCommand::One { motor, level } => core::array::from_fn(|index| if index == *motor { *level } else { 0.0 }),
+    }
+}
+
+/// Bytes one after the other.
+struct Writer {
+    bytes: [u8; SIZE],
+    at: usize,
+}
+
+impl Writer {
+    fn put(&mut self, bytes: &[u8]) {
+        let to = self.bytes.iter_mut().skip(self.at);
+        to.zip(bytes).for_each(|(to, from)| *to = *from);
+        self.at += bytes.len();
+    }
+
+    fn floats<const N: usize>(&mut self, numbers: [f32; N]) {
+        numbers.iter().for_each(|number| self.put(&number.to_le_bytes()));
+    }
+
+    fn vector(&mut self, vector: Option<&Vector3<f32>>) {
+        self.floats(vector.map_or([f32::NAN; 3], |vector| (*vector).into()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bytes of ULog's basic types.
+    fn size(kind: &str) -> usize {
+        match kind {
+            "uint64_t" => 8,
+            "float" => 4,
+            "uint16_t" => 2,
+            "uint8_t" => 1,
+            _ => panic!("{kind}"),
+        }
+    }
+
+    /// Bytes and names of the format's fields.
+    fn fields() -> Vec<(usize, usize, &'static str)> {
+        let (_, fields) = FORMAT.split_once(':').unwrap();
+        let fields = fields.trim_end_matches(';').split(';').map(|field| {
+            let (kind, name) = field.split_once(' ').unwrap();
+            match kind.split_once('[') {
+                Some((kind, count)) => (size(kind), count.trim_end_matches(']').parse().unwrap(), name),
+                None => (size(kind), 1, name),
+            }
+        });
+        fields.collect()
+    }
+
+    #[test]
+    fn the_format_is_as_long_as_a_record_and_has_no_gaps() {
+        assert_eq!(fields().iter().map(|(size, count, _)| size * count).sum::<usize>(), SIZE);
+        assert!(fields().is_sorted_by(|a, b| a.0 >= b.0));
+        assert_eq!(levels(&MotorCommand::One { motor: 2, level: 0.5 }), [0.0, 0.0, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn what_is_not_known_is_no_number_and_all_of_a_record_is_written() {
+        let report = Report { mode: controller_core::flight::Mode::Locked, is_airborne: true, ..Report::NONE };
+        let tick = Tick { time: 7, report, command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]), voltage: None };
+        let bytes = tick.to_bytes();
+        let mut at = 0;
+        for (size, count, name) in fields() {
+            let field = &bytes[at..at + size * count];
+            at += size * count;
+            let floats: Vec<f32> =
+                field.chunks(4).filter_map(|x| Some(f32::from_le_bytes(x.try_into().ok()?))).collect();
+            match name {
+                "timestamp" => assert_eq!(field, [7, 0, 0, 0, 0, 0, 0, 0]),
+                "motors" => assert_eq!(floats, [0.1, 0.2, 0.3, 0.4]),
+                "missed_ticks" => assert_eq!(field, [0, 0]),
+                "mode" => assert_eq!(field, [report.mode as u8]),
+                "airborne" => assert_eq!(field, [1]),
+                _ => assert!(floats.len() == count && floats.iter().all(|x| x.is_nan()), "{name}: {floats:?}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! A recording as a file of ULog, the format of PX4's logs (version 1), made up as it is read.
+//!
+//! ```text
+//! file    = "ULog" 01 12 35 01, time of the first record | flags | information... | format | subscription | data...
+//! message = length of what follows, 2 bytes | kind, 1 byte | ...
+//! data    = message of kind D: number of the subscription, 2 bytes | record
+//! ```
+//!
+//! Everything before the data is of constant length and every record is as long as the next, so any part of the file can be
+//! read without the rest.
+
+use super::ring::Ring;
+use super::tick;
+
+/// The first bytes of every file, with the format's version.
+const MAGIC: [u8; 8] = [b'U', b'L', b'o', b'g', 0x01, 0x12, 0x35, 0x01];
+
+/// Kind B: nothing that a reader must know about, nothing appended.
+const FLAGS: [u8; 43] = {
+    let mut message = [0; 43];
+    message[0] = 40;
+    message[2] = b'B';
+    message
+};
+
+/// What the file says about itself, by ULog's keys, and about its numbers.
+const INFORMATION: [Information; 3] = [
+    Information::new("char[25] sys_name", "saturated hybrid feedback"),
+    Information::new("char[34] frames", "world z up, body x forward, y left"),
+    Information::new(
+        "char[132] modes",
+        "0 boot, 1 checks, 2 ready, 3 motor test, 4 idling, 5 taking off, 6 flying, 7 holding, 8 landing, 9 descending, \
+         10 stopped, 11 locked",
+    ),
+];
+
+/// Kind I: a key, with its type, and a text.
+struct Information {
+    head: [u8; 4],
+    key: &'static str,
+    text: &'static str,
+}
+
+impl Information {
+    const fn new(key: &'static str, text: &'static str) -> Self {
+        let [low, high, kind] = head(b'I', 1 + key.len() + text.len());
+        Self { head: [low, high, kind, key.len() as u8], key, text }
+    }
+}
+
+/// The head of a message of this kind and length.
+const fn head(kind: u8, length: usize) -> [u8; 3] {
+    let [low, high] = (length as u16).to_le_bytes();
+    [low, high, kind]
+}
+
+/// The head of the message that says what a record is.
+const FORMAT: [u8; 3] = head(b'F', tick::FORMAT.len());
+
+/// Kind A: records are subscription 0, the first of their name.
+const SUBSCRIPTION: [u8; 6] = {
+    let [low, high, kind] = head(b'A', 7);
+    [low, high, kind, 0, 0, 0]
+};
+const NAME: &str = "tick";
+
+/// What stands before each record.
+const DATA: [u8; 5] = {
+    let [low, high, kind] = head(b'D', 2 + tick::SIZE);
+    [low, high, kind, 0, 0]
+};
+
+/// Bytes of a record in the file.
+const RECORD: usize = DATA.len() + tick::SIZE;
+
+/// Bytes of the time of a record, which is what it begins with.
+const TIME: usize = 8;
+
+/// The parts of the file before its data, where the first record was of `time`.
+fn beginning<'a>(time: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+    let information = INFORMATION
+        .iter()
+        .flat_map(|information| [&information.head[..], information.key.as_bytes(), information.text.as_bytes()]);
+    let definitions = [&FORMAT[..], tick::FORMAT.as_bytes(), &SUBSCRIPTION, NAME.as_bytes()];
+    [&MAGIC[..], time, &FLAGS].into_iter().chain(information).chain(definitions)
+}
+
+/// Bytes before the data.
+fn beginning_size() -> usize {
+    beginning(&[0; TIME]).map(<[u8]>::len).sum()
+}
+
+/// Bytes of a file of so many records.
+#[must_use]
+pub fn size(records: usize) -> u32 {
+    u32::try_from(beginning_size() + records * RECORD).unwrap_or(u32::MAX)
+}
+
+/// Reads the file from `offset` on into `out`; how many bytes there were.
+pub fn read(ring: &Ring<'_>, offset: usize, out: &mut [u8]) -> usize {
+    let time = ring.get(0).and_then(|record| record.first_chunk::<TIME>()).copied().unwrap_or_default();
+    let from_data =
+        |index| (index..ring.len()).filter_map(|index| ring.get(index)).flat_map(|record| [&DATA[..], record]);
+    match offset.checked_sub(beginning_size()) {
+        Some(offset) => copy(from_data(offset / RECORD), offset % RECORD, out),
+        None => copy(beginning(&time).chain(from_data(0)), offset, out),
+    }
+}
+
+/// Copies what `parts` hold beyond their first `skipped` bytes; how many bytes there were.
+fn copy<'a>(parts: impl Iterator<Item = &'a [u8]>, mut skipped: usize, out: &mut [u8]) -> usize {
+    let mut count = 0;
+    for part in parts {
+        let wanted = part.get(skipped..).unwrap_or_default();
+        skipped = skipped.saturating_sub(part.len());
+        let Some(free) = out.get_mut(count..).filter(|free| !free.is_empty()) else { break };
+        free.iter_mut().zip(wanted).for_each(|(to, from)| *to = *from);
+        count += free.len().min(wanted.len());
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,130 @@
+//! The flight recorder between control and the link: what is recorded, and how a ground station fetches it.
+
+use crate::support::line::Outgoing;
+use crate::support::receiver::{Fed, Local};
+use crate::support::{Simulated, sent};
+use core::cell::RefCell;
+use firmware::hardware::MotorCommand;
+use firmware::link::transmit::transmit;
+use firmware::recorder::AFTERWARDS;
+use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::tick::Tick;
+use firmware::recorder::ulog;
+use firmware::shared::Report;
+use mavlink::dialects::common::{
+    LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
+};
+
+const ROOM: usize = 500;
+
+/// Shared, with a recorder for [`ROOM`] ticks.
+fn shared() -> Local {
+    let shared = Local::new();
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())));
+    shared
+}
+
+/// Ticks of a vehicle that is armed or not, from tick `from` on.
+fn ticks(shared: &Local, armed: bool, from: u64, count: u64) {
+    for number in from..from + count {
+        let tick =
+            Tick { time: number * 10_000, report: Report::NONE, command: MotorCommand::Stop, voltage: Some(11.1) };
+        shared.recorder.record(armed, || tick);
+    }
+}
+
+fn list() -> LOG_REQUEST_LIST_DATA {
+    LOG_REQUEST_LIST_DATA { start: 0, end: 0xFFFF, target_system: 1, target_component: 1 }
+}
+
+fn part(ofs: u32, count: u32) -> LOG_REQUEST_DATA_DATA {
+    LOG_REQUEST_DATA_DATA { ofs, count, id: 0, target_system: 1, target_component: 1 }
+}
+
+/// What goes out within `duration`, us.
+fn transmitted(shared: &Local, duration: u64) -> RefCell<Vec<u8>> {
+    let (clock, written) = (Simulated::default(), RefCell::default());
+    clock.run(duration, transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared), |_| ());
+    written
+}
+
+fn entry(shared: &Local) -> LOG_ENTRY_DATA {
+    Fed::new(shared).message(&list(), 0);
+    let entries: Vec<LOG_ENTRY_DATA> = sent(&transmitted(shared, 50_000));
+    assert_eq!(entries.len(), 1);
+    entries.into_iter().next().unwrap()
+}
+
+#[test]
+fn a_flight_and_two_seconds_after_it_are_recorded_and_the_next_one_replaces_it() {
+    let shared = shared();
+    ticks(&shared, false, 0, 10);
+    assert_eq!(shared.recorder.size(), None);
+    ticks(&shared, true, 10, 50);
+    assert_eq!((shared.recorder.size(), shared.recorder.read(0, &mut [0; 90])), (None, 0));
+    ticks(&shared, false, 60, 1_000);
+    let recorded = 50 + usize::from(AFTERWARDS) - 1;
+    assert_eq!(shared.recorder.size(), Some(ulog::size(recorded)));
+    // The time of the first record stands in the file's head.
+    let mut head = [0; 16];
+    assert_eq!((shared.recorder.read(0, &mut head), &head[8..]), (16, &100_000_u64.to_le_bytes()[..]));
+    ticks(&shared, true, 2_000, 5);
+    ticks(&shared, false, 2_005, 1_000);
+    assert_eq!(shared.recorder.size(), Some(ulog::size(5 + usize::from(AFTERWARDS) - 1)));
+}
+
+#[test]
+fn a_ground_station_lists_it_fetches_it_and_erases_it() {
+    let shared = shared();
+    assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT);
+    ticks(&shared, true, 0, 100);
+    assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT, "while it is made");
+    ticks(&shared, false, 100, u64::from(AFTERWARDS));
+    let size = ulog::size(99 + usize::from(AFTERWARDS));
+    assert_eq!(entry(&shared), LOG_ENTRY_DATA { size, num_logs: 1, ..LOG_ENTRY_DATA::DEFAULT });
+
+    let mut fed = Fed::new(&shared);
+    fed.message(&part(0, u32::MAX), 0);
+    let parts: Vec<LOG_DATA_DATA> = sent(&transmitted(&shared, 3_000_000));
+    let mut file: Vec<u8> = vec![];
+    for LOG_DATA_DATA { ofs, id, count, data } in &parts {
+        assert_eq!((*ofs as usize, *id), (file.len(), 0));
+        file.extend(&data[..usize::from(*count)]);
+    }
+    assert!(parts.last().unwrap().count < 90);
+    let mut whole = vec![0; size as usize];
+    assert_eq!(shared.recorder.read(0, &mut whole), whole.len());
+    assert_eq!(file, whole);
+
+    // A gap is asked for again, and what nobody wants any more ends.
+    fed.message(&part(180, 100), 0);
+    let parts: Vec<LOG_DATA_DATA> = sent(&transmitted(&shared, 50_000));
+    assert_eq!(parts.iter().map(|part| (part.ofs, part.count)).collect::<Vec<_>>(), [(180, 90), (270, 10)]);
+    fed.message(&part(0, u32::MAX), 0);
+    fed.message(&LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 }, 0);
+    assert!(sent::<LOG_DATA_DATA>(&transmitted(&shared, 50_000)).is_empty());
+
+    // There is no other recording, and those of other vehicles are theirs.
+    fed.message(&LOG_REQUEST_DATA_DATA { id: 1, ..part(0, 90) }, 0);
+    fed.message(&LOG_REQUEST_DATA_DATA { target_system: 2, ..part(0, 90) }, 0);
+    fed.message(&LOG_ERASE_DATA { target_system: 2, target_component: 1 }, 0);
+    assert!(sent::<LOG_DATA_DATA>(&transmitted(&shared, 50_000)).is_empty());
+    assert!(shared.recorder.size().is_some());
+    fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 0);
+    assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT);
+}
+
+#[test]
+fn telemetry_and_parameters_are_not_kept_waiting_by_a_download() {
+    let shared = shared();
+    ticks(&shared, true, 0, 500);
+    ticks(&shared, false, 500, 300);
+    let mut fed = Fed::new(&shared);
+    fed.message(&part(0, u32::MAX), 0);
+    shared.reply(firmware::shared::Reply::AllParameters);
+    let written = transmitted(&shared, 1_000_000);
+    let parts: Vec<LOG_DATA_DATA> = sent(&written);
+    let parameters: Vec<mavlink::dialects::common::PARAM_VALUE_DATA> = sent(&written);
+    assert!((490..=501).contains(&parts.len()), "{}", parts.len());
+    assert_eq!(parameters.len(), firmware::parameters::table::PARAMETERS.len());
+}
