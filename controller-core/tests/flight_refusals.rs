@@ -318,6 +318,11 @@ fn nothing_turns_while_flash_is_written() {
 }
 
 #[test]
+fn a_clock_whose_crystal_does_not_run_does_not_arm() {
+    refuses(Handed { is_clock_doubtful: true, ..at_rest(NOW) }, Refusal::ClockDoubtful);
+}
+
+#[test]
 fn a_battery_that_is_low_does_not_arm() {
     for battery in [Battery::Low, Battery::Critical] {
         refuses(Handed { battery, ..at_rest(NOW) }, Refusal::BatteryLow);

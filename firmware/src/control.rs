@@ -132,6 +132,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             disarm: self.shared.disarm.take() || handed_over,
             killed: self.shared.killed.get().is_some_and(|killed| killed.value),
             is_busy: self.shared.saving.is_raised(),
+            is_clock_doubtful: self.shared.clock_doubtful.is_raised(),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
             setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),

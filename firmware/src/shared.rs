@@ -19,6 +19,7 @@
 //! | link | [`Shared::hil`] | motors, sensors | until reboot |
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
+//! | board | [`Shared::clock_doubtful`] | control | until reboot |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
 //! | control | [`Shared::recorder`] | link | until the next flight |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
@@ -87,6 +88,8 @@ pub struct Shared<M: RawMutex> {
     pub requests: Queue<M, Asked, REQUESTS>,
     /// Raised while parameters are written to flash: nothing begins to turn.
     pub saving: Flag,
+    /// Raised at boot where the clock's crystal does not run: nobody arms.
+    pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
     pub killed: Latest<M, bool>,
     /// Whether a radio's sticks fly, by its switch.
@@ -135,6 +138,7 @@ impl<M: RawMutex> Shared<M> {
             setpoint: Latest::new(),
             requests: Queue::new(),
             saving: Flag::new(),
+            clock_doubtful: Flag::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
             disarm: Flag::new(),

@@ -47,6 +47,8 @@ pub struct Inputs<'a> {
     pub killed: bool,
     /// Whether something is under way that may stall the processor: flash that is written.
     pub is_busy: bool,
+    /// Whether nobody knows how exact the clock is: its crystal does not run.
+    pub is_clock_doubtful: bool,
     /// What the battery has left.
     pub battery: Battery,
     /// Whether the last tick came to its end too late.

@@ -71,6 +71,8 @@ pub enum Refusal {
     Killed,
     /// Flash is being written, which may stall the processor.
     Busy,
+    /// The clock's crystal does not run.
+    ClockDoubtful,
     /// The battery is low.
     BatteryLow,
     /// Motors stop in the air by force only.
@@ -127,6 +129,7 @@ impl fmt::Display for Refusal {
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",
             Self::Busy => "Refused: parameters are being saved",
+            Self::ClockDoubtful => "Refused: the clock's crystal does not run",
             Self::BatteryLow => "Refused: the battery is low",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",
             Self::NotIdling => "Refused: arm on the ground first",

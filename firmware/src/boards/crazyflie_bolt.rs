@@ -7,6 +7,7 @@
 
 use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
+use super::stm32::crystal;
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088};
 use super::stm32::light::Lamp;
@@ -78,7 +79,8 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
 #[must_use]
 pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
-    let p = embassy_stm32::init(clocks());
+    let has_crystal = crystal::starts();
+    let p = embassy_stm32::init(clocks(has_crystal));
     pac::FLASH.acr().modify(|w| {
         w.set_prften(true);
         w.set_icen(true);
@@ -127,17 +129,21 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         simulator_transmitter,
         radio: None,
         storage: ParameterFlash::new(p.FLASH, pac::IWDG),
+        has_crystal,
         restart,
     }
 }
 
-fn clocks() -> embassy_stm32::Config {
+fn clocks(has_crystal: bool) -> embassy_stm32::Config {
     let mut config = embassy_stm32::Config::default();
     let rcc = &mut config.rcc;
-    rcc.hse = Some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
-    rcc.pll_src = PllSource::HSE;
+    rcc.hse = has_crystal.then_some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
+    // 2 MHz of the crystal's 8 or of the chip's own 16.
+    let (source, prediv) =
+        if has_crystal { (PllSource::HSE, PllPreDiv::DIV4) } else { (PllSource::HSI, PllPreDiv::DIV8) };
+    rcc.pll_src = source;
     rcc.pll = Some(rcc::Pll {
-        prediv: PllPreDiv::DIV4,
+        prediv,
         mul: PllMul::MUL168,
         divp: Some(PllPDiv::DIV2), // core: 168 MHz
         divq: Some(PllQDiv::DIV7), // 48 MHz

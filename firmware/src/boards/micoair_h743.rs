@@ -7,6 +7,7 @@
 
 use super::stm32::board::Board;
 use super::stm32::clock::SystemClock;
+use super::stm32::crystal;
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
 use super::stm32::light::Lamp;
@@ -90,7 +91,8 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 #[must_use]
 pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let restart = restart::cause();
-    let p = embassy_stm32::init(clocks());
+    let has_crystal = crystal::starts();
+    let p = embassy_stm32::init(clocks(has_crystal));
     if let Some(mut core) = cortex_m::Peripherals::take() {
         core.SCB.enable_icache();
     }
@@ -137,17 +139,21 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         simulator_transmitter,
         radio: Some(radio),
         storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
+        has_crystal,
         restart,
     }
 }
 
-fn clocks() -> embassy_stm32::Config {
+fn clocks(has_crystal: bool) -> embassy_stm32::Config {
     let mut config = embassy_stm32::Config::default();
     let rcc = &mut config.rcc;
-    rcc.hse = Some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
+    rcc.hse = has_crystal.then_some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
+    // 8 MHz of the crystal's 8 or of the chip's own 64.
+    let (source, prediv) =
+        if has_crystal { (PllSource::HSE, PllPreDiv::DIV1) } else { (PllSource::HSI, PllPreDiv::DIV8) };
     rcc.pll1 = Some(rcc::Pll {
-        source: PllSource::HSE,
-        prediv: PllPreDiv::DIV1,
+        source,
+        prediv,
         mul: PllMul::MUL100,
         fracn: None,
         divp: Some(PllDiv::DIV2), // core: 400 MHz

@@ -2,6 +2,7 @@
 
 pub mod board;
 pub mod clock;
+pub mod crystal;
 pub mod executors;
 mod fault;
 pub mod imu;

@@ -77,7 +77,7 @@ const RECORD: usize = DATA.len() + tick::SIZE;
 const TIME: usize = 8;
 
 /// The parts of the file before its data, where the first record was of `time`.
-fn beginning<'a>(time: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+fn beginning(time: &[u8]) -> impl Iterator<Item = &[u8]> {
     let information = INFORMATION
         .iter()
         .flat_map(|information| [&information.head[..], information.key.as_bytes(), information.text.as_bytes()]);

@@ -18,6 +18,7 @@ impl<'m> Pilot<'m> {
         self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
         require(!inputs.killed, Refusal::Killed)?;
         require(!inputs.is_busy, Refusal::Busy)?;
+        require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
     }

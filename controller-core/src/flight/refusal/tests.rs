@@ -29,6 +29,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Stopped,
         Refusal::Killed,
         Refusal::Busy,
+        Refusal::ClockDoubtful,
         Refusal::BatteryLow,
         Refusal::InTheAir,
         Refusal::NotIdling,

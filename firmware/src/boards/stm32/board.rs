@@ -29,6 +29,8 @@ pub struct Board<Imu, Motors, Watchdog, Battery> {
     pub radio: Option<RadioReceiver>,
     /// Where parameters live.
     pub storage: ParameterFlash,
+    /// Whether its clock is the crystal's; else it is the chip's own, exact to a hundredth or so.
+    pub has_crystal: bool,
     /// Why the chip started.
     pub restart: Cause,
 }

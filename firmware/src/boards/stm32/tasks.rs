@@ -18,6 +18,7 @@ use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
+use crate::shared::{Event, Severity};
 use crate::{boot, imu, link, radio, status};
 use controller_core::flight::Pilot;
 use embassy_executor::Executor;
@@ -35,6 +36,10 @@ pub fn run() -> ! {
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
+    if !board.has_crystal {
+        shared.clock_doubtful.raise();
+        shared.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
+    }
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
