@@ -84,7 +84,7 @@ fn what_was_never_written_holds_nothing_and_neither_does_no_memory() {
         assert!(recovered(&[[byte; SLOT]; 9]).is_empty());
     }
     let noise: Vec<Slot> = (0..64_usize)
-        .map(|slot| core::array::from_fn(|byte| ((slot * SLOT + byte) * 2_654_435_761 >> 13) as u8))
+        .map(|slot| core::array::from_fn(|byte| (((slot * SLOT + byte) * 2_654_435_761) >> 13) as u8))
         .collect();
     assert!(recovered(&noise).is_empty());
     let mut ring = Ring::recover(&mut []);
