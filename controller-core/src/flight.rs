@@ -3,7 +3,7 @@
 //! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
 //! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
-//! - `permission`: what arming and a motor test need;
+//! - `permission`: what arming and turning a motor need; `bench`: what is done with one motor while nothing else turns;
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
@@ -23,6 +23,7 @@
 //! Poses that are believed again are flown at once. Where the estimate jumps, because the sender says that its frame has moved or
 //! because a lost body was found again, the reference jumps with it, and brakes from there: the vehicle does not lurch.
 
+mod bench;
 mod chain;
 mod estimate;
 #[cfg(test)]
@@ -47,10 +48,10 @@ mod watch;
 pub use crate::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
 };
+pub use bench::{MotorSetting, MotorTest, Setting, Word};
 pub use chain::{Flown, Memory};
 pub use estimate::SETTLED_AFTER;
 pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
-pub use permission::MotorTest;
 pub use pilot::Pilot;
 pub use reason::Reason;
 pub use refusal::{Grounded, Refusal};

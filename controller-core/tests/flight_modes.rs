@@ -3,7 +3,7 @@
 mod flight;
 
 use controller_core::flight::rules::{COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX};
-use controller_core::flight::{Mode, MotorTest, Output, PERIOD, Reason, Refusal, Request};
+use controller_core::flight::{Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, GROUND, go_to};
@@ -298,6 +298,32 @@ fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
         assert_eq!((interrupted.output, interrupted.mode), (Output::Stop, Mode::Checks));
         flight.tick();
     }
+}
+
+/// What the motors are told, tick by tick, when a controller's setting is changed; the stop command where it is left out.
+fn words(setting: Setting) -> Vec<(usize, Word)> {
+    let mut flight = Flight::settled();
+    flight.inputs.request = Some(Request::MotorSetting(MotorSetting { rotor: 2, setting }));
+    let begin = flight.tick();
+    assert_eq!((begin.answer, begin.mode), (Some(Ok(())), Mode::MotorTest));
+    let mut outcomes = vec![begin];
+    while outcomes.last().unwrap().mode == Mode::MotorTest {
+        outcomes.push(flight.tick());
+    }
+    assert_eq!(outcomes.len(), 31, "300 ms, and the tick after them");
+    assert_eq!(outcomes[30].transition.map(|transition| transition.reason), Some(Reason::MotorTestOver));
+    let told = outcomes.iter().enumerate().filter_map(|(tick, outcome)| match outcome.output {
+        Output::Tell { rotor: 2, word } => Some((tick, word)),
+        ref other => (*other != Output::Stop).then(|| panic!("{other:?}")),
+    });
+    told.collect()
+}
+
+#[test]
+fn a_motors_controller_beeps_and_keeps_its_direction_and_turns_nothing_meanwhile() {
+    assert_eq!(words(Setting::Beep), [(0, Word::Beep)]);
+    assert_eq!(words(Setting::Normal), [(0, Word::Normal), (5, Word::Save)]);
+    assert_eq!(words(Setting::Reversed), [(0, Word::Reversed), (5, Word::Save)]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::estimator::{Fault, Increment};
 use controller_core::flight::{
-    Battery, FlightSettings, Grounded, Mode, MotorTest, Output, PERIOD, Pilot, Refusal, Request,
+    Battery, FlightSettings, Grounded, Mode, MotorSetting, MotorTest, Output, PERIOD, Pilot, Refusal, Request, Setting,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
@@ -315,6 +315,16 @@ fn nothing_turns_while_flash_is_written() {
     flight.inputs.is_busy = true;
     let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1_000_000 });
     assert_eq!(answer(&mut flight, test), Err(Refusal::Busy));
+}
+
+#[test]
+fn a_motors_controller_is_told_nothing_where_motors_turn_or_of_one_that_is_not_there() {
+    let set = |rotor| Request::MotorSetting(MotorSetting { rotor, setting: Setting::Reversed });
+    assert_eq!(answer(&mut Flight::settled(), set(4)), Err(Refusal::NoSuchRotor));
+    let mut flight = Flight::settled();
+    assert_eq!(answer(&mut flight, Request::Arm), Ok(()));
+    assert_eq!(answer(&mut flight, set(1)), Err(Refusal::AlreadyArmed));
+    assert_eq!(flight.tick().output, Output::Idle);
 }
 
 #[test]

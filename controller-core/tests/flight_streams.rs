@@ -7,7 +7,9 @@ use controller_core::estimator::{Increment, PoseMeasurement};
 use controller_core::flight::rules::{
     COASTING_MAX, DESCENDING_MAX, IDLING_MAX, IMU_AGE_MAX, MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX,
 };
-use controller_core::flight::{Mode, MotorTest, Outcome, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use controller_core::flight::{
+    Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Pose, Request, Setting, Stamped, Velocity,
+};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Handed, SETTLING, at_rest, go_to, pilot, pose, resting_imu, rotors, settled};
@@ -29,6 +31,7 @@ fn check_output(outcome: &Outcome, rotors: &Rotors) {
             assert_eq!(outcome.mode, Mode::MotorTest);
             assert!(*rotor < rotors.len() && *level > 0.0 && *level <= MOTOR_TEST_LEVEL_MAX);
         }
+        Output::Tell { rotor, .. } => assert!(outcome.mode == Mode::MotorTest && *rotor < rotors.len()),
     }
 }
 
@@ -166,6 +169,8 @@ fn arrival() -> impl Strategy<Value = Arrival> {
     let pose = prop_oneof![10 => Just(Fate::Here), 3 => late, 1 => Just(Fate::Lost), 1 => Just(Fate::Lies)];
     let test = (0..6_usize, 0.0..0.2_f32, 0..2_100_000_u64);
     let test = test.prop_map(|(rotor, level, duration)| Request::MotorTest(MotorTest { rotor, level, duration }));
+    let set = (0..6_usize, prop::sample::select(vec![Setting::Beep, Setting::Normal, Setting::Reversed]));
+    let set = set.prop_map(|(rotor, setting)| Request::MotorSetting(MotorSetting { rotor, setting }));
     let flight = prop::sample::select(vec![
         Request::TakeOff(None),
         Request::FlySetpoints,
@@ -178,7 +183,8 @@ fn arrival() -> impl Strategy<Value = Arrival> {
         60 => Just(None),
         12 => Just(Some(Request::Arm)),
         1 => flight.prop_map(Some),
-        3 => test.prop_map(Some)
+        3 => test.prop_map(Some),
+        1 => set.prop_map(Some)
     ];
     (
         elapsed,

@@ -1,11 +1,12 @@
 //! DShot300: from motor commands to the pulse widths that a timer's four channels put out.
 //!
-//! A frame is 16 bits, most significant first: 11 of value, one that asks for telemetry (never here), four of checksum.
-//! Value 0 is the stop command, 1 to 47 are settings (never sent), 48 to 2047 turn the motor. A bit takes a 300,000th of a
+//! A frame is 16 bits, most significant first: 11 of value, one that asks for telemetry (set in words alone: they are not believed without), four of checksum.
+//! Value 0 is the stop command, 1 to 47 are words to a controller whose motor stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a
 //! second, high for 3/8 of it if zero and for 6/8 if one. [`Waveform`] holds one frame for each of the four channels, one
 //! row a bit, in the order in which the timer's burst transfer wants them.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
+use controller_core::flight::Word;
 use dshot_frame::{Command, NormalFrame};
 
 /// Bits in a second.
@@ -36,6 +37,7 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
             }
         }
         MotorCommand::One { motor, level } => *frames.get_mut(motor).ok_or(Fault)? = run(level)?,
+        MotorCommand::Tell { motor, word } => *frames.get_mut(motor).ok_or(Fault)? = tell(word),
     }
     Ok(frames)
 }
@@ -44,6 +46,17 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
 #[must_use]
 pub fn stop() -> [NormalFrame; MOTORS] {
     [(); MOTORS].map(|()| NormalFrame::command(Command::MotorStop, false))
+}
+
+/// A frame that tells a controller something.
+fn tell(word: Word) -> NormalFrame {
+    let command = match word {
+        Word::Beep => Command::Beep1,
+        Word::Normal => Command::SpinDirectionNormal,
+        Word::Reversed => Command::SpinDirectionReversed,
+        Word::Save => Command::SettingsSave,
+    };
+    NormalFrame::command(command, true)
 }
 
 /// A frame that turns the motor: `command` 0 is the slowest speed, 1 the fastest, anything beyond is held there.

@@ -3,6 +3,7 @@
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
 
+use controller_core::flight::Word;
 use controller_core::imu::ImuParameters;
 use core::future::{Future, ready};
 use nalgebra::Vector3;
@@ -93,6 +94,25 @@ pub enum MotorCommand {
         /// Its command.
         level: f32,
     },
+    /// One motor's controller is told something; the others get the stop command.
+    Tell {
+        /// Its index in the rotors' order.
+        motor: usize,
+        /// What.
+        word: Word,
+    },
+}
+
+impl MotorCommand {
+    /// Each motor's command, 0 to 1; 0 where it stops.
+    #[must_use]
+    pub fn levels(&self) -> [f32; MOTORS] {
+        match *self {
+            Self::Stop | Self::Tell { .. } => [0.0; MOTORS],
+            Self::Run(levels) => levels,
+            Self::One { motor, level } => core::array::from_fn(|index| if index == motor { level } else { 0.0 }),
+        }
+    }
 }
 
 /// The motors' electronic speed controllers.

@@ -20,7 +20,7 @@
 
 use crate::deadline::{send, within};
 use crate::frames;
-use crate::hardware::{Clock, Fault, MOTORS, MotorCommand, Motors, RawImu};
+use crate::hardware::{Clock, Fault, MotorCommand, Motors, RawImu};
 use crate::imu::{self, Flow};
 use crate::link::frame::{Frame, Parser};
 use crate::link::pose::odometry;
@@ -28,7 +28,6 @@ use crate::link::writer::Writer;
 use crate::parameters::table::Name;
 use crate::shared::{Flag, Latest, Shared};
 use controller_core::flight::{PERIOD, Stamped};
-use core::array;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -202,11 +201,7 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
 /// The message that tells the simulator a command.
 fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     let mut controls = [0.0; 16];
-    let motors = match command.value {
-        MotorCommand::Stop => [0.0; MOTORS],
-        MotorCommand::Run(motors) => motors,
-        MotorCommand::One { motor, level } => array::from_fn(|index| if index == motor { level } else { 0.0 }),
-    };
+    let motors = command.value.levels();
     for (control, motor) in controls.iter_mut().zip(motors) {
         *control = motor;
     }

@@ -164,13 +164,7 @@ impl World {
 
 impl Body {
     fn step(&mut self, command: MotorCommand) {
-        let wanted = match command {
-            MotorCommand::Stop => [0.0; MOTORS],
-            MotorCommand::Run(commands) => commands.map(|command| f64::from(command) * self.greatest),
-            MotorCommand::One { motor, level } => {
-                std::array::from_fn(|index| if index == motor { f64::from(level) * self.greatest } else { 0.0 })
-            }
-        };
+        let wanted = command.levels().map(|command| f64::from(command) * self.greatest);
         let (mut thrust, mut torque) = (0.0, Vector3::zeros());
         for (((speed, wanted), rotor), column) in
             self.speeds.iter_mut().zip(wanted).zip(self.rotors.iter()).zip(self.rotors.effectiveness())

@@ -1,5 +1,6 @@
 //! What a tick is given, and what it decides.
 
+use super::bench::Word;
 use super::chain::Flown;
 use super::refusal::Refusal;
 use super::request::Request;
@@ -72,6 +73,13 @@ pub enum Output {
         rotor: usize,
         /// Part of the command's range, at most [`super::rules::MOTOR_TEST_LEVEL_MAX`].
         level: f32,
+    },
+    /// One motor's controller is told something, the others stop.
+    Tell {
+        /// The motor's index in the rotors' order.
+        rotor: usize,
+        /// What.
+        word: Word,
     },
 }
 

@@ -1,9 +1,9 @@
-//! What arming, a motor test and the ways of flying need, and why they are refused.
+//! What arming, turning a motor and the ways of flying need, and why they are refused.
 
 use super::estimate::Estimate;
 use super::leaning::{heading, up};
 use super::refusal::Refusal;
-use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX, Mode};
+use super::rules::Mode;
 use crate::estimator::{EstimatedState, Fault};
 use crate::heading::Heading;
 use nalgebra::Vector3;
@@ -17,22 +17,6 @@ const GRAVITY_ERROR: f32 = 1.71;
 
 /// The speed, m/s, and the body rate, rad/s, beyond which a vehicle does not arm.
 const MOVING: (f32, f32) = (0.2, 0.2);
-
-/// One motor to be turned slowly for a while, to see which it is and which way it turns.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotorTest {
-    /// Its index in the rotors' order.
-    pub rotor: usize,
-    /// Part of the command's range, in (0, [`MOTOR_TEST_LEVEL_MAX`]].
-    pub level: f32,
-    /// How long, us, in (0, [`MOTOR_TEST_MAX`]].
-    pub duration: u64,
-}
-
-impl MotorTest {
-    /// No test.
-    pub(super) const NONE: Self = Self { rotor: 0, level: 0.0, duration: 0 };
-}
 
 /// Where a flight starts.
 pub(super) struct Start {
@@ -80,13 +64,6 @@ pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
     let heading = heading(&state.attitude).ok_or(Refusal::Tilted)?;
     Ok(Start { position: state.position, heading })
-}
-
-/// A motor test: one rotor that exists, slowly, not for long.
-pub(super) fn to_test(test: &MotorTest, rotors: usize) -> Result<(), Refusal> {
-    require(test.rotor < rotors, Refusal::NoSuchRotor)?;
-    require(test.level > 0.0 && test.level <= MOTOR_TEST_LEVEL_MAX, Refusal::MotorTestLevel)?;
-    require(test.duration > 0 && test.duration <= MOTOR_TEST_MAX, Refusal::MotorTestDuration)
 }
 
 pub(super) fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {

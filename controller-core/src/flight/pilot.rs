@@ -4,11 +4,11 @@
 //! request is answered; the rules' conditions are worked out and the table decides; a new mode is entered; a setpoint is
 //! taken; and the mode's output is worked out.
 
+use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Outcome, Output, PERIOD};
 use super::fence::Fence;
-use super::permission::MotorTest;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
@@ -35,7 +35,7 @@ pub struct Pilot<'m> {
     fence: Fence,
     /// Whether poses were still refused when the vehicle had levelled: they lie, and what they agree on later is no better.
     poses_lie: bool,
-    test: MotorTest,
+    bench: Bench,
     /// The newest setpoint, and whether somebody wants setpoints flown.
     newest: Newest,
     wants_setpoints: bool,
@@ -69,7 +69,7 @@ impl<'m> Pilot<'m> {
             watch: Watch::default(),
             fence: Fence::new(&settings),
             poses_lie: false,
-            test: MotorTest::NONE,
+            bench: Bench::NONE,
             newest: Newest::default(),
             wants_setpoints: false,
             thrust_check: ThrustCheck::default(),
@@ -196,7 +196,7 @@ impl<'m> Pilot<'m> {
     /// What the mode does in this tick.
     fn output(&mut self, estimate: &Estimate, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         match self.mode {
-            Mode::MotorTest => return (Output::Test { rotor: self.test.rotor, level: self.test.level }, None),
+            Mode::MotorTest => return (self.bench.output(now.saturating_sub(self.since)), None),
             Mode::Idling => return (Output::Idle, None),
             _ => {}
         }

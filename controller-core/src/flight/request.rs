@@ -1,6 +1,6 @@
 //! What somebody may ask for, and the setpoints that come beside it.
 
-use super::permission::MotorTest;
+use super::bench::{MotorSetting, MotorTest};
 use crate::governor::{Motion, Setpoint};
 
 /// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
@@ -25,6 +25,8 @@ pub enum Request {
     Land,
     /// Turn one motor slowly.
     MotorTest(MotorTest),
+    /// Tell one motor's controller something, while no motor turns.
+    MotorSetting(MotorSetting),
 }
 
 /// The newest setpoint.

@@ -285,7 +285,9 @@ impl Flight {
 
         let wrench = match &outcome.output {
             Output::Thrusts(thrusts) => self.mixer.wrench(thrusts),
-            Output::Stop | Output::Idle | Output::Test { .. } => Wrench { thrust: 0.0, torque: Vector3::zeros() },
+            Output::Stop | Output::Idle | Output::Test { .. } | Output::Tell { .. } => {
+                Wrench { thrust: 0.0, torque: Vector3::zeros() }
+            }
         };
         if let Some(Ok(flown)) = &outcome.flown {
             let proven = self.certified.certificate().paper().unwrap().sharp;

@@ -7,6 +7,7 @@
 //! | 21 NAV_LAND | asks to land here |
 //! | 176 DO_SET_MODE | PX4's custom modes: asks to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
+//! | 311 CONFIGURE_ACTUATOR | asks the flight rules to let one motor (parameter 5, 1 to 4) beep (1), or turn as it is wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | 192 DO_REPOSITION | by COMMAND_INT: asks to fly to a latitude, longitude and altitude and to hold there |
 //! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
@@ -22,10 +23,11 @@ use super::telemetry::vehicle;
 use crate::frames;
 use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};
-use controller_core::flight::{MotorTest, Request};
+use controller_core::flight::{MotorSetting, MotorTest, Request, Setting};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use mavlink::dialects::common::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult, MotorTestThrottleType,
+    ActuatorConfiguration, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult,
+    MotorTestThrottleType,
 };
 use nalgebra::Vector3;
 
@@ -106,6 +108,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
         MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test))),
+        MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
         MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
@@ -162,12 +165,36 @@ const DENIED: Action = Action::Answer(MavResult::MAV_RESULT_DENIED);
 /// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative times
 /// become zero, which is refused as well.
 fn motor_test(call: &Call) -> Option<MotorTest> {
-    let [motor, unit, throttle, seconds, count, ..] = call.parameters;
-    let rotor = (0..MOTORS).find(|&rotor| motor == (rotor + 1) as f32)?;
+    let [number, unit, throttle, seconds, count, ..] = call.parameters;
+    let rotor = motor(number)?;
     let in_percent = unit == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 as f32;
     let is_one = count == 0.0 || count == 1.0;
     let usable = in_percent && is_one && throttle.is_finite() && seconds.is_finite();
     usable.then(|| MotorTest { rotor, level: throttle / 100.0, duration: (seconds * 1e6) as u64 })
+}
+
+/// What a command tells one motor's controller. Modes in which a motor turns both ways are not for rotors.
+fn configure_actuator(call: &Call) -> Action {
+    let [configuration, _, _, _, function, ..] = call.parameters;
+    let asked = |kind: ActuatorConfiguration| configuration == kind as u32 as f32;
+    let setting = if asked(ActuatorConfiguration::ACTUATOR_CONFIGURATION_BEEP) {
+        Setting::Beep
+    } else if asked(ActuatorConfiguration::ACTUATOR_CONFIGURATION_SPIN_DIRECTION1) {
+        Setting::Normal
+    } else if asked(ActuatorConfiguration::ACTUATOR_CONFIGURATION_SPIN_DIRECTION2) {
+        Setting::Reversed
+    } else {
+        return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
+    };
+    match motor(function) {
+        Some(rotor) => Action::Ask(Request::MotorSetting(MotorSetting { rotor, setting })),
+        None => DENIED,
+    }
+}
+
+/// The index of a motor that is counted from 1.
+fn motor(number: f32) -> Option<usize> {
+    (0..MOTORS).find(|&rotor| number == (rotor + 1) as f32)
 }
 
 /// One calibration at a time, of what there is. Magnetometer, barometer, radio and temperature are not.

@@ -2,7 +2,7 @@
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is NaN.
 
-use crate::hardware::{MOTORS, MotorCommand};
+use crate::hardware::MotorCommand;
 use crate::shared::Report;
 use nalgebra::Vector3;
 
@@ -46,7 +46,7 @@ impl Tick {
         record.vector(report.reference.as_ref().map(|reference| &reference.velocity));
         record.floats([report.wrench.map_or(f32::NAN, |wrench| wrench.thrust)]);
         record.vector(report.wrench.as_ref().map(|wrench| &wrench.torque));
-        record.floats(levels(command));
+        record.floats(command.levels());
         record.floats([
             voltage.unwrap_or(f32::NAN),
             report.thrust_scale.unwrap_or(f32::NAN),
@@ -55,15 +55,6 @@ impl Tick {
         record.put(&u16::try_from(report.timing.missed).unwrap_or(u16::MAX).to_le_bytes());
         record.put(&[report.mode as u8, u8::from(report.is_airborne)]);
         record.bytes
-    }
-}
-
-/// Each motor's command, 0 to 1; 0 where it is stopped.
-fn levels(command: &MotorCommand) -> [f32; MOTORS] {
-    match command {
-        MotorCommand::Stop => [0.0; MOTORS],
-        MotorCommand::Run(levels) => *levels,
-        MotorCommand::One { motor, level } => core::array::from_fn(|index| if index == *motor { *level } else { 0.0 }),
     }
 }
 
@@ -121,7 +112,7 @@ mod tests {
     fn the_format_is_as_long_as_a_record_and_has_no_gaps() {
         assert_eq!(fields().iter().map(|(size, count, _)| size * count).sum::<usize>(), SIZE);
         assert!(fields().is_sorted_by(|a, b| a.0 >= b.0));
-        assert_eq!(levels(&MotorCommand::One { motor: 2, level: 0.5 }), [0.0, 0.0, 0.5, 0.0]);
+        assert_eq!(MotorCommand::One { motor: 2, level: 0.5 }.levels(), [0.0, 0.0, 0.5, 0.0]);
     }
 
     #[test]

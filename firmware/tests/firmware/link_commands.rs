@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, replies, report, texts};
 use crate::support::{patched, v1, v2};
-use controller_core::flight::{Mode, MotorTest, Request};
+use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, REQUESTS, Reply};
 use mavlink::MessageData;
@@ -92,6 +92,23 @@ fn a_motor_test_names_motor_level_and_time() {
     Fed::new(&shared).message(&command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [4.0, 0.0, 12.5, 1.5, 1.0]), 0);
     let request = Request::MotorTest(MotorTest { rotor: 3, level: 0.125, duration: 1_500_000 });
     assert_eq!(shared.requests.take().unwrap().request, request);
+}
+
+#[test]
+fn a_motors_controller_is_named_and_what_it_shall_do() {
+    let configure =
+        |what: f32, function: f32| command(MavCmd::MAV_CMD_CONFIGURE_ACTUATOR, [what, 0.0, 0.0, 0.0, function]);
+    for (what, setting) in [(1.0, Setting::Beep), (4.0, Setting::Normal), (5.0, Setting::Reversed)] {
+        let request = Request::MotorSetting(MotorSetting { rotor: 2, setting });
+        assert_eq!(asked(&configure(what, 3.0)), Some(request));
+    }
+    for function in [0.0, 5.0, 1.5, f32::NAN, 33.0] {
+        assert_eq!(answer(&configure(5.0, function), Mode::Ready), MavResult::MAV_RESULT_DENIED, "{function}");
+    }
+    // Turning both ways is not for rotors.
+    for what in [0.0, 2.0, 3.0, 6.0, f32::NAN] {
+        assert_eq!(answer(&configure(what, 3.0), Mode::Ready), MavResult::MAV_RESULT_UNSUPPORTED, "{what}");
+    }
 }
 
 #[test]

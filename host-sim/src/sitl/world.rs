@@ -142,11 +142,7 @@ impl World {
 
     fn command(&self, command: MotorCommand) {
         self.catch_up();
-        let commands = match command {
-            MotorCommand::Stop => [0.0; MOTORS],
-            MotorCommand::Run(commands) => commands,
-            MotorCommand::One { motor, level } => std::array::from_fn(|index| if index == motor { level } else { 0.0 }),
-        };
+        let commands = command.levels();
         let mut body = self.0.body.borrow_mut();
         let mut thrusts = [0.0; MOTORS];
         for ((thrust, curve), command) in thrusts.iter_mut().zip(&body.curves).zip(commands) {

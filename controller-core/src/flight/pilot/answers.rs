@@ -2,6 +2,7 @@
 
 use super::Pilot;
 use crate::allocation::geometry::ROTORS_MIN;
+use crate::flight::bench::Bench;
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::{Battery, Inputs};
@@ -46,14 +47,8 @@ impl<'m> Pilot<'m> {
                 self.begin(inputs, estimate)
             }
             Request::Disarm => require(!self.is_airborne(), Refusal::InTheAir),
-            Request::MotorTest(test) => {
-                permission::to_turn_motors(self.mode)?;
-                require(!inputs.killed, Refusal::Killed)?;
-                require(!inputs.is_busy, Refusal::Busy)?;
-                permission::to_test(&test, self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
-                self.test = test;
-                Ok(())
-            }
+            Request::MotorTest(test) => self.begin_on_the_bench(Bench::Turning(test), inputs),
+            Request::MotorSetting(setting) => self.begin_on_the_bench(Bench::Setting(setting), inputs),
             Request::TakeOff(height) => self.take_off(height, inputs, estimate),
             Request::FlySetpoints => {
                 let may = self.mode.may_arm() || self.mode == Mode::Idling || self.mode.is_guided();
@@ -78,6 +73,15 @@ impl<'m> Pilot<'m> {
                 require(may, Refusal::NotInTheAir)
             }
         }
+    }
+
+    fn begin_on_the_bench(&mut self, bench: Bench, inputs: &Inputs) -> Result<(), Refusal> {
+        permission::to_turn_motors(self.mode)?;
+        require(!inputs.killed, Refusal::Killed)?;
+        require(!inputs.is_busy, Refusal::Busy)?;
+        bench.check(self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
+        self.bench = bench;
+        Ok(())
     }
 
     pub(super) fn take_off(

@@ -29,7 +29,10 @@ impl Pilot<'_> {
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
             .with(Condition::Killed, inputs.killed)
             .with(Condition::ArmingPermitted, is(|request| *request == Request::Arm))
-            .with(Condition::MotorTestPermitted, is(|request| matches!(request, Request::MotorTest(_))))
+            .with(
+                Condition::MotorTestPermitted,
+                is(|request| matches!(request, Request::MotorTest(_) | Request::MotorSetting(_))),
+            )
             .with(Condition::Requested, inputs.request.is_some())
             .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
             .with(Condition::HoldRequested, is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
@@ -58,7 +61,7 @@ impl Pilot<'_> {
         conditions
             .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
             .with(Condition::Uncertified, self.chain.is_err())
-            .with(Condition::MotorTestOver, elapsed >= self.test.duration)
+            .with(Condition::MotorTestOver, self.bench.is_over(elapsed))
             .with(Condition::IdlingOver, elapsed >= IDLING_MAX)
             .with(Condition::TakenOff, self.chain.as_ref().is_ok_and(Chain::has_risen))
             .with(Condition::Landed, seen.landed)

@@ -1,0 +1,114 @@
+//! What is done with one motor on the bench, while nothing else turns: turning it slowly, and telling its controller something.
+//!
+//! | setting | what its controller hears, from the beginning |
+//! |---|---|
+//! | beep | beep for a tick; then the stop command, for as long as the tone lasts |
+//! | direction | the direction for a tick; 40 ms of the stop command; save for a tick; the stop command while it is saved |
+//!
+//! A tick's command goes out ten times, which is more than the six that such words take to be believed.
+
+use super::exchange::{Output, PERIOD};
+use super::refusal::Refusal;
+use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
+
+/// How long telling a controller something takes, us: the tone of a beep, which is the longest.
+const SETTING_LASTS: u64 = 300_000;
+
+/// When a direction is saved, us after it was told.
+const SAVED_AFTER: u64 = 5 * PERIOD;
+
+/// One motor to be turned slowly for a while, to see which it is and which way it turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorTest {
+    /// Its index in the rotors' order.
+    pub rotor: usize,
+    /// Part of the command's range, in (0, [`MOTOR_TEST_LEVEL_MAX`]].
+    pub level: f32,
+    /// How long, us, in (0, [`MOTOR_TEST_MAX`]].
+    pub duration: u64,
+}
+
+/// Something for one motor's controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotorSetting {
+    /// The motor's index in the rotors' order.
+    pub rotor: usize,
+    /// What it is to do.
+    pub setting: Setting,
+}
+
+/// What a motor's controller can be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Setting {
+    /// Make itself heard.
+    Beep,
+    /// Turn the motor as it is wired, from now on.
+    Normal,
+    /// Turn the motor the other way, from now on.
+    Reversed,
+}
+
+/// One word to a motor's controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Word {
+    /// Beep.
+    Beep,
+    /// Turn as it is wired.
+    Normal,
+    /// Turn the other way.
+    Reversed,
+    /// Keep that.
+    Save,
+}
+
+/// What is under way on the bench.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Bench {
+    Turning(MotorTest),
+    Setting(MotorSetting),
+}
+
+impl Bench {
+    /// Nothing.
+    pub const NONE: Self = Self::Turning(MotorTest { rotor: 0, level: 0.0, duration: 0 });
+
+    /// Whether a vehicle of so many rotors does it: with one that exists, slowly, not for long.
+    pub fn check(&self, rotors: usize) -> Result<(), Refusal> {
+        let (rotor, level, duration) = match *self {
+            Self::Turning(MotorTest { rotor, level, duration }) => (rotor, level, duration),
+            Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_LASTS),
+        };
+        // Written so that a number that is none is refused.
+        match () {
+            () if rotor >= rotors => Err(Refusal::NoSuchRotor),
+            () if !(level > 0.0 && level <= MOTOR_TEST_LEVEL_MAX) => Err(Refusal::MotorTestLevel),
+            () if !(1..=MOTOR_TEST_MAX).contains(&duration) => Err(Refusal::MotorTestDuration),
+            () => Ok(()),
+        }
+    }
+
+    /// Whether it is over after `elapsed`, us.
+    pub fn is_over(&self, elapsed: u64) -> bool {
+        elapsed
+            >= match self {
+                Self::Turning(test) => test.duration,
+                Self::Setting(_) => SETTING_LASTS,
+            }
+    }
+
+    /// For the motors, `elapsed` us after its beginning.
+    pub fn output(&self, elapsed: u64) -> Output {
+        let MotorSetting { rotor, setting } = match *self {
+            Self::Turning(MotorTest { rotor, level, .. }) => return Output::Test { rotor, level },
+            Self::Setting(setting) => setting,
+        };
+        let word = match (setting, elapsed / PERIOD * PERIOD) {
+            (Setting::Beep, 0) => Word::Beep,
+            (Setting::Normal, 0) => Word::Normal,
+            (Setting::Reversed, 0) => Word::Reversed,
+            (Setting::Normal | Setting::Reversed, SAVED_AFTER) => Word::Save,
+            _ => return Output::Stop,
+        };
+        Output::Tell { rotor, word }
+    }
+}
