@@ -86,24 +86,13 @@ fn scaled(value: u16) -> f32 {
 
 /// Receives for ever.
 pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: &Shared<M>) -> ! {
-    let mut parser = CrsfParser::new();
     let mut radio = Radio::new(shared);
     let mut chunk = [0; CHUNK];
     loop {
         let wake = clock.now().saturating_add(WAIT);
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
-                let now = clock.now();
-                let mut bytes = chunk.get(..count).unwrap_or(&chunk);
-                // By its type, because reading every kind of packet would take 12 KB of flash.
-                while let Some(packet) = parser.next_raw_packet(&mut bytes) {
-                    if let Ok(packet) = packet
-                        && packet.raw_packet_type() == RcChannelsPacked::PACKET_TYPE as u8
-                        && let Ok(channels) = RcChannelsPacked::from_bytes(packet.payload())
-                    {
-                        radio.take(&channels.0, now);
-                    }
-                }
+                radio.feed(chunk.get(..count).unwrap_or(&chunk), clock.now());
             }
             Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
             Either::Second(()) => {}
@@ -114,6 +103,7 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
 
 /// What the transmitter said last.
 pub struct Radio<'a, M: RawMutex> {
+    parser: CrsfParser,
     shared: &'a Shared<M>,
     last: Option<(Frame, u64)>,
 }
@@ -122,7 +112,20 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing heard yet.
     #[must_use]
     pub fn new(shared: &'a Shared<M>) -> Self {
-        Self { shared, last: None }
+        Self { parser: CrsfParser::new(), shared, last: None }
+    }
+
+    /// Takes bytes that came at `now`, us, and acts on the frames of channels that they complete.
+    pub fn feed(&mut self, mut bytes: &[u8], now: u64) {
+        // By its type, because reading every kind of packet would take 12 KB of flash.
+        while let Some(packet) = self.parser.next_raw_packet(&mut bytes) {
+            if let Ok(packet) = packet
+                && packet.raw_packet_type() == RcChannelsPacked::PACKET_TYPE as u8
+                && let Ok(channels) = RcChannelsPacked::from_bytes(packet.payload())
+            {
+                self.take(&channels.0, now);
+            }
+        }
     }
 
     /// Acts on channels that came at `now`, us.

@@ -14,8 +14,8 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 /// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET, COMMAND_LONG,
 /// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN, MISSION_REQUEST_LIST,
-/// MISSION_COUNT, MISSION_CLEAR_ALL.
-const LISTENED: [u32; 15] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45];
+/// MISSION_COUNT, MISSION_CLEAR_ALL, LOG_REQUEST_LIST, LOG_REQUEST_DATA, LOG_ERASE, LOG_REQUEST_END.
+const LISTENED: [u32; 19] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45, 117, 119, 121, 122];
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -66,6 +66,6 @@ fuzz_target!(|events: Vec<Event>| {
             times.push(pose.time);
         }
         while shared.requests.take().is_some() {}
-        shared.disarm.take();
+        let _ = shared.disarm.take();
     }
 });
