@@ -23,12 +23,14 @@
 //! as it does, within the bounds; what changes within a second or two comes out smoothed, and a circle too tight for the
 //! averages comes out smaller.
 
+mod averages;
 mod braking;
 mod lead;
 mod limits;
 mod pursuit;
 mod setpoint;
 mod smoother;
+mod steady;
 mod turning;
 mod windows;
 
@@ -37,13 +39,16 @@ pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
+use crate::math::{whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
+use averages::Averages;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
 use smoother::{Knot, Smoother};
+use steady::Steady;
 use turning::{TurnGoal, Turning};
 use windows::Windows;
 
@@ -78,6 +83,7 @@ impl Memory {
         windows: Windows::NONE,
         pursuit: Pursuit::NONE,
         lead: Lead::NONE,
+        averages: Averages::NONE,
         smoother: Smoother::NONE,
         turning: Turning::NONE,
         goal: Goal::STOP,
@@ -96,6 +102,7 @@ pub struct Governor {
     windows: Windows,
     pursuit: Pursuit,
     lead: Lead,
+    averages: Averages,
     smoother: Smoother,
     turning: Turning,
     goal: Goal,
@@ -136,6 +143,7 @@ impl Governor {
         let Memory(governor) = memory;
         let windows = Windows::design(bounds, limits, period)?;
         governor.turning.design(bounds, limits, period)?;
+        governor.averages.design(&windows);
         governor.smoother.design(&windows, period);
         let horizontal_speed = limits.horizontal_speed.min(bounds.horizontal_speed);
         governor.pursuit = Pursuit::new(&windows, horizontal_speed, limits.vertical_speed, period);
@@ -162,15 +170,32 @@ impl Governor {
         heading: &Heading,
     ) -> Result<(), InputError> {
         check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
-        self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
+        let (position, speed) = (self.length(position), self.length(&(velocity * self.period)));
+        let ahead = self.windows.span() + 1;
+        let steady = |position: i64, speed: i64| {
+            // The trail, rounded to the nearest unit, and the two ticks that the control points are ahead.
+            Steady { commanded: position + ((speed * ahead + 1) >> 1), speed, acceleration: 0 }
+        };
+        self.go_on(&[steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)]);
         self.turning.start(turning::phase_of(heading));
         self.stop();
         Ok(())
     }
 
+    /// Goes on as if the command had always been in this steady acceleration.
+    fn go_on(&mut self, steady: &[Steady; 3]) {
+        let [x, y, z] = steady;
+        self.averages.start(
+            Vector3::new(x.commanded, y.commanded, z.commanded),
+            Vector3::new(x.speed, y.speed, z.speed),
+            Vector3::new(x.acceleration, y.acceleration, z.acceleration).map(|whole| whole as i32),
+        );
+        self.smoother.start(steady, &self.windows);
+    }
+
     /// Metres as length units, no more than [`FARTHEST`].
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(|length| (length.clamp(-FARTHEST, FARTHEST)) as i64)
+        (metres * self.windows.per_metre).map(|length| whole(within(length, FARTHEST)))
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -197,14 +222,15 @@ impl Governor {
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.pursue() == Vector3::zeros() && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
+        self.pursue() == Vector3::zeros() && self.smoother.at_rest(self.averages.commanded()) && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
-        self.smoother.push(&self.pursue());
+        let snap = self.averages.push(&self.pursue());
+        self.smoother.push(&snap);
         self.turning.tick(&self.turn_goal());
         let Knot { position, velocity, acceleration, jerk, snap } = self.smoother.knot();
         Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
@@ -212,7 +238,7 @@ impl Governor {
 
     /// The commanded acceleration of this tick.
     fn pursue(&self) -> Vector3<i32> {
-        let u = self.smoother.speed();
+        let u = self.averages.speed();
         let Goal { position, velocity, acceleration } = &self.goal;
         let stale = self.goal_age > self.timeout;
         let (velocity, acceleration) = if stale { (&STILL, &STILL) } else { (velocity, acceleration) };
@@ -222,12 +248,12 @@ impl Governor {
                 // The command at hand is where it was a tick ago.
                 let age = (self.goal_age as f32 - 1.0) * self.period;
                 let (ahead, feed) = self.lead.of(velocity, acceleration, age);
-                let error = position + self.length(&ahead) - self.smoother.commanded();
+                let error = position + self.length(&ahead) - self.averages.commanded();
                 let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
                 self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration)
             }
         };
-        self.pursuit.towards_velocity(&wanted, &u)
+        self.pursuit.towards_velocity(&wanted, u)
     }
 
     /// The heading's goal of this tick.
