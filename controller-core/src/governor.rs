@@ -25,12 +25,15 @@
 
 mod averages;
 mod braking;
+mod direct;
+mod envelope;
 mod lead;
 mod limits;
 mod pursuit;
 mod setpoint;
 mod smoother;
 mod steady;
+mod stream;
 mod turning;
 mod windows;
 
@@ -39,7 +42,7 @@ pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
-use crate::math::{whole, within};
+use crate::math::{single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
@@ -47,8 +50,11 @@ use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
+use direct::{Direct, Drive, Moving, Sought};
+use envelope::Envelope;
 use smoother::{Knot, Smoother};
 use steady::Steady;
+use stream::{Point, Stream};
 use turning::{TurnGoal, Turning};
 use windows::Windows;
 
@@ -57,19 +63,14 @@ use windows::Windows;
 struct Goal {
     /// Length units.
     position: Option<Vector3<i64>>,
-    /// m/s.
-    velocity: Vector3<f32>,
-    /// m/s^2.
-    acceleration: Vector3<f32>,
+    /// How it moves, or how to move.
+    stream: Stream,
 }
 
 impl Goal {
     /// Come to rest.
-    const STOP: Self = Self { position: None, velocity: STILL, acceleration: STILL };
+    const STOP: Self = Self { position: None, stream: Stream::STILL };
 }
-
-/// No motion.
-const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
 
 /// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,10 +82,13 @@ impl Memory {
         period: 0.0,
         timeout: 0,
         windows: Windows::NONE,
+        per_snap: 0.0,
         pursuit: Pursuit::NONE,
         lead: Lead::NONE,
         averages: Averages::NONE,
         smoother: Smoother::NONE,
+        direct: Direct::NONE,
+        knot: Knot::NONE,
         turning: Turning::NONE,
         goal: Goal::STOP,
         goal_age: 0,
@@ -100,10 +104,15 @@ pub struct Governor {
     /// Ticks after which what must be renewed is stale.
     timeout: u32,
     windows: Windows,
+    /// The head's snap of one m/s^2 per tick squared, as the integers have it.
+    per_snap: f32,
     pursuit: Pursuit,
     lead: Lead,
     averages: Averages,
     smoother: Smoother,
+    direct: Direct,
+    /// The last.
+    knot: Knot,
     turning: Turning,
     goal: Goal,
     goal_age: u32,
@@ -152,6 +161,20 @@ impl Governor {
             variance: windows.variance() * period * period,
             acceleration: windows.horizontal / (windows.per_metre * period * period),
         };
+        governor.direct.design(
+            Envelope::new(
+                governor.lead.acceleration,
+                windows.vertical / (windows.per_metre * period * period),
+                bounds.jerk,
+                bounds.snap,
+                period,
+            ),
+            governor.lead.acceleration,
+            windows.span() as f32 * period,
+            windows.lengths[2] as u32,
+            period,
+        );
+        governor.per_snap = windows.per_metre * windows.head() as f32 * period * period;
         governor.windows = windows;
         governor.period = period;
         governor.timeout = windows::ticks(limits.timeout, period) as u32;
@@ -177,6 +200,7 @@ impl Governor {
             Steady { commanded: position + ((speed * ahead + 1) >> 1), speed, acceleration: 0 }
         };
         self.go_on(&[steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)]);
+        self.direct.start();
         self.turning.start(turning::phase_of(heading));
         self.stop();
         Ok(())
@@ -191,6 +215,7 @@ impl Governor {
             Vector3::new(x.acceleration, y.acceleration, z.acceleration).map(|whole| whole as i32),
         );
         self.smoother.start(steady, &self.windows);
+        self.knot = self.smoother.knot();
     }
 
     /// Metres as length units, no more than [`FARTHEST`].
@@ -204,7 +229,13 @@ impl Governor {
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
-        self.goal = Goal { position: position.map(|position| self.length(&position)), velocity, acceleration };
+        let before = self.goal.position.is_some() && self.goal_age > 0 && self.goal_age <= self.timeout;
+        let stream = if before && position.is_some() {
+            self.goal.stream.followed_by(velocity, acceleration, self.goal_age as f32 * self.period)
+        } else {
+            Stream::new(velocity, acceleration)
+        };
+        self.goal = Goal { position: position.map(|position| self.length(&position)), stream };
         self.goal_age = 0;
         if let Some((angle, rate)) = turn {
             self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
@@ -222,26 +253,66 @@ impl Governor {
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.pursue() == Vector3::zeros() && self.smoother.at_rest(self.averages.commanded()) && self.turning.at_rest(&self.turn_goal())
+        self.direct.is_averaged() && self.pursue() == Vector3::zeros() && self.smoother.at_rest(self.averages.commanded()) && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
-        let snap = self.averages.push(&self.pursue());
+        let snap = match self.direct.tick(&self.moving(), self.sought().as_ref()) {
+            Drive::Snap(snap) => (snap * self.per_snap).map(|units| whole(units + 0.5_f32.copysign(units)) as i32),
+            Drive::Averages => self.averages.push(&self.pursue()),
+            Drive::Restarted => {
+                self.go_on(&self.smoother.steady(&self.windows));
+                self.averages.push(&self.pursue())
+            }
+        };
         self.smoother.push(&snap);
         self.turning.tick(&self.turn_goal());
-        let Knot { position, velocity, acceleration, jerk, snap } = self.smoother.knot();
+        self.knot = self.smoother.knot();
+        let Knot { position, velocity, acceleration, jerk, snap } = self.knot;
         Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
+    }
+
+    /// The head at hand.
+    fn moving(&self) -> Moving {
+        let scale = 1.0 / self.per_snap;
+        let head = self.smoother.head();
+        Moving {
+            acceleration: head.map(|head| single(head.acceleration) * scale),
+            difference: head.map(|head| single(head.jerk) * scale),
+        }
+    }
+
+    /// The stream to be followed, if there is one, and how far it is ahead of the head.
+    fn sought(&self) -> Option<Sought> {
+        let Goal { position, stream } = &self.goal;
+        let position = position.filter(|_| self.goal_age <= self.timeout)?;
+        let t = self.period;
+        // The head is ahead of the knot.
+        let ahead = 0.5 * (self.windows.lengths[2] as f32 + 1.0) * t;
+        let point = stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
+        let Knot { velocity, acceleration, .. } = &self.knot;
+        let Moving { acceleration: head, difference } = self.moving();
+        let away = (position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
+        let gone = velocity * ahead + (acceleration * 2.0 + head) * (ahead * ahead / 6.0) + acceleration * (0.25 * t * t);
+        let error = Point {
+            position: away + point.position - gone,
+            velocity: point.velocity - velocity - (acceleration + head) * (0.5 * ahead),
+            acceleration: point.acceleration - head,
+            jerk: point.jerk - difference / t - point.snap * (0.5 * t),
+            ..point
+        };
+        Some(Sought { point, error })
     }
 
     /// The commanded acceleration of this tick.
     fn pursue(&self) -> Vector3<i32> {
         let u = self.averages.speed();
-        let Goal { position, velocity, acceleration } = &self.goal;
+        let Goal { position, stream } = &self.goal;
         let stale = self.goal_age > self.timeout;
-        let (velocity, acceleration) = if stale { (&STILL, &STILL) } else { (velocity, acceleration) };
+        let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
         let wanted = match position {
             None => self.length(&(velocity * self.period)),
             Some(position) => {

@@ -32,6 +32,14 @@ pub(super) struct Derivatives<T> {
 /// One knot of the spline. World frame, SI units.
 pub(super) type Knot = Derivatives<Vector3<f32>>;
 
+impl Knot {
+    /// At rest at the origin.
+    pub const NONE: Self = {
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero }
+    };
+}
+
 /// The head: acceleration and its difference, times N_1 N_2, units per tick squared (cubed).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Head {

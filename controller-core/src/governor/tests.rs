@@ -257,3 +257,28 @@ fn the_farthest_targets_in_the_finest_units_stay_within_the_integers() {
         }
     }
 }
+
+fn trial(every: usize, rate: f32, radius: f32) {
+    let governor = governor();
+    for tick in 0..4_000 {
+        let (sin, cos) = (rate * PERIOD * tick as f32).sin_cos();
+        let out = Vector3::new(cos, sin, 0.0) * radius;
+        if tick % 100 == 0 {
+            let k = governor.smoother.knot();
+            std::println!("{:5.1} s off {:.5} |a| {:.3} |j| {:.3} |s| {:.3} {:?}", tick as f32 * PERIOD, (k.position - out).norm(), k.acceleration.norm(), k.jerk.norm(), k.snap.norm(), governor.direct);
+        }
+        if tick % every == 0 {
+            let velocity = Vector3::new(-sin, cos, 0.0) * rate * radius;
+            let acceleration = -out * (rate * rate);
+            let motion = Motion::PositionVelocityAcceleration { position: out, velocity, acceleration };
+            governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        }
+        let r = governor.tick();
+        assert!(TYPICAL.contain(&r, 0.0), "{r:?}");
+    }
+}
+
+#[test]
+fn trial_circle() {
+    trial(1, 0.5 * core::f32::consts::PI, 1.0);
+}
