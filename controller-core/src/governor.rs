@@ -292,7 +292,10 @@ impl Governor {
         let t = self.period;
         // The head is ahead of the knot.
         let ahead = 0.5 * (self.windows.lengths[2] as f32 + 1.0) * t;
+        let last = self.windows.lengths[2] as f32;
+        let spread = ((last * last - 1.0) / 24.0 + 1.0 / 6.0) * t * t;
         let point = stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
+        let gain = 1.0 + point.rate * point.rate * spread;
         let Knot { velocity, acceleration, .. } = &self.knot;
         let Moving { acceleration: head, difference } = self.moving();
         let away = (position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
@@ -300,11 +303,11 @@ impl Governor {
         let error = Point {
             position: away + point.position - gone,
             velocity: point.velocity - velocity - (acceleration + head) * (0.5 * ahead),
-            acceleration: point.acceleration - head,
-            jerk: point.jerk - difference / t - point.snap * (0.5 * t),
+            acceleration: point.acceleration - point.snap * spread - head,
+            jerk: point.jerk * gain - difference / t - point.snap * (0.5 * t),
             ..point
         };
-        Some(Sought { point, error })
+        Some(Sought { point: Point { snap: point.snap * gain, ..point }, error })
     }
 
     /// The commanded acceleration of this tick.

@@ -27,8 +27,12 @@ use nalgebra::Vector3;
 /// The share of each bound that a stream may use.
 const FEASIBLE: f32 = 0.9995;
 
-/// The share of the acceleration bound that feedback may begin with, and at which a stream is lost.
-const BEGINNING: f32 = 0.05;
+/// The share of the room left that feedback may ask for, the least room, and the share of the acceleration at which a stream is lost.
+const FEEDBACK: f32 = 0.25;
+const LEAST_ROOM: f32 = 0.01;
+
+/// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it leaves.
+const TURNING: f32 = 0.8;
 const LOST: f32 = 0.5;
 
 /// The stiffness, over the averages' span: at the beginning at most, in the end, and its growth, l' = growth l^2.
@@ -54,7 +58,7 @@ enum Stage {
     },
     Levelling {
         out: WayOut,
-        /// Ticks without jerk.
+        /// Ticks without jerk, once there is next to no acceleration.
         still: u32,
     },
 }
@@ -149,8 +153,8 @@ impl Direct {
             return Drive::Averages;
         };
         let Moving { acceleration: a, difference: d } = head;
-        let stiffness = self.beginning(sought);
-        let near = self.is_locked(sought, stiffness);
+        let stiffness = self.affordable(sought, self.room(sought)).min(SLACK / self.span);
+        let near = self.is_near(sought, stiffness);
         let Some(out) = self.envelope.way_out(a, d).filter(|_| near) else {
             return Drive::Averages;
         };
@@ -165,7 +169,7 @@ impl Direct {
         let wanted = self.wanted(sought, stiffness);
         let (snap, out) = self.envelope.step(&head.acceleration, &head.difference, &wanted, out);
         let grown = stiffness + GROWTH * stiffness * stiffness * self.period;
-        let stiffness = math::between(grown, 0.0, (STIFF / self.span).min(STIFFEST / self.period));
+        let stiffness = grown.min(self.affordable(sought, self.room(sought)));
         self.stage = Stage::Direct { stiffness, out };
         Drive::Snap(snap)
     }
@@ -175,12 +179,13 @@ impl Direct {
             self.barred = self.next;
             self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
         }
-        let still = if head.difference == Vector3::zeros() && out == WayOut::STRAIGHT { still + 1 } else { 0 };
+        let Moving { acceleration: a, difference: d } = head;
+        let still = if *d == Vector3::zeros() && (still > 0 || self.envelope.is_level(a)) { still + 1 } else { 0 };
         if still > self.last {
             self.stage = Stage::Averaged { agreed: 0 };
             return Drive::Restarted;
         }
-        let (snap, out) = self.envelope.follow(&head.difference, &out);
+        let (snap, out) = if still > 0 { (*d, out) } else { self.envelope.step(a, d, &self.envelope.levelling(a, d), &out) };
         self.stage = Stage::Levelling { out, still };
         Drive::Snap(snap)
     }
@@ -202,22 +207,32 @@ impl Direct {
             && sought.error.position.norm_squared() <= far * far
     }
 
-    /// The stiffness whose answer to the error is a small acceleration.
-    fn beginning(&self, sought: &Sought) -> f32 {
-        let off = math::sqrt(sought.error.position.norm_squared());
-        let small = BEGINNING * self.acceleration;
-        let slack = SLACK / self.span;
-        if off * slack * slack <= small { slack } else { math::sqrt(small / off) }
+    /// How much acceleration is left for feedback, m/s^2: a share of what a stream leaves that is off by an error which turns with it.
+    fn room(&self, sought: &Sought) -> f32 {
+        let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
+        let turned = |y: Vector3<f32>| quarter(&y) * *rate;
+        let twice = turned(turned(sought.error.position));
+        let t = self.period;
+        let used = self.envelope.used(&(acceleration - twice), &((jerk - turned(twice)) * t), &((snap - turned(turned(twice))) * (t * t)));
+        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_ROOM, 1.0)
     }
 
-    /// Whether the error turns with the stream, nearly: whether what else it does is answered by a small acceleration.
-    fn is_locked(&self, sought: &Sought, stiffness: f32) -> bool {
+    /// The stiffness whose answer to the error is within the room.
+    fn affordable(&self, sought: &Sought, room: f32) -> f32 {
+        let off = math::sqrt(sought.error.position.norm_squared());
+        let stiff = (STIFF / self.span).min(STIFFEST / self.period);
+        let turning = TURNING * sought.point.rate.abs();
+        if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off).max(turning).min(stiff) }
+    }
+
+    /// Whether the error turns with the stream, nearly: whether what else it does is answered within the room.
+    fn is_near(&self, sought: &Sought, stiffness: f32) -> bool {
         let Point { position, velocity, acceleration, .. } = &sought.error;
         let turned = |y: &Vector3<f32>| quarter(y) * sought.point.rate;
         let drift = velocity - turned(position);
         let bend = acceleration - turned(velocity) - turned(&drift);
-        let small = BEGINNING * self.acceleration;
-        2.0 * stiffness * math::sqrt(drift.norm_squared()) <= small && math::sqrt(bend.norm_squared()) <= small
+        let room = self.room(sought);
+        2.0 * stiffness * math::sqrt(drift.norm_squared()) <= room && math::sqrt(bend.norm_squared()) <= room
     }
 
     /// The stream's snap and the feedback, m/s^2 per tick squared.

@@ -12,6 +12,7 @@
 //! A q is taken only if from where it leads there is a way out, and that one is kept. Otherwise the way out in hand is followed.
 //! So the bounds hold for ever, by induction, however poor the guess of a turn; a poor guess gives way too early.
 
+use super::braking::{BRAKING_SHARE, approach_speed};
 use crate::math;
 use nalgebra::Vector3;
 
@@ -113,6 +114,26 @@ impl Envelope {
             snap = (snap + fallback) * 0.5;
         }
         (fallback, after)
+    }
+
+    /// The greatest share of a bound that these take.
+    pub fn used(&self, a: &Vector3<f32>, d: &Vector3<f32>, q: &Vector3<f32>) -> f32 {
+        let [horizontal, d, q] = [a.x * a.x + a.y * a.y, d.norm_squared(), q.norm_squared()].map(math::sqrt);
+        let a = (horizontal * self.per_horizontal).max(a.z.abs() * self.per_vertical);
+        a.max(d / self.jerk).max(q / self.snap)
+    }
+
+    /// The snap wanted to bring the acceleration to zero, straight and as soon as the bounds allow.
+    pub fn levelling(&self, a: &Vector3<f32>, d: &Vector3<f32>) -> Vector3<f32> {
+        let length = math::sqrt(a.norm_squared());
+        let steps = length / (BRAKING_SHARE * self.snap);
+        let fastest = if steps > 1.0 { (BRAKING_SHARE * self.snap * approach_speed(steps)).min(BRAKING_SHARE * self.jerk) } else { length };
+        unit(a) * -fastest - d
+    }
+
+    /// Whether there is next to no acceleration.
+    pub fn is_level(&self, a: &Vector3<f32>) -> bool {
+        self.allows(a)
     }
 
     /// A tick of a way out, and what is left of it.
