@@ -50,8 +50,8 @@ use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
-use direct::{Direct, Drive, Moving, Sought};
-use envelope::Envelope;
+use direct::{Direct, Drive, Sought};
+use envelope::{Bounds, Cylinder, Envelope, Moving};
 use smoother::{Knot, Smoother};
 use steady::Steady;
 use stream::{Point, Stream};
@@ -83,6 +83,8 @@ impl Memory {
         timeout: 0,
         windows: Windows::NONE,
         per_snap: 0.0,
+        ahead: 0.0,
+        spread: 0.0,
         pursuit: Pursuit::NONE,
         lead: Lead::NONE,
         averages: Averages::NONE,
@@ -106,6 +108,9 @@ pub struct Governor {
     windows: Windows,
     /// The head's snap of one m/s^2 per tick squared, as the integers have it.
     per_snap: f32,
+    /// By how much the head is ahead of the knot, s, and half the variance of what lies between, s^2.
+    ahead: f32,
+    spread: f32,
     pursuit: Pursuit,
     lead: Lead,
     averages: Averages,
@@ -161,24 +166,34 @@ impl Governor {
             variance: windows.variance() * period * period,
             acceleration: windows.horizontal / (windows.per_metre * period * period),
         };
-        governor.direct.design(
-            Envelope::new(
-                governor.lead.acceleration,
-                windows.vertical / (windows.per_metre * period * period),
-                bounds.jerk,
-                bounds.snap,
-                period,
-            ),
-            governor.lead.acceleration,
-            windows.span() as f32 * period,
-            windows.lengths[2] as u32,
-            period,
-        );
-        governor.per_snap = windows.per_metre * windows.head() as f32 * period * period;
+        governor.design_direct(&windows, bounds, limits, period);
         governor.windows = windows;
         governor.period = period;
         governor.timeout = windows::ticks(limits.timeout, period) as u32;
         Ok(governor)
+    }
+
+    /// Prepares the following of streams.
+    fn design_direct(&mut self, windows: &Windows, bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) {
+        let last = windows.lengths[2] as f32;
+        let [horizontal, vertical] =
+            [windows.horizontal, windows.vertical].map(|level| level / (windows.per_metre * period * period));
+        self.ahead = 0.5 * (last + 1.0) * period;
+        self.spread = ((last * last - 1.0) / 24.0 + 1.0 / 6.0) * period * period;
+        self.per_snap = windows.per_metre * windows.head() as f32 * period * period;
+        let bounds = Bounds {
+            speed: Cylinder {
+                horizontal: limits.horizontal_speed.min(bounds.horizontal_speed),
+                vertical: limits.vertical_speed,
+            },
+            acceleration: Cylinder { horizontal, vertical },
+            jerk: bounds.jerk,
+            snap: bounds.snap,
+        };
+        // Between the knot and the head acceleration may leave its chord by half of what jerk makes of that time.
+        let blur = 0.25 * bounds.jerk * self.ahead * self.ahead;
+        let envelope = Envelope::new(&bounds, blur, period);
+        self.direct.design(envelope, [horizontal, vertical], windows.span() as u32, windows.lengths[2] as u32, period);
     }
 
     /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its rates are
@@ -260,8 +275,10 @@ impl Governor {
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
-        let snap = match self.direct.tick(&self.moving(), self.sought().as_ref()) {
-            Drive::Snap(snap) => (snap * self.per_snap).map(|units| whole(units + 0.5_f32.copysign(units)) as i32),
+        let head = self.moving();
+        let snap = match self.direct.tick(&head, self.sought(&head).as_ref()) {
+            // To the nearest unit: so braking ends.
+            Drive::Snap(snap) => (snap * self.per_snap).map(|units| (units + 0.5_f32.copysign(units)) as i32),
             Drive::Averages => self.averages.push(&self.pursue()),
             Drive::Restarted => {
                 self.go_on(&self.smoother.steady(&self.windows));
@@ -275,36 +292,37 @@ impl Governor {
         Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
     }
 
-    /// The head at hand.
+    /// The head at hand: its acceleration is known, its velocity follows from the knot's.
     fn moving(&self) -> Moving {
         let scale = 1.0 / self.per_snap;
         let head = self.smoother.head();
+        let acceleration = head.map(|head| single(head.acceleration) * scale);
         Moving {
-            acceleration: head.map(|head| single(head.acceleration) * scale),
+            velocity: self.knot.velocity + (self.knot.acceleration + acceleration) * (0.5 * self.ahead),
+            acceleration,
             difference: head.map(|head| single(head.jerk) * scale),
         }
     }
 
-    /// The stream to be followed, if there is one, and how far it is ahead of the head.
-    fn sought(&self) -> Option<Sought> {
-        let Goal { position, stream } = &self.goal;
-        let position = position.filter(|_| self.goal_age <= self.timeout)?;
-        let t = self.period;
-        // The head is ahead of the knot.
-        let ahead = 0.5 * (self.windows.lengths[2] as f32 + 1.0) * t;
-        let last = self.windows.lengths[2] as f32;
-        let spread = ((last * last - 1.0) / 24.0 + 1.0 / 6.0) * t * t;
-        let point = stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
-        let gain = 1.0 + point.rate * point.rate * spread;
+    /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the `head`.
+    fn sought(&self, head: &Moving) -> Option<Sought> {
+        let position = self.goal.position.filter(|_| self.goal_age <= self.timeout)?;
+        let (t, ahead, spread) = (self.period, self.ahead, self.spread);
+        let point = self.goal.stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
         let Knot { velocity, acceleration, .. } = &self.knot;
-        let Moving { acceleration: head, difference } = self.moving();
+        // The knot's control point is beside it; the head has gone on from there.
         let away = (position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
-        let gone = velocity * ahead + (acceleration * 2.0 + head) * (ahead * ahead / 6.0) + acceleration * (0.25 * t * t);
+        let gone = velocity * ahead
+            + (acceleration * 2.0 + head.acceleration) * (ahead * ahead / 6.0)
+            + acceleration * (0.25 * t * t);
+        // What lies between makes turns smaller.
+        let gain = 1.0 + point.rate * point.rate * spread;
         let error = Point {
             position: away + point.position - gone,
-            velocity: point.velocity - velocity - (acceleration + head) * (0.5 * ahead),
-            acceleration: point.acceleration - point.snap * spread - head,
-            jerk: point.jerk * gain - difference / t - point.snap * (0.5 * t),
+            velocity: point.velocity - head.velocity,
+            acceleration: point.acceleration - point.snap * spread - head.acceleration,
+            // The difference is half a tick old.
+            jerk: point.jerk * gain - head.difference / t - point.snap * (0.5 * t),
             ..point
         };
         Some(Sought { point: Point { snap: point.snap * gain, ..point }, error })

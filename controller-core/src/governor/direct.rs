@@ -1,25 +1,28 @@
 //! Following a stream of positions, velocities and accelerations as it is sent, where it keeps the bounds.
 //!
-//! The averages make any command fit, and smooth away what fits already. So once they have brought the reference close to a
-//! stream that is itself inside the bounds, the head is steered onto it directly:
+//! The averages make any command fit, and smooth away what fits already. So where a stream is itself inside the bounds and the
+//! head can get onto it without haste, the head is steered directly:
 //!
 //! ```text
-//! Averaged -- close to a feasible stream --> Direct -- stream ceases, changes kind or is lost --> Levelling --> Averaged
+//! Averaged -- a feasible stream, near --> Direct -- it ceases, changes kind, is lost --> Leaving --> Fading --> Averaged
 //! ```
 //!
 //! - *Averaged*: the head is the averaged command ([`super::averages`]).
-//! - *Direct*: the head's snap is the stream's plus feedback of what it is off by, as far as [`super::envelope`] lets it.
-//! - *Levelling*: the envelope's way out, until jerk is zero and the last average has seen nothing else. What is left is a steady
-//!   acceleration inside the bounds; the averages start from there ([`super::steady`]), as if it had always been commanded.
+//! - *Direct*: the head's snap is the stream's and feedback of what it is off by, as far as [`super::envelope`] lets it.
+//! - *Leaving* and *Fading*: the envelope's way out, until there is no jerk and next to no acceleration, and the last average has
+//!   seen nothing else. From there the averages start ([`super::steady`]), as if this steady motion had always been commanded.
 //!
-//! In every stage the head stays inside the bounds, and no change of stage moves it. So the bounds hold across them.
+//! In every stage the head keeps the bounds, and no change of stage moves it. So the bounds hold across them.
 //!
-//! Feedback: with e the stream less the head, and J the quarter turn by which a stream at rate w turns, e'''' = -(4 m e''' + 6 m^2 e'' +
-//! 4 m^3 e' + m^4 e) with m = l - w J (m = l along the vertical): (d/dt - w J + l)^4 e = 0. An error that turns with the stream,
-//! as that of averages does, shrinks without changing direction, and asks for no acceleration but its own. The stiffness l begins at
-//! what the error allows, and grows.
+//! Feedback: with e the stream less the head, l the stiffness and J the quarter turn by which a stream at rate w turns,
+//!
+//! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
+//!
+//! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at rest in the
+//! middle of a circle, shrinks without changing direction, and asks for next to no acceleration of its own. l begins at what the
+//! error allows, and grows as it shrinks.
 
-use super::envelope::{Envelope, WayOut};
+use super::envelope::{Envelope, Moving, WayOut};
 use super::stream::{Point, quarter};
 use crate::math;
 use nalgebra::Vector3;
@@ -27,20 +30,25 @@ use nalgebra::Vector3;
 /// The share of each bound that a stream may use.
 const FEASIBLE: f32 = 0.9995;
 
-/// The share of the room left that feedback may ask for, the least room, and the share of the acceleration at which a stream is lost.
+/// The share that feedback may ask for of what the stream leaves of the bounds, and the least that is counted on.
 const FEEDBACK: f32 = 0.25;
-const LEAST_ROOM: f32 = 0.01;
+const LEAST_LEFT: f32 = 0.01;
+
+/// The stiffness times the averages' span: at the beginning at most, and in the end; per tick at most; and its growth, l' = growth l^2.
+const SLACK: f32 = 2.5;
+const STIFF: f32 = 9.0;
+const SLACKEST: f32 = 0.4;
+const STIFFEST: f32 = 0.2;
+const GROWTH: f32 = 0.12;
 
 /// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it leaves.
 const TURNING: f32 = 0.8;
-const LOST: f32 = 0.5;
 
-/// The stiffness, over the averages' span: at the beginning at most, in the end, and its growth, l' = growth l^2.
-const SLACK: f32 = 2.5;
-const STIFF: f32 = 9.0;
-const GROWTH: f32 = 0.12;
+/// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest acceleration.
+const FARTHER: f32 = 1.5;
+const FAR: f32 = 0.01;
 
-/// Spans that a stream must agree for, and that a lost one is left alone for, the first time and at most.
+/// Spans that a stream must be near for, and that a lost one is left alone for, the first time and at most.
 const AGREEING: f32 = 0.25;
 const BARRED: f32 = 1.0;
 const BARRED_LONGEST: f32 = 32.0;
@@ -48,19 +56,14 @@ const BARRED_LONGEST: f32 = 32.0;
 /// What the head is driven by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    Averaged {
-        /// Ticks for which a stream has agreed.
-        agreed: u32,
-    },
-    Direct {
-        stiffness: f32,
-        out: WayOut,
-    },
-    Levelling {
-        out: WayOut,
-        /// Ticks without jerk, once there is next to no acceleration.
-        still: u32,
-    },
+    /// With the ticks for which a stream has been near.
+    Averaged { near: u32 },
+    /// With the way out in hand, and how far off the stream is lost, m.
+    Direct { stiffness: f32, out: WayOut, far: f32 },
+    /// Jerk goes.
+    Leaving { out: WayOut },
+    /// Acceleration goes; with the ticks since it has.
+    Fading { still: u32 },
 }
 
 /// What drives the head in a tick.
@@ -68,20 +71,20 @@ enum Stage {
 pub(super) enum Drive {
     /// The averages.
     Averages,
-    /// The averages, from now on: started from the steady acceleration at hand.
+    /// The averages, from now on: started from the steady motion at hand.
     Restarted,
     /// This snap, m/s^2 per tick squared.
     Snap(Vector3<f32>),
 }
 
-/// The head at hand, in m/s^2 and ticks.
+/// A stream, and what it is ahead of the head by; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moving {
-    pub acceleration: Vector3<f32>,
-    pub difference: Vector3<f32>,
+pub(super) struct Sought {
+    pub point: Point,
+    pub error: Point,
 }
 
-/// The three stages.
+/// The stages, and what they go by.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Direct {
     envelope: Envelope,
@@ -90,8 +93,9 @@ pub(super) struct Direct {
     span: f32,
     /// The last average, ticks.
     last: u32,
-    /// The greatest horizontal acceleration, m/s^2.
+    /// The greatest horizontal acceleration, m/s^2, and how many times the greatest vertical one that is.
     acceleration: f32,
+    flatness: f32,
     stage: Stage,
     /// Ticks for which no stream is followed, and how many there will be the next time.
     barred: u32,
@@ -106,21 +110,23 @@ impl Direct {
         span: 0.0,
         last: 0,
         acceleration: 0.0,
-        stage: Stage::Averaged { agreed: 0 },
+        flatness: 0.0,
+        stage: Stage::Averaged { near: 0 },
         barred: 0,
         next: 0,
     };
 
-    /// Prepares for an envelope whose greatest horizontal acceleration is given, and averages that span `span` seconds, the last of
-    /// them `last` ticks.
-    pub fn design(&mut self, envelope: Envelope, acceleration: f32, span: f32, last: u32, period: f32) {
-        *self = Self { envelope, acceleration, span, last, period, ..Self::NONE };
+    /// Prepares for an envelope of these greatest accelerations, m/s^2, and averages that span so many ticks, the last of them `last`.
+    pub fn design(&mut self, envelope: Envelope, [horizontal, vertical]: [f32; 2], span: u32, last: u32, period: f32) {
+        let flatness = horizontal / vertical;
+        *self =
+            Self { envelope, acceleration: horizontal, flatness, span: span as f32 * period, last, period, ..Self::NONE };
         self.start();
     }
 
     /// Starts anew, averaged.
     pub fn start(&mut self) {
-        self.stage = Stage::Averaged { agreed: 0 };
+        self.stage = Stage::Averaged { near: 0 };
         self.barred = 0;
         self.next = self.ticks(BARRED);
     }
@@ -128,6 +134,8 @@ impl Direct {
     fn ticks(&self, spans: f32) -> u32 {
         (spans * self.span / self.period) as u32
     }
+
+    pub fn stage_(&self) -> &dyn core::fmt::Debug { &self.stage }
 
     /// Whether the averages drive the head.
     pub fn is_averaged(&self) -> bool {
@@ -137,102 +145,119 @@ impl Direct {
     /// Advances by a tick: with the head, and with what a fresh stream is ahead of it by.
     pub fn tick(&mut self, head: &Moving, sought: Option<&Sought>) -> Drive {
         self.barred = self.barred.saturating_sub(1);
-        match self.stage {
-            Stage::Averaged { agreed } => self.averaged(head, sought, agreed),
-            Stage::Direct { stiffness, out } => match sought.filter(|sought| self.follows(sought)) {
-                Some(sought) => self.follow(head, sought, stiffness, &out),
-                None => self.level(head, out, 0),
-            },
-            Stage::Levelling { out, still } => self.level(head, out, still),
+        let sought = sought.filter(|sought| self.is_feasible(&sought.point));
+        match (self.stage, sought) {
+            (Stage::Averaged { near }, Some(sought)) if self.barred == 0 => self.averaged(head, sought, near),
+            (Stage::Averaged { .. }, _) => {
+                self.stage = Stage::Averaged { near: 0 };
+                Drive::Averages
+            }
+            (Stage::Direct { stiffness, out, far }, Some(sought)) if self.off(sought) <= far => {
+                self.follow(head, sought, stiffness, &out, far)
+            }
+            (Stage::Direct { out, .. }, _) => {
+                self.barred = self.next;
+                self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
+                self.leave(head, &out)
+            }
+            (Stage::Leaving { out }, _) => self.leave(head, &out),
+            (Stage::Fading { still }, _) => self.fade(head, still),
         }
     }
 
-    fn averaged(&mut self, head: &Moving, sought: Option<&Sought>, agreed: u32) -> Drive {
-        self.stage = Stage::Averaged { agreed: 0 };
-        let Some(sought) = sought.filter(|sought| self.barred == 0 && self.follows(sought)) else {
-            return Drive::Averages;
-        };
-        let Moving { acceleration: a, difference: d } = head;
-        let stiffness = self.affordable(sought, self.room(sought)).min(SLACK / self.span);
-        let near = self.is_near(sought, stiffness);
-        let Some(out) = self.envelope.way_out(a, d).filter(|_| near) else {
-            return Drive::Averages;
-        };
-        if agreed < self.ticks(AGREEING) {
-            self.stage = Stage::Averaged { agreed: agreed + 1 };
-            return Drive::Averages;
+    fn averaged(&mut self, head: &Moving, sought: &Sought, agreed: u32) -> Drive {
+        let room = self.room(sought);
+        let slack = SLACK / self.span;
+        let stiffness = self.affordable(sought, room).min(slack);
+        let near = stiffness >= SLACKEST * slack && self.is_near(sought, slack, room);
+        let out = self.envelope.way_out(head).filter(|_| near);
+        match out {
+            Some(out) if agreed >= self.ticks(AGREEING) => {
+                let far = FARTHER * self.off(sought) + FAR * self.acceleration * self.span * self.span;
+                self.follow(head, sought, stiffness, &out, far)
+            }
+            _ => {
+                self.stage = Stage::Averaged { near: if out.is_some() { agreed + 1 } else { 0 } };
+                Drive::Averages
+            }
         }
-        self.follow(head, sought, stiffness, &out)
     }
 
-    fn follow(&mut self, head: &Moving, sought: &Sought, stiffness: f32, out: &WayOut) -> Drive {
-        let wanted = self.wanted(sought, stiffness);
-        let (snap, out) = self.envelope.step(&head.acceleration, &head.difference, &wanted, out);
+    fn follow(&mut self, head: &Moving, sought: &Sought, stiffness: f32, out: &WayOut, far: f32) -> Drive {
+        let (snap, out) = self.envelope.step(head, &self.wanted(sought, stiffness), out);
         let grown = stiffness + GROWTH * stiffness * stiffness * self.period;
         let stiffness = grown.min(self.affordable(sought, self.room(sought)));
-        self.stage = Stage::Direct { stiffness, out };
+        self.stage = Stage::Direct { stiffness, out, far };
         Drive::Snap(snap)
     }
 
-    fn level(&mut self, head: &Moving, out: WayOut, still: u32) -> Drive {
-        if self.is_direct() {
-            self.barred = self.next;
-            self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
-        }
-        let Moving { acceleration: a, difference: d } = head;
-        let still = if *d == Vector3::zeros() && (still > 0 || self.envelope.is_level(a)) { still + 1 } else { 0 };
+    fn leave(&mut self, head: &Moving, out: &WayOut) -> Drive {
+        let (snap, out) = self.envelope.follow(&head.difference, out);
+        let braked = head.difference == Vector3::zeros() && snap == Vector3::zeros();
+        self.stage = if braked { Stage::Fading { still: 0 } } else { Stage::Leaving { out } };
+        Drive::Snap(snap)
+    }
+
+    fn fade(&mut self, head: &Moving, still: u32) -> Drive {
         if still > self.last {
-            self.stage = Stage::Averaged { agreed: 0 };
+            self.stage = Stage::Averaged { near: 0 };
             return Drive::Restarted;
         }
-        let (snap, out) = if still > 0 { (*d, out) } else { self.envelope.step(a, d, &self.envelope.levelling(a, d), &out) };
-        self.stage = Stage::Levelling { out, still };
+        let snap = self.envelope.fade(head);
+        let moves = head.difference != Vector3::zeros() || snap != Vector3::zeros();
+        self.stage = Stage::Fading { still: if moves { 0 } else { still + 1 } };
         Drive::Snap(snap)
     }
 
-    fn is_direct(&self) -> bool {
-        matches!(self.stage, Stage::Direct { .. })
-    }
-
-    /// Whether a stream moves, keeps the bounds and is near.
-    fn follows(&self, sought: &Sought) -> bool {
-        let Point { velocity, acceleration, jerk, snap, .. } = &sought.point;
-        let (t, far) = (self.period, LOST * self.acceleration * self.span * self.span / (SLACK * SLACK));
+    /// Whether a stream moves and keeps the bounds.
+    fn is_feasible(&self, point: &Point) -> bool {
+        let Point { velocity, acceleration, jerk, snap, .. } = point;
         let moves = *velocity != Vector3::zeros() && *acceleration != Vector3::zeros();
-        let jerk = jerk * (t / FEASIBLE);
-        moves
-            && self.envelope.holds(&(acceleration / FEASIBLE))
-            && self.envelope.allows_difference(&jerk)
-            && self.envelope.allows(&(snap * (t * t / FEASIBLE)))
-            && sought.error.position.norm_squared() <= far * far
+        moves && self.envelope.keeps(velocity, [acceleration, jerk, snap], FEASIBLE)
     }
 
-    /// How much acceleration is left for feedback, m/s^2: a share of what a stream leaves that is off by an error which turns with it.
+    /// A length with which lengths along the vertical count as much as the accelerations that undo them.
+    fn flat(&self, y: &Vector3<f32>) -> f32 {
+        let vertical = y.z * self.flatness;
+        math::sqrt(y.x * y.x + y.y * y.y + vertical * vertical)
+    }
+
+    /// How the error moves beside turning with the stream.
+    fn drift(sought: &Sought) -> Vector3<f32> {
+        sought.error.velocity - quarter(&sought.error.position) * sought.point.rate
+    }
+
+    /// How far off a stream is, with how far it goes off in a span, m.
+    pub fn off(&self, sought: &Sought) -> f32 {
+        self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
+    }
+
+    /// The acceleration that feedback may ask for, m/s^2: a share of what is left by a head whose error turns with the stream.
     fn room(&self, sought: &Sought) -> f32 {
         let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
-        let turned = |y: Vector3<f32>| quarter(&y) * *rate;
-        let twice = turned(turned(sought.error.position));
-        let t = self.period;
-        let used = self.envelope.used(&(acceleration - twice), &((jerk - turned(twice)) * t), &((snap - turned(turned(twice))) * (t * t)));
-        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_ROOM, 1.0)
+        let turned = |y: &Vector3<f32>| quarter(y) * *rate;
+        let bent = turned(&turned(&sought.error.position));
+        let twisted = turned(&bent);
+        let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
+        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_LEFT, 1.0)
     }
 
     /// The stiffness whose answer to the error is within the room.
     fn affordable(&self, sought: &Sought, room: f32) -> f32 {
-        let off = math::sqrt(sought.error.position.norm_squared());
+        let Point { position, .. } = &sought.error;
         let stiff = (STIFF / self.span).min(STIFFEST / self.period);
-        let turning = TURNING * sought.point.rate.abs();
-        if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off).max(turning).min(stiff) }
+        let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
+        let turning = (TURNING * sought.point.rate.abs()).min(stiff);
+        let horizontal = within(math::sqrt(position.xy().norm_squared()), stiff).max(turning);
+        within((position.z * self.flatness).abs(), horizontal)
     }
 
-    /// Whether the error turns with the stream, nearly: whether what else it does is answered within the room.
-    fn is_near(&self, sought: &Sought, stiffness: f32) -> bool {
-        let Point { position, velocity, acceleration, .. } = &sought.error;
-        let turned = |y: &Vector3<f32>| quarter(y) * sought.point.rate;
-        let drift = velocity - turned(position);
-        let bend = acceleration - turned(velocity) - turned(&drift);
-        let room = self.room(sought);
-        2.0 * stiffness * math::sqrt(drift.norm_squared()) <= room && math::sqrt(bend.norm_squared()) <= room
+    /// Whether what the error does beside turning with the stream is answered within the room.
+    fn is_near(&self, sought: &Sought, stiffness: f32, room: f32) -> bool {
+        let Point { velocity, acceleration, .. } = &sought.error;
+        let drift = Self::drift(sought);
+        let bend = acceleration - (quarter(velocity) + quarter(&drift)) * sought.point.rate;
+        2.0 * stiffness * self.flat(&drift) <= room && self.flat(&bend) <= room
     }
 
     /// The stream's snap and the feedback, m/s^2 per tick squared.
@@ -244,14 +269,4 @@ impl Direct {
         let feedback = m(m(m(m(*position) + velocity * 4.0) + acceleration * 6.0) + jerk * 4.0);
         (sought.point.snap + feedback) * (self.period * self.period)
     }
-}
-
-/// The stiffest feedback, per tick.
-const STIFFEST: f32 = 0.2;
-
-/// A stream, and what it is ahead of the head by; SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sought {
-    pub point: Point,
-    pub error: Point,
 }

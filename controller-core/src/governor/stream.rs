@@ -36,7 +36,7 @@ pub(super) struct Point {
     pub acceleration: Vector3<f32>,
     pub jerk: Vector3<f32>,
     pub snap: Vector3<f32>,
-    /// w, rad/s.
+    /// w, rad/s, as far as it explains the jerk: none where c is half of that or more.
     pub rate: f32,
 }
 
@@ -71,14 +71,16 @@ impl Stream {
         let (v_turned, across_turned) = (turned(v), turned(&across));
         // The integral of the turned velocity; as w goes to zero, v t.
         let path = if rate == 0.0 { v * time } else { level(&(quarter(&(v - v_turned)) / rate), v.z * time) };
+        let jerk = quarter(&across_turned) * rate + change;
+        let unexplained = 4.0 * change.norm_squared() / jerk.norm_squared();
         let (half, sixth) = (0.5 * time * time, time * time * time / 6.0);
         Point {
             position: path + along * half + change * sixth,
             velocity: v_turned + along * time + change * half,
             acceleration: across_turned + along + change * time,
-            jerk: quarter(&across_turned) * rate + change,
+            jerk,
             snap: across_turned * (-rate * rate),
-            rate,
+            rate: if unexplained < 1.0 { rate * (1.0 - math::sqrt(unexplained)) } else { 0.0 },
         }
     }
 }

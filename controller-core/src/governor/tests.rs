@@ -272,9 +272,10 @@ fn trial(name: &str, every: impl Fn(usize, &mut Random) -> bool, at: impl Fn(f64
         if tick > 4000 { worst = worst.max(off); }
         if tick % 800 == 0 { text += &std::format!(" {off:.4}"); }
         last = off;
-        if name.contains("2.4 0.282 full") && tick > 800 && tick < 2000 && tick % 50 == 0 {
-            let k = governor.smoother.knot(); 
-            std::println!("{:.1} off {:.3} p {:.3?} v {:.3?} a {:.3?} x0 {:.3?} u {:.3?} {:?}", time, off, k.position.as_slice(), k.velocity.as_slice(), k.acceleration.as_slice(), governor.averages.commanded().map(|x| x as f32 / governor.windows.per_metre).as_slice(), governor.averages.speed().map(|x| x as f32 / governor.windows.per_metre/0.01).as_slice(), governor.direct.is_averaged());
+        if name == "circle 100 Hz" && tick > 50 && tick < 320 && tick % 10 == 0 {
+            let head = governor.moving();
+            if let Some(so) = governor.sought(&head) { 
+            std::println!("{:.1} e {:.3?} rate {:.3} a {:.3?} off {:.3} {:?}", time, so.error.position.as_slice(), so.point.rate, head.acceleration.as_slice(), governor.direct.off(&so), governor.direct.stage_()); }
         }
         if every(tick, &mut random) {
             let motion = Motion::PositionVelocityAcceleration { position: p, velocity: v, acceleration: a };
