@@ -44,6 +44,10 @@ const GROWTH: f32 = 0.12;
 /// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it leaves.
 const TURNING: f32 = 0.8;
 
+/// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too late.
+const DELAYED: f32 = 0.15;
+const SAMPLED: f32 = 0.05;
+
 /// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest acceleration.
 const FARTHER: f32 = 1.5;
 const FAR: f32 = 0.01;
@@ -96,6 +100,8 @@ pub(super) struct Direct {
     /// The greatest horizontal acceleration, m/s^2, and how many times the greatest vertical one that is.
     acceleration: f32,
     flatness: f32,
+    /// The greatest rate of turning, rad/s.
+    fastest: f32,
     stage: Stage,
     /// Ticks for which no stream is followed, and how many there will be the next time.
     barred: u32,
@@ -111,6 +117,7 @@ impl Direct {
         last: 0,
         acceleration: 0.0,
         flatness: 0.0,
+        fastest: 0.0,
         stage: Stage::Averaged { near: 0 },
         barred: 0,
         next: 0,
@@ -118,9 +125,18 @@ impl Direct {
 
     /// Prepares for an envelope of these greatest accelerations, m/s^2, and averages that span so many ticks, the last of them `last`.
     pub fn design(&mut self, envelope: Envelope, [horizontal, vertical]: [f32; 2], span: u32, last: u32, period: f32) {
-        let flatness = horizontal / vertical;
-        *self =
-            Self { envelope, acceleration: horizontal, flatness, span: span as f32 * period, last, period, ..Self::NONE };
+        // The last average delays by half of it.
+        let fastest = (2.0 * DELAYED / last as f32).min(SAMPLED) / period;
+        *self = Self {
+            envelope,
+            period,
+            span: span as f32 * period,
+            last,
+            acceleration: horizontal,
+            flatness: horizontal / vertical,
+            fastest,
+            ..Self::NONE
+        };
         self.start();
     }
 
@@ -134,8 +150,6 @@ impl Direct {
     fn ticks(&self, spans: f32) -> u32 {
         (spans * self.span / self.period) as u32
     }
-
-    pub fn stage_(&self) -> &dyn core::fmt::Debug { &self.stage }
 
     /// Whether the averages drive the head.
     pub fn is_averaged(&self) -> bool {
@@ -209,11 +223,11 @@ impl Direct {
         Drive::Snap(snap)
     }
 
-    /// Whether a stream moves and keeps the bounds.
+    /// Whether a stream moves, not round too fast, and keeps the bounds.
     fn is_feasible(&self, point: &Point) -> bool {
-        let Point { velocity, acceleration, jerk, snap, .. } = point;
+        let Point { velocity, acceleration, jerk, snap, rate, .. } = point;
         let moves = *velocity != Vector3::zeros() && *acceleration != Vector3::zeros();
-        moves && self.envelope.keeps(velocity, [acceleration, jerk, snap], FEASIBLE)
+        moves && rate.abs() <= self.fastest && self.envelope.keeps(velocity, [acceleration, jerk, snap], FEASIBLE)
     }
 
     /// A length with which lengths along the vertical count as much as the accelerations that undo them.
@@ -228,7 +242,7 @@ impl Direct {
     }
 
     /// How far off a stream is, with how far it goes off in a span, m.
-    pub fn off(&self, sought: &Sought) -> f32 {
+    fn off(&self, sought: &Sought) -> f32 {
         self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
     }
 

@@ -272,11 +272,6 @@ fn trial(name: &str, every: impl Fn(usize, &mut Random) -> bool, at: impl Fn(f64
         if tick > 4000 { worst = worst.max(off); }
         if tick % 800 == 0 { text += &std::format!(" {off:.4}"); }
         last = off;
-        if name == "circle 100 Hz" && tick > 50 && tick < 320 && tick % 10 == 0 {
-            let head = governor.moving();
-            if let Some(so) = governor.sought(&head) { 
-            std::println!("{:.1} e {:.3?} rate {:.3} a {:.3?} off {:.3} {:?}", time, so.error.position.as_slice(), so.point.rate, head.acceleration.as_slice(), governor.direct.off(&so), governor.direct.stage_()); }
-        }
         if every(tick, &mut random) {
             let motion = Motion::PositionVelocityAcceleration { position: p, velocity: v, acceleration: a };
             governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
