@@ -352,7 +352,7 @@ impl Governor {
     fn turn_goal(&self) -> TurnGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
         let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
-        let phase = self.turn.phase.map(|phase| phase.wrapping_add((rate as f32 * lead) as i64));
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add(whole(single(rate) * lead)));
         TurnGoal { phase, rate }
     }
 }

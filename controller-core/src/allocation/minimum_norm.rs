@@ -11,7 +11,7 @@
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
 use crate::error::InputError;
-use crate::state::{STATE_RANGE, Wrench, check_vectors};
+use crate::state::{STATE_RANGE, Wrench, check_vectors, sum_of_squares};
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
@@ -37,7 +37,9 @@ impl Actuator {
 
     /// `thrust` moved into the rotor's range.
     pub(super) fn clip(&self, thrust: f32) -> f32 {
-        thrust.max(self.least).min(self.greatest)
+        // Not `max` and `min`, which are calls; a NaN becomes the least.
+        let thrust = if thrust > self.least { thrust } else { self.least };
+        if thrust < self.greatest { thrust } else { self.greatest }
     }
 }
 
@@ -75,7 +77,10 @@ impl MinimumNorm {
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
     pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
         let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
-        check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
+        // One comparison where all is well; a NaN compares false.
+        if !(sum_of_squares(&[&thrust, &wrench.torque]) <= STATE_RANGE * STATE_RANGE) {
+            check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
+        }
         let mut thrusts = self.preferred(&components(wrench));
         let clipped = self.clip(&mut thrusts);
         Ok(Delivered { achieved: self.wrench(&thrusts), thrusts, clipped })

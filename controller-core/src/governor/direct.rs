@@ -53,7 +53,7 @@ const FARTHER: f32 = 1.5;
 const FAR: f32 = 0.01;
 
 /// Spans that a stream must be near for, and that a lost one is left alone for, the first time and at most.
-const AGREEING: f32 = 0.25;
+const AGREEING: f32 = 0.4;
 const BARRED: f32 = 1.0;
 const BARRED_LONGEST: f32 = 32.0;
 
