@@ -58,18 +58,25 @@ use stream::{Point, Stream};
 use turning::{TurnGoal, Turning};
 use windows::Windows;
 
-/// What the position is to do: be at a point, or, without one, move. What moves is renewed or stops.
+/// What the position is to do: be at a point, or, on the axes without one, move. What moves is renewed or stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Goal {
-    /// Length units.
-    position: Option<Vector3<i64>>,
+    /// Length units; zero on the axes without.
+    position: Vector3<i64>,
+    /// Which axes have a position.
+    held: [bool; 3],
     /// How it moves, or how to move.
     stream: Stream,
 }
 
 impl Goal {
     /// Come to rest.
-    const STOP: Self = Self { position: None, stream: Stream::STILL };
+    const STOP: Self = Self { position: Vector3::new(0, 0, 0), held: [false; 3], stream: Stream::STILL };
+
+    /// Whether it is a point, on every axis.
+    fn is_point(&self) -> bool {
+        self.held == [true; 3]
+    }
 }
 
 /// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
@@ -244,13 +251,17 @@ impl Governor {
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
-        let before = self.goal.position.is_some() && self.goal_age > 0 && self.goal_age <= self.timeout;
-        let stream = if before && position.is_some() {
-            self.goal.stream.followed_by(velocity, acceleration, self.goal_age as f32 * self.period)
-        } else {
+        let held = position.map(|position| position.is_some());
+        let stream = if held != [true; 3] || !self.goal.is_point() || self.goal_age > self.timeout {
             Stream::new(velocity, acceleration)
+        } else if self.goal_age == 0 {
+            // Two in a tick: how far apart, nobody knows.
+            Stream { velocity, acceleration, ..self.goal.stream }
+        } else {
+            self.goal.stream.followed_by(velocity, acceleration, self.goal_age as f32 * self.period)
         };
-        self.goal = Goal { position: position.map(|position| self.length(&position)), stream };
+        let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
+        self.goal = Goal { position, held, stream };
         self.goal_age = 0;
         if let Some((angle, rate)) = turn {
             self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
@@ -306,12 +317,14 @@ impl Governor {
 
     /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the `head`.
     fn sought(&self, head: &Moving) -> Option<Sought> {
-        let position = self.goal.position.filter(|_| self.goal_age <= self.timeout)?;
+        if !self.goal.is_point() || self.goal_age > self.timeout {
+            return None;
+        }
         let (t, ahead, spread) = (self.period, self.ahead, self.spread);
         let point = self.goal.stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
         let Knot { velocity, acceleration, .. } = &self.knot;
         // The knot's control point is beside it; the head has gone on from there.
-        let away = (position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
+        let away = (self.goal.position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
         let gone = velocity * ahead
             + (acceleration * 2.0 + head.acceleration) * (ahead * ahead / 6.0)
             + acceleration * (0.25 * t * t);
@@ -331,20 +344,17 @@ impl Governor {
     /// The commanded acceleration of this tick.
     fn pursue(&self) -> Vector3<i32> {
         let u = self.averages.speed();
-        let Goal { position, stream } = &self.goal;
+        let Goal { position, held, stream } = &self.goal;
         let stale = self.goal_age > self.timeout;
         let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
-        let wanted = match position {
-            None => self.length(&(velocity * self.period)),
-            Some(position) => {
-                // The command at hand is where it was a tick ago.
-                let age = (self.goal_age as f32 - 1.0) * self.period;
-                let (ahead, feed) = self.lead.of(velocity, acceleration, age);
-                let error = position + self.length(&ahead) - self.averages.commanded();
-                let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
-                self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration)
-            }
-        };
+        // The command at hand is where it was a tick ago.
+        let age = (self.goal_age as f32 - 1.0) * self.period;
+        let (ahead, feed) = self.lead.of(velocity, acceleration, age);
+        let away = position + self.length(&ahead) - self.averages.commanded();
+        let [x, y, z] = *held;
+        let error = Vector3::new(i64::from(x), i64::from(y), i64::from(z)).component_mul(&away);
+        let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
+        let wanted = self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration);
         self.pursuit.towards_velocity(&wanted, u)
     }
 

@@ -70,9 +70,13 @@ impl Adversary {
         let along = Vector3::new(0.8, -0.6, 1.0);
         let sided = |positive: bool| if positive { along } else { -along };
         let side = |positive: bool| if positive { 1.0 } else { -1.0 };
-        let anywhere = |random: &mut Random| match random.below(3) {
+        let anywhere = |random: &mut Random| match random.below(4) {
             0 => Motion::Position(now.position + random.vector(10.0)),
             1 => Motion::Velocity(random.vector(8.0)),
+            2 => Motion::Mixed {
+                position: (now.position + random.vector(5.0)).data.0[0].map(|place| (random.below(2) > 0).then_some(place)),
+                velocity: random.vector(5.0),
+            },
             _ => Motion::PositionVelocityAcceleration {
                 position: now.position + random.vector(5.0),
                 velocity: random.vector(5.0),

@@ -30,24 +30,30 @@ pub(super) struct Outcome {
     pub second: i64,
 }
 
-/// N mu, and 4 N (sigma^2 + mu^2 - mu) / 2.
+/// N mu, and 4 N times the acceleration's factor in P_-2: (sigma^2 + mu^2 - mu)/2 + 2 mu + 1.
 fn moments(windows: &Windows) -> (i64, i64) {
-    let product = windows.product();
-    let total = windows.span();
+    let (product, total) = (windows.product(), windows.span());
     let spread: i64 = windows.lengths.iter().map(|length| (*length * *length) as i64 - 1).map(|s| product * s / 6).sum();
-    (product / 2 * (total - 3), spread + product / 2 * (total - 3) * (total - 5))
+    let mean = product / 2 * (total - 3);
+    (mean, spread + mean * (total - 5) + 8 * mean + 4 * product)
 }
 
 impl Steady {
     /// What the averages make of it.
     pub fn outcome(&self, windows: &Windows) -> Outcome {
-        let (mean, square) = moments(windows);
-        let first = windows.product() * self.speed - mean * self.acceleration;
-        let second = windows.product() * self.acceleration;
-        let part = self.acceleration / 4 * square - mean * self.speed - 2 * first + second;
+        let product = windows.product();
+        let (mean, bend) = moments(windows);
+        // Of the speed mu + 2 ticks: in halves, as mu is.
+        let halves = self.speed * (windows.span() + 1);
+        let part = self.acceleration / 4 * bend - (halves & 1) * (product / 2);
         // A product of zero: never designed, so nothing trails.
-        let units = part.checked_div(windows.product()).unwrap_or(0);
-        Outcome { place: self.commanded + units, part: part - units * windows.product(), first, second }
+        let units = part.checked_div(product).unwrap_or(0);
+        Outcome {
+            place: self.commanded - (halves >> 1) + units,
+            part: part - units * product,
+            first: product * self.speed - mean * self.acceleration,
+            second: product * self.acceleration,
+        }
     }
 
     /// The command that comes out as nearly like `outcome` as whole units can.

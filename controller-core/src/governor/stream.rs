@@ -25,7 +25,7 @@ const STILL: f32 = 1e-6;
 pub(super) struct Stream {
     pub velocity: Vector3<f32>,
     pub acceleration: Vector3<f32>,
-    change: Vector3<f32>,
+    pub change: Vector3<f32>,
 }
 
 /// A point and its derivatives; the position is from where the setpoint was.

@@ -108,6 +108,31 @@ fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
 }
 
 #[test]
+fn position_on_some_axes_and_velocity_on_the_others_are_reached_together() {
+    let governor = governor();
+    let motion = Motion::Mixed { position: [None, None, Some(2.0)], velocity: Vector3::new(1.0, -0.5, 0.0) };
+    for _ in 0..900 {
+        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        assert!(TYPICAL.contain(&governor.tick(), 0.0));
+    }
+    let reference = governor.tick();
+    assert!((reference.velocity - Vector3::new(1.0, -0.5, 0.0)).norm() < 1e-6, "{}", reference.velocity);
+    assert_eq!(reference.position.z, 2.0);
+    // Not renewed: it stops across, and stays at its height.
+    let (_, last) = run(governor);
+    assert!(last.velocity == Vector3::zeros() && last.position.z == 2.0);
+    // A place is gone to while another axis moves on.
+    let motion = Motion::Mixed { position: [Some(1.0), Some(-3.0), None], velocity: Vector3::new(0.0, 0.0, 0.4) };
+    for _ in 0..1_500 {
+        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.tick();
+    }
+    let reference = governor.tick();
+    assert_eq!((reference.position.x, reference.position.y), (1.0, -3.0));
+    assert!((reference.velocity.z - 0.4).abs() < 1e-6);
+}
+
+#[test]
 fn a_moving_point_is_followed_without_lag() {
     let governor = governor();
     let (velocity, acceleration) = (Vector3::new(0.5, -0.2, 0.1), Vector3::new(0.1, -0.04, 0.0));
@@ -165,6 +190,13 @@ fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
     let nan = f32::NAN;
     for (setpoint, field) in [
         (go_to(0.0, nan, 0.0), "setpoint.position"),
+        (
+            Setpoint {
+                motion: Motion::Mixed { position: [None, None, Some(nan)], velocity: Vector3::zeros() },
+                turn: Turn::Keep,
+            },
+            "setpoint.position",
+        ),
         (Setpoint { motion: Motion::Velocity(Vector3::new(nan, 0.0, 0.0)), turn: Turn::Keep }, "setpoint.velocity"),
         (Setpoint { turn: Turn::Angle { angle: nan, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw"),
         (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),

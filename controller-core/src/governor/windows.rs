@@ -82,11 +82,12 @@ impl Windows {
         let vertical = bounds.vertical_acceleration * share * period * period;
         let total: usize = lengths.iter().sum();
         let product: usize = lengths.iter().product();
-        // How far the averages may trail the command, times what they are divided by: kept below 2^62.
-        let trail = 2.0 * SPEED_RANGE * (total + 32) as f32 * period * product as f32;
+        let (product, total) = (product as f32, total as f32);
+        // The greatest sums: of speed, and of what a steady acceleration trails by. Kept below 2^61.
+        let sums = (4.0 * SPEED_RANGE * period * product).max(horizontal.max(vertical) * product * total * total);
         let mut per_metre = (1_u64 << FINEST_EXPONENT) as f32;
         for _ in 0..FINEST_EXPONENT {
-            if horizontal.max(vertical) * per_metre <= GREATEST_LEVEL && trail * per_metre < (1_u64 << 62) as f32 {
+            if horizontal.max(vertical) * per_metre <= GREATEST_LEVEL && sums * per_metre < (1_u64 << 61) as f32 {
                 break;
             }
             per_metre *= 0.5;
