@@ -46,12 +46,12 @@ use crate::math::{single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
+use direct::{Direct, Drive, Sought};
+use envelope::{Bounds, Cylinder, Envelope, Moving};
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
-use direct::{Direct, Drive, Sought};
-use envelope::{Bounds, Cylinder, Envelope, Moving};
 use smoother::{Knot, Smoother};
 use steady::Steady;
 use stream::{Point, Stream};
@@ -279,7 +279,10 @@ impl Governor {
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.direct.is_averaged() && self.pursue() == Vector3::zeros() && self.smoother.at_rest(self.averages.commanded()) && self.turning.at_rest(&self.turn_goal())
+        self.direct.is_averaged()
+            && self.pursue() == Vector3::zeros()
+            && self.smoother.at_rest(self.averages.commanded())
+            && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.

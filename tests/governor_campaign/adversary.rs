@@ -59,7 +59,8 @@ impl Adversary {
             8 | 9 => Self::Following {
                 path: Path::draw(random, case, here),
                 every: (random.sized(0.01, 0.1) / case.period).round().max(1.0) as u32,
-                trouble: [Trouble::None, Trouble::Jitter, Trouble::Dropouts, Trouble::Switches][random.below(4) as usize],
+                trouble: [Trouble::None, Trouble::Jitter, Trouble::Dropouts, Trouble::Switches]
+                    [random.below(4) as usize],
             },
             _ => Self::Constant,
         }
@@ -74,7 +75,8 @@ impl Adversary {
             0 => Motion::Position(now.position + random.vector(10.0)),
             1 => Motion::Velocity(random.vector(8.0)),
             2 => Motion::Mixed {
-                position: (now.position + random.vector(5.0)).data.0[0].map(|place| (random.below(2) > 0).then_some(place)),
+                position: (now.position + random.vector(5.0)).data.0[0]
+                    .map(|place| (random.below(2) > 0).then_some(place)),
                 velocity: random.vector(5.0),
             },
             _ => Motion::PositionVelocityAcceleration {

@@ -4,13 +4,13 @@
 //! head can get onto it without haste, the head is steered directly:
 //!
 //! ```text
-//! Averaged -- a feasible stream, near --> Direct -- it ceases, changes kind, is lost --> Leaving --> Fading --> Averaged
+//! Averaged -- a feasible stream, near --> Direct -- it ceases, changes kind or is lost --> Levelling --> Averaged
 //! ```
 //!
 //! - *Averaged*: the head is the averaged command ([`super::averages`]).
 //! - *Direct*: the head's snap is the stream's and feedback of what it is off by, as far as [`super::envelope`] lets it.
-//! - *Leaving* and *Fading*: the envelope's way out, until there is no jerk and next to no acceleration, and the last average has
-//!   seen nothing else. From there the averages start ([`super::steady`]), as if this steady motion had always been commanded.
+//! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else. From there the
+//!   averages start ([`super::steady`]), as if this steady motion had always been commanded.
 //!
 //! In every stage the head keeps the bounds, and no change of stage moves it. So the bounds hold across them.
 //!
@@ -27,8 +27,9 @@ use super::stream::{Point, quarter};
 use crate::math;
 use nalgebra::Vector3;
 
-/// The share of each bound that a stream may use.
+/// The share of each bound that a stream may use, and of a jerk from which there is a way out.
 const FEASIBLE: f32 = 0.9995;
+const RETREATING: f32 = 0.98;
 
 /// The share that feedback may ask for of what the stream leaves of the bounds, and the least that is counted on.
 const FEEDBACK: f32 = 0.25;
@@ -64,10 +65,8 @@ enum Stage {
     Averaged { near: u32 },
     /// With the way out in hand, and how far off the stream is lost, m.
     Direct { stiffness: f32, out: WayOut, far: f32 },
-    /// Jerk goes.
-    Leaving { out: WayOut },
-    /// Acceleration goes; with the ticks since it has.
-    Fading { still: u32 },
+    /// The way out, with the ticks since it has ended.
+    Levelling { out: WayOut, still: u32 },
 }
 
 /// What drives the head in a tick.
@@ -172,10 +171,9 @@ impl Direct {
             (Stage::Direct { out, .. }, _) => {
                 self.barred = self.next;
                 self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
-                self.leave(head, &out)
+                self.level(head, &out, 0)
             }
-            (Stage::Leaving { out }, _) => self.leave(head, &out),
-            (Stage::Fading { still }, _) => self.fade(head, still),
+            (Stage::Levelling { out, still }, _) => self.level(head, &out, still),
         }
     }
 
@@ -205,29 +203,30 @@ impl Direct {
         Drive::Snap(snap)
     }
 
-    fn leave(&mut self, head: &Moving, out: &WayOut) -> Drive {
-        let (snap, out) = self.envelope.follow(&head.difference, out);
-        let braked = head.difference == Vector3::zeros() && snap == Vector3::zeros();
-        self.stage = if braked { Stage::Fading { still: 0 } } else { Stage::Leaving { out } };
-        Drive::Snap(snap)
-    }
-
-    fn fade(&mut self, head: &Moving, still: u32) -> Drive {
+    fn level(&mut self, head: &Moving, out: &WayOut, still: u32) -> Drive {
         if still > self.last {
             self.stage = Stage::Averaged { near: 0 };
             return Drive::Restarted;
         }
-        let snap = self.envelope.fade(head);
-        let moves = head.difference != Vector3::zeros() || snap != Vector3::zeros();
-        self.stage = Stage::Fading { still: if moves { 0 } else { still + 1 } };
+        let (snap, out) = self.envelope.follow(head, out);
+        let moves = [head.acceleration, head.difference, snap].iter().any(|vector| *vector != Vector3::zeros());
+        self.stage = Stage::Levelling { out, still: if moves { 0 } else { still + 1 } };
         Drive::Snap(snap)
     }
 
-    /// Whether a stream moves, not round too fast, and keeps the bounds.
+    /// Whether a stream moves, not round too fast, keeps the bounds, and leaves a way out.
     fn is_feasible(&self, point: &Point) -> bool {
         let Point { velocity, acceleration, jerk, snap, rate, .. } = point;
         let moves = *velocity != Vector3::zeros() && *acceleration != Vector3::zeros();
-        moves && rate.abs() <= self.fastest && self.envelope.keeps(velocity, [acceleration, jerk, snap], FEASIBLE)
+        let on = Moving {
+            velocity: *velocity,
+            acceleration: acceleration / FEASIBLE,
+            difference: jerk * (self.period / RETREATING),
+        };
+        moves
+            && rate.abs() <= self.fastest
+            && self.envelope.used([acceleration, jerk, snap]) <= FEASIBLE
+            && self.envelope.way_out(&on).is_some()
     }
 
     /// A length with which lengths along the vertical count as much as the accelerations that undo them.

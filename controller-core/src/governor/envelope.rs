@@ -30,9 +30,6 @@ const BACK: f32 = 0.6;
 /// How often what is wanted is halved towards the way out before that is taken.
 const HALVINGS: u32 = 3;
 
-/// An acceleration is as good as zero below this share of what a tick makes of Q.
-const FADED: f32 = 0.01;
-
 /// A cylinder about the vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cylinder {
@@ -94,16 +91,18 @@ pub(super) struct Envelope {
     fading: f32,
 }
 
-/// A way out: a snap for some ticks, then braking.
+/// A way out: a snap for some ticks, then braking, then a to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WayOut {
     snap: Vector3<f32>,
     ticks: u32,
+    /// Whether braking has ended.
+    braked: bool,
 }
 
 impl WayOut {
     /// Braking at once.
-    const STRAIGHT: Self = Self { snap: Vector3::new(0.0, 0.0, 0.0), ticks: 0 };
+    const STRAIGHT: Self = Self { snap: Vector3::new(0.0, 0.0, 0.0), ticks: 0, braked: false };
 }
 
 impl Envelope {
@@ -135,12 +134,6 @@ impl Envelope {
             stopping: turn * period + jerk / snap + few,
             fading: (greatest / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
         }
-    }
-
-    /// Whether a point is inside with its derivatives, SI units, of which a share is allowed.
-    pub fn keeps(&self, velocity: &Vector3<f32>, derivatives: [&Vector3<f32>; 3], share: f32) -> bool {
-        let [acceleration, jerk, snap] = derivatives;
-        self.speed.holds(velocity) && self.used([acceleration, jerk, snap]) <= share
     }
 
     /// The greatest share of a bound that acceleration, jerk and snap take, SI units.
@@ -182,15 +175,20 @@ impl Envelope {
         let n = self.turn;
         let middle = a + (d + snap * 0.5) * (0.5 * n);
         let turned = a + d * n + snap * (0.5 * n * (n + 1.0));
-        let inside = d.norm_squared() <= self.jerk * self.jerk && self.acceleration.holds(a) && self.acceleration.holds(&middle);
+        let inside =
+            d.norm_squared() <= self.jerk * self.jerk && self.acceleration.holds(a) && self.acceleration.holds(&middle);
         let reach = self.braked(&turned, &(d + snap * n)).filter(|_| inside)?;
-        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(WayOut { snap, ticks: n as u32 })
+        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(WayOut {
+            snap,
+            ticks: n as u32,
+            braked: false,
+        })
     }
 
     /// The snap nearest to `wanted` that leaves a way out, and that way; with the way `out` in hand.
     pub fn step(&self, head: &Moving, wanted: &Vector3<f32>, out: &WayOut) -> (Vector3<f32>, WayOut) {
         let mut snap = self.limited(wanted);
-        let (fallback, after) = self.follow(&head.difference, out);
+        let (fallback, after) = self.follow(head, out);
         for _ in 0..HALVINGS {
             if let Some(way) = self.way_out(&head.after(&snap, self.period)) {
                 return (snap, way);
@@ -200,24 +198,22 @@ impl Envelope {
         (fallback, after)
     }
 
-    /// A tick of a way out until d is zero, and what is left of it.
-    pub fn follow(&self, d: &Vector3<f32>, out: &WayOut) -> (Vector3<f32>, WayOut) {
+    /// A tick of a way out, and what is left of it. It ends at rest from acceleration, and stays there.
+    pub fn follow(&self, head: &Moving, out: &WayOut) -> (Vector3<f32>, WayOut) {
+        let Moving { acceleration: a, difference: d, .. } = head;
         if out.ticks > 0 {
             return (out.snap, WayOut { ticks: out.ticks - 1, ..*out });
         }
-        (-self.limited(d), WayOut::STRAIGHT)
-    }
-
-    /// A tick of bringing a to zero, from a way out that has ended; nearly to zero, then d.
-    pub fn fade(&self, head: &Moving) -> Vector3<f32> {
-        let Moving { acceleration: a, difference: d, .. } = head;
+        let braked = out.braked || *d == Vector3::zeros();
         let step = BRAKING_SHARE * self.snap;
         let distance = math::sqrt(a.norm_squared()) / step;
-        if distance <= FADED {
-            return -self.limited(d);
-        }
-        let fastest = (step * approach_speed(distance)).min(BRAKING_SHARE * self.jerk);
-        self.limited(&(a * (-fastest / (distance * step)) - d))
+        let snap = if !braked || distance == 0.0 {
+            -d
+        } else {
+            let fastest = (step * approach_speed(distance)).min(BRAKING_SHARE * self.jerk);
+            a * (-fastest / (distance * step)) - d
+        };
+        (self.limited(&snap), WayOut { braked, ..*out })
     }
 
     /// A snap brought down to Q along its own direction.
@@ -233,3 +229,5 @@ fn unit(y: &Vector3<f32>) -> Vector3<f32> {
     if length > 0.0 { y / length } else { Vector3::zeros() }
 }
 
+#[cfg(test)]
+mod tests;

@@ -33,7 +33,8 @@ pub(super) struct Outcome {
 /// N mu, and 4 N times the acceleration's factor in P_-2: (sigma^2 + mu^2 - mu)/2 + 2 mu + 1.
 fn moments(windows: &Windows) -> (i64, i64) {
     let (product, total) = (windows.product(), windows.span());
-    let spread: i64 = windows.lengths.iter().map(|length| (*length * *length) as i64 - 1).map(|s| product * s / 6).sum();
+    let spread: i64 =
+        windows.lengths.iter().map(|length| (*length * *length) as i64 - 1).map(|s| product * s / 6).sum();
     let mean = product / 2 * (total - 3);
     (mean, spread + mean * (total - 5) + 8 * mean + 4 * product)
 }

@@ -95,3 +95,5 @@ fn level(y: &Vector3<f32>, height: f32) -> Vector3<f32> {
     Vector3::new(y.x, y.y, height)
 }
 
+#[cfg(test)]
+mod tests;

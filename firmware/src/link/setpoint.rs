@@ -159,11 +159,9 @@ fn mixed(
     Ok(match (position.axes, velocity.axes) {
         (ALL, [false, false, false]) => Motion::Position(*place),
         ([false, false, false], ALL) => Motion::Velocity(*moving),
-        (ALL, ALL) => Motion::PositionVelocityAcceleration {
-            position: *place,
-            velocity: *moving,
-            acceleration: Vector3::zeros(),
-        },
+        (ALL, ALL) => {
+            Motion::PositionVelocityAcceleration { position: *place, velocity: *moving, acceleration: Vector3::zeros() }
+        }
         ([px, py, pz], [vx, vy, vz]) => {
             let together = px == py && vx == vy;
             if !(px || vx) || !(py || vy) || !(pz || vz) || axes.turned && !together {

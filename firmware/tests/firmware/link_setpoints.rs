@@ -90,7 +90,8 @@ fn a_mask_may_ask_for_position_on_some_axes_and_velocity_on_the_others() {
 fn setpoints_of_the_body_may_mix_height_and_velocity_across_but_not_ahead_and_across() {
     let [ahead, down] = [0b1, 0b100].map(Mask::from_bits_retain);
     let [va, vr, vd] = [0b1_000, 0b10_000, 0b100_000].map(Mask::from_bits_retain);
-    let Motion::Mixed { position, velocity } = asked_of_it(target(only(down | va | vr)), MavFrame::MAV_FRAME_BODY_FRD).motion
+    let Motion::Mixed { position, velocity } =
+        asked_of_it(target(only(down | va | vr)), MavFrame::MAV_FRAME_BODY_FRD).motion
     else {
         panic!()
     };
