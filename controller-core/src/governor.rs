@@ -3,30 +3,35 @@
 //! The certificate covers references inside its [`ReferenceBounds`]; people send steps. In between, once per tick:
 //!
 //! ```text
-//! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> three moving averages -> spline -> Reference
+//! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> two moving averages --\
+//!          -> stream -> feedback -> envelope --------------------------------------------+-> head -> average -> spline -> Reference
 //! ```
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
-//! - `smoother`: the averages in integers, and the quintic spline that makes the output one smooth function of time;
+//! - `averages`: the first two, of the command, in integers: a head that keeps the bounds whatever is asked;
+//! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the bounds;
+//! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time, and where the
+//!   averages begin;
 //! - `turning`: the same for the heading;
 //!
 //! What holds by construction: every bound, at every instant, whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
 //! psi'' likewise; from rest, a constant position is reached along the straight segment without overshoot, exactly (the
 //! averages of a monotone approach are monotone), and a stop is a straight braking of the command followed by the
-//! averages. Arrival from states in motion is shown by campaign.
+//! averages. Arrival from states in motion, and catching up with a stream, are shown by campaign.
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
 //! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and accelerating
-//! as it does, within the bounds; what changes within a second or two comes out smoothed, and a circle too tight for the
-//! averages comes out smaller.
+//! as it does; once near, a stream inside the bounds is flown as it is sent. One outside comes out smoothed and smaller.
 
 mod averages;
 mod braking;
 mod direct;
 mod envelope;
+mod following;
+mod goal;
 mod lead;
 mod limits;
 mod pursuit;
@@ -46,38 +51,17 @@ use crate::math::{single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
-use direct::{Direct, Drive, Sought};
-use envelope::{Bounds, Cylinder, Envelope, Moving};
+use direct::{Direct, Drive};
+use goal::Goal;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
 use smoother::{Knot, Smoother};
 use steady::Steady;
-use stream::{Point, Stream};
+use stream::Stream;
 use turning::{TurnGoal, Turning};
 use windows::Windows;
-
-/// What the position is to do: be at a point, or, on the axes without one, move. What moves is renewed or stops.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Goal {
-    /// Length units; zero on the axes without.
-    position: Vector3<i64>,
-    /// Which axes have a position.
-    held: [bool; 3],
-    /// How it moves, or how to move.
-    stream: Stream,
-}
-
-impl Goal {
-    /// Come to rest.
-    const STOP: Self = Self { position: Vector3::new(0, 0, 0), held: [false; 3], stream: Stream::STILL };
-
-    /// Whether it is a point, on every axis.
-    fn is_point(&self) -> bool {
-        self.held == [true; 3]
-    }
-}
 
 /// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -180,29 +164,6 @@ impl Governor {
         Ok(governor)
     }
 
-    /// Prepares the following of streams.
-    fn design_direct(&mut self, windows: &Windows, bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) {
-        let last = windows.lengths[2] as f32;
-        let [horizontal, vertical] =
-            [windows.horizontal, windows.vertical].map(|level| level / (windows.per_metre * period * period));
-        self.ahead = 0.5 * (last + 1.0) * period;
-        self.spread = ((last * last - 1.0) / 24.0 + 1.0 / 6.0) * period * period;
-        self.per_snap = windows.per_metre * windows.head() as f32 * period * period;
-        let bounds = Bounds {
-            speed: Cylinder {
-                horizontal: limits.horizontal_speed.min(bounds.horizontal_speed),
-                vertical: limits.vertical_speed,
-            },
-            acceleration: Cylinder { horizontal, vertical },
-            jerk: bounds.jerk,
-            snap: bounds.snap,
-        };
-        // Between the knot and the head acceleration may leave its chord by half of what jerk makes of that time.
-        let blur = 0.25 * bounds.jerk * self.ahead * self.ahead;
-        let envelope = Envelope::new(&bounds, blur, period);
-        self.direct.design(envelope, [horizontal, vertical], windows.span() as u32, windows.lengths[2] as u32, period);
-    }
-
     /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its rates are
     /// dropped). Without setpoints it is brought to a smooth stop.
     ///
@@ -252,14 +213,8 @@ impl Governor {
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         let held = position.map(|position| position.is_some());
-        let stream = if held != [true; 3] || !self.goal.is_point() || self.goal_age > self.timeout {
-            Stream::new(velocity, acceleration)
-        } else if self.goal_age == 0 {
-            // Two in a tick: how far apart, nobody knows.
-            Stream { velocity, acceleration, ..self.goal.stream }
-        } else {
-            self.goal.stream.followed_by(velocity, acceleration, self.goal_age as f32 * self.period)
-        };
+        let last = (self.goal_age <= self.timeout).then_some(&self.goal);
+        let stream = Goal::stream(held, velocity, acceleration, last, self.goal_age as f32 * self.period);
         let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
         self.goal = Goal { position, held, stream };
         self.goal_age = 0;
@@ -304,44 +259,6 @@ impl Governor {
         self.knot = self.smoother.knot();
         let Knot { position, velocity, acceleration, jerk, snap } = self.knot;
         Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
-    }
-
-    /// The head at hand: its acceleration is known, its velocity follows from the knot's.
-    fn moving(&self) -> Moving {
-        let scale = 1.0 / self.per_snap;
-        let head = self.smoother.head();
-        let acceleration = head.map(|head| single(head.acceleration) * scale);
-        Moving {
-            velocity: self.knot.velocity + (self.knot.acceleration + acceleration) * (0.5 * self.ahead),
-            acceleration,
-            difference: head.map(|head| single(head.jerk) * scale),
-        }
-    }
-
-    /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the `head`.
-    fn sought(&self, head: &Moving) -> Option<Sought> {
-        if !self.goal.is_point() || self.goal_age > self.timeout {
-            return None;
-        }
-        let (t, ahead, spread) = (self.period, self.ahead, self.spread);
-        let point = self.goal.stream.ahead((self.goal_age as f32 - 1.0) * t + ahead);
-        let Knot { velocity, acceleration, .. } = &self.knot;
-        // The knot's control point is beside it; the head has gone on from there.
-        let away = (self.goal.position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
-        let gone = velocity * ahead
-            + (acceleration * 2.0 + head.acceleration) * (ahead * ahead / 6.0)
-            + acceleration * (0.25 * t * t);
-        // What lies between makes turns smaller.
-        let gain = 1.0 + point.rate * point.rate * spread;
-        let error = Point {
-            position: away + point.position - gone,
-            velocity: point.velocity - head.velocity,
-            acceleration: point.acceleration - point.snap * spread - head.acceleration,
-            // The difference is half a tick old.
-            jerk: point.jerk * gain - head.difference / t - point.snap * (0.5 * t),
-            ..point
-        };
-        Some(Sought { point: Point { snap: point.snap * gain, ..point }, error })
     }
 
     /// The commanded acceleration of this tick.

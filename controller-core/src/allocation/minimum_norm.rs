@@ -79,7 +79,8 @@ impl MinimumNorm {
     pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
         let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
         // One comparison where all is well; a NaN compares false.
-        if !(sum_of_squares(&[&thrust, &wrench.torque]) <= STATE_RANGE * STATE_RANGE) {
+        let usual = sum_of_squares(&[&thrust, &wrench.torque]) <= STATE_RANGE * STATE_RANGE;
+        if !usual {
             check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
         }
         let asked = components(wrench);

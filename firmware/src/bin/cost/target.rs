@@ -192,9 +192,9 @@ fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
     let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
     let mut follows = true;
     for number in 0..3500_u32 {
-        let phase =
-            (f64::from(RATE * PERIOD * number as f32) / core::f64::consts::TAU * 18_446_744_073_709_551_616.0) as u64;
-        let (sin, cos) = math::sin_cos_turns(phase);
+        // In 2^-32 turns, then as a phase, which wraps.
+        let turned = f64::from(RATE * PERIOD * number as f32) / core::f64::consts::TAU * 4_294_967_296.0;
+        let (sin, cos) = math::sin_cos_turns((turned as u64) << 32);
         let out = Vector3::new(cos, sin, 0.0) * radius;
         if number % 5 == 0 {
             let velocity = Vector3::new(-sin, cos, 0.0) * (radius * RATE);
