@@ -1,7 +1,9 @@
 //! 100,000 random and adversarial setpoint streams against the reference governor.
 //!
 //! Each stream has its own bounds, limits, tick rate and start: at rest, or at any velocity, as a flight that regains its
-//! pose starts. Setpoints then come at 50 Hz or as the adversary likes, for a few seconds, and end in a constant one. Checked at every tick, in double precision and without allowance:
+//! pose starts. Setpoints then come at 50 Hz or as the adversary likes, for a few seconds, and end in a constant one. About one in five
+//! is a path sent with position, velocity and acceleration, inside the bounds or not, over a good link or a bad one, for up to
+//! 40 s. Checked at every tick, in double precision and without allowance:
 //!
 //! - every bound of Omega_r;
 //! - that position to snap and psi to psi'' are one motion: each derivative integrates to the one below. Between ticks
@@ -13,9 +15,10 @@
 
 mod adversary;
 mod case;
+mod path;
 mod witness;
 
-use adversary::Adversary;
+use adversary::{Adversary, Trouble};
 use case::{Case, Random};
 use controller_core::governor::{Governor, Memory, Motion, Setpoint, Turn};
 use controller_core::prelude::{Vector2, Vector3};
@@ -29,8 +32,8 @@ const PATIENCE: f32 = 150.0;
 fn fly(seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed);
     let case = Case::draw(&mut random);
-    let adversary = Adversary::draw(&mut random, &case);
     let mut start = case.resting(&mut random);
+    let adversary = Adversary::draw(&mut random, &case, &start.position);
     let moves = !matches!(adversary, Adversary::Constant) && random.below(3) > 0;
     if moves {
         let size = random.sized(0.1, 10.0);
@@ -42,12 +45,22 @@ fn fly(seed: u64, tally: &mut Tally) {
     governor.start(&start.position, &start.velocity, &start.heading).unwrap();
     let mut witness = Witness { case: &case, last: governor.tick() };
     witness.start(&start, tally);
-    let busy =
-        if matches!(adversary, Adversary::Constant) { 0 } else { (random.between(1.0, 5.0) / case.period) as u32 };
+    let busy = match adversary {
+        Adversary::Constant => 0.0,
+        Adversary::Following { .. } => random.between(5.0, 40.0),
+        _ => random.between(1.0, 5.0),
+    };
+    let busy = (busy / case.period) as u32;
     for tick in 0..busy {
         let now = witness.last;
         adversary.send(tick, &mut random, governor, &now, case.period);
         witness.see(governor.tick(), tally);
+        if let Adversary::Following { path, trouble: Trouble::None, .. } = adversary {
+            let [position, ..] = path.at(f64::from(tick + 1) * f64::from(case.period));
+            let miss = (witness.last.position - position).norm();
+            tally.sent += 1;
+            tally.followed += u64::from(f64::from(miss) < 0.01 * path.size());
+        }
     }
     let size = random.sized(1e-3, 20.0);
     let target = witness.last.position + random.vector(size);
@@ -113,9 +126,12 @@ fn a_hundred_thousand_streams_never_leave_the_bounds_and_all_arrive() {
             .collect();
         workers.into_iter().map(|worker| worker.join().unwrap()).fold(Tally::default(), |all, one| all.merged(&one))
     });
-    let Tally { ticks, moving, .. } = tally;
+    let Tally { ticks, moving, sent, followed, .. } = tally;
     println!("{ticks} ticks; {moving} starts in motion");
+    println!("{followed} of {sent} ticks within a hundredth of a path sent as it is");
     println!("nearest to the bounds (shares): {:.4?}; longest arrival {:.1} s", tally.nearest, tally.longest);
+    // Streams that are never followed directly prove nothing of it.
+    assert!(followed > sent / 8, "{followed} of {sent}");
     // Adversaries that stay far inside prove nothing.
     assert!(tally.nearest.iter().all(|nearest| *nearest > 0.99), "{:?}", tally.nearest);
 }

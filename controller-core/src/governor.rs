@@ -3,32 +3,42 @@
 //! The certificate covers references inside its [`ReferenceBounds`]; people send steps. In between, once per tick:
 //!
 //! ```text
-//! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> three moving averages -> spline -> Reference
+//! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> two moving averages --\
+//!          -> stream -> feedback -> envelope --------------------------------------------+-> head -> average -> spline -> Reference
 //! ```
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
-//! - `smoother`: the averages in integers, and the quintic spline that makes the output one smooth function of time;
+//! - `averages`: the first two, of the command, in integers: a head that keeps the bounds whatever is asked;
+//! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the bounds;
+//! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time, and where the
+//!   averages begin;
 //! - `turning`: the same for the heading;
 //!
 //! What holds by construction: every bound, at every instant, whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
 //! psi'' likewise; from rest, a constant position is reached along the straight segment without overshoot, exactly (the
 //! averages of a monotone approach are monotone), and a stop is a straight braking of the command followed by the
-//! averages. Arrival from states in motion is shown by campaign.
+//! averages. Arrival from states in motion, and catching up with a stream, are shown by campaign.
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
 //! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and accelerating
-//! as it does, within the bounds; what changes within a second or two comes out smoothed, and a circle too tight for the
-//! averages comes out smaller.
+//! as it does; once near, a stream inside the bounds is flown as it is sent. One outside comes out smoothed and smaller.
 
+mod averages;
 mod braking;
+mod direct;
+mod envelope;
+mod following;
+mod goal;
 mod lead;
 mod limits;
 mod pursuit;
 mod setpoint;
 mod smoother;
+mod steady;
+mod stream;
 mod turning;
 mod windows;
 
@@ -37,34 +47,21 @@ pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
+use crate::math::{single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
+use averages::Averages;
+use direct::{Direct, Drive};
+use goal::Goal;
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
 use setpoint::Parts;
 use smoother::{Knot, Smoother};
+use steady::Steady;
+use stream::Stream;
 use turning::{TurnGoal, Turning};
 use windows::Windows;
-
-/// What the position is to do: be at a point, or, without one, move. What moves is renewed or stops.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Goal {
-    /// Length units.
-    position: Option<Vector3<i64>>,
-    /// m/s.
-    velocity: Vector3<f32>,
-    /// m/s^2.
-    acceleration: Vector3<f32>,
-}
-
-impl Goal {
-    /// Come to rest.
-    const STOP: Self = Self { position: None, velocity: STILL, acceleration: STILL };
-}
-
-/// No motion.
-const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
 
 /// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,9 +73,15 @@ impl Memory {
         period: 0.0,
         timeout: 0,
         windows: Windows::NONE,
+        per_snap: 0.0,
+        ahead: 0.0,
+        spread: 0.0,
         pursuit: Pursuit::NONE,
         lead: Lead::NONE,
+        averages: Averages::NONE,
         smoother: Smoother::NONE,
+        direct: Direct::NONE,
+        knot: Knot::NONE,
         turning: Turning::NONE,
         goal: Goal::STOP,
         goal_age: 0,
@@ -94,9 +97,18 @@ pub struct Governor {
     /// Ticks after which what must be renewed is stale.
     timeout: u32,
     windows: Windows,
+    /// The head's snap of one m/s^2 per tick squared, as the integers have it.
+    per_snap: f32,
+    /// By how much the head is ahead of the knot, s, and half the variance of what lies between, s^2.
+    ahead: f32,
+    spread: f32,
     pursuit: Pursuit,
     lead: Lead,
+    averages: Averages,
     smoother: Smoother,
+    direct: Direct,
+    /// The last.
+    knot: Knot,
     turning: Turning,
     goal: Goal,
     goal_age: u32,
@@ -136,6 +148,7 @@ impl Governor {
         let Memory(governor) = memory;
         let windows = Windows::design(bounds, limits, period)?;
         governor.turning.design(bounds, limits, period)?;
+        governor.averages.design(&windows);
         governor.smoother.design(&windows, period);
         let horizontal_speed = limits.horizontal_speed.min(bounds.horizontal_speed);
         governor.pursuit = Pursuit::new(&windows, horizontal_speed, limits.vertical_speed, period);
@@ -144,6 +157,7 @@ impl Governor {
             variance: windows.variance() * period * period,
             acceleration: windows.horizontal / (windows.per_metre * period * period),
         };
+        governor.design_direct(&windows, bounds, limits, period);
         governor.windows = windows;
         governor.period = period;
         governor.timeout = windows::ticks(limits.timeout, period) as u32;
@@ -162,15 +176,34 @@ impl Governor {
         heading: &Heading,
     ) -> Result<(), InputError> {
         check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
-        self.smoother.start(&self.length(position), &self.length(&(velocity * self.period)));
+        let (position, speed) = (self.length(position), self.length(&(velocity * self.period)));
+        let ahead = self.windows.span() + 1;
+        let steady = |position: i64, speed: i64| {
+            // The trail, rounded to the nearest unit, and the two ticks that the control points are ahead.
+            Steady { commanded: position + ((speed * ahead + 1) >> 1), speed, acceleration: 0 }
+        };
+        self.go_on(&[steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)]);
+        self.direct.start();
         self.turning.start(turning::phase_of(heading));
         self.stop();
         Ok(())
     }
 
+    /// Goes on as if the command had always been in this steady acceleration.
+    fn go_on(&mut self, steady: &[Steady; 3]) {
+        let [x, y, z] = steady;
+        self.averages.start(
+            Vector3::new(x.commanded, y.commanded, z.commanded),
+            Vector3::new(x.speed, y.speed, z.speed),
+            Vector3::new(x.acceleration, y.acceleration, z.acceleration).map(|whole| whole as i32),
+        );
+        self.smoother.start(steady, &self.windows);
+        self.knot = self.smoother.knot();
+    }
+
     /// Metres as length units, no more than [`FARTHEST`].
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(|length| (length.clamp(-FARTHEST, FARTHEST)) as i64)
+        (metres * self.windows.per_metre).map(|length| whole(within(length, FARTHEST)))
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -179,7 +212,11 @@ impl Governor {
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
-        self.goal = Goal { position: position.map(|position| self.length(&position)), velocity, acceleration };
+        let held = position.map(|position| position.is_some());
+        let last = (self.goal_age <= self.timeout).then_some(&self.goal);
+        let stream = Goal::stream(held, velocity, acceleration, last, self.goal_age as f32 * self.period);
+        let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
+        self.goal = Goal { position, held, stream };
         self.goal_age = 0;
         if let Some((angle, rate)) = turn {
             self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
@@ -197,44 +234,55 @@ impl Governor {
     /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
     #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.pursue() == Vector3::zeros() && self.smoother.at_rest() && self.turning.at_rest(&self.turn_goal())
+        self.direct.is_averaged()
+            && self.pursue() == Vector3::zeros()
+            && self.smoother.at_rest(self.averages.commanded())
+            && self.turning.at_rest(&self.turn_goal())
     }
 
     /// The reference one period later.
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
-        self.smoother.push(&self.pursue());
+        let head = self.moving();
+        let snap = match self.direct.tick(&head, self.sought(&head).as_ref()) {
+            // To the nearest unit: so braking ends.
+            Drive::Snap(snap) => (snap * self.per_snap).map(|units| (units + 0.5_f32.copysign(units)) as i32),
+            Drive::Averages => self.averages.push(&self.pursue()),
+            Drive::Restarted => {
+                self.go_on(&self.smoother.steady(&self.windows));
+                self.averages.push(&self.pursue())
+            }
+        };
+        self.smoother.push(&snap);
         self.turning.tick(&self.turn_goal());
-        let Knot { position, velocity, acceleration, jerk, snap } = self.smoother.knot();
+        self.knot = self.smoother.knot();
+        let Knot { position, velocity, acceleration, jerk, snap } = self.knot;
         Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
     }
 
     /// The commanded acceleration of this tick.
     fn pursue(&self) -> Vector3<i32> {
-        let u = self.smoother.speed();
-        let Goal { position, velocity, acceleration } = &self.goal;
+        let u = self.averages.speed();
+        let Goal { position, held, stream } = &self.goal;
         let stale = self.goal_age > self.timeout;
-        let (velocity, acceleration) = if stale { (&STILL, &STILL) } else { (velocity, acceleration) };
-        let wanted = match position {
-            None => self.length(&(velocity * self.period)),
-            Some(position) => {
-                // The command at hand is where it was a tick ago.
-                let age = (self.goal_age as f32 - 1.0) * self.period;
-                let (ahead, feed) = self.lead.of(velocity, acceleration, age);
-                let error = position + self.length(&ahead) - self.smoother.commanded();
-                let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
-                self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration)
-            }
-        };
-        self.pursuit.towards_velocity(&wanted, &u)
+        let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
+        // The command at hand is where it was a tick ago.
+        let age = (self.goal_age as f32 - 1.0) * self.period;
+        let (ahead, feed) = self.lead.of(velocity, acceleration, age);
+        let away = position + self.length(&ahead) - self.averages.commanded();
+        let [x, y, z] = *held;
+        let error = Vector3::new(i64::from(x), i64::from(y), i64::from(z)).component_mul(&away);
+        let acceleration = acceleration * (self.windows.per_metre * self.period * self.period);
+        let wanted = self.pursuit.approach(&error, &self.length(&(feed * self.period)), &acceleration);
+        self.pursuit.towards_velocity(&wanted, u)
     }
 
     /// The heading's goal of this tick.
     fn turn_goal(&self) -> TurnGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
         let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
-        let phase = self.turn.phase.map(|phase| phase.wrapping_add((rate as f32 * lead) as i64));
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add(whole(single(rate) * lead)));
         TurnGoal { phase, rate }
     }
 }

@@ -64,6 +64,24 @@ pub fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
+/// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those in one
+/// instruction each, where the conversion of 64 bits is a call.
+#[must_use]
+pub fn single(x: i64) -> f32 {
+    let low = x as i32;
+    let high = (x.wrapping_sub(i64::from(low)) >> 32) as i32;
+    high as f32 * 4_294_967_296.0 + low as f32
+}
+
+/// The whole part of a number, exactly; beyond 2^61 it saturates, and of what is no number it is zero. In two halves, as [`single`].
+#[must_use]
+pub fn whole(x: f32) -> i64 {
+    const HALF: f32 = 2_147_483_648.0;
+    let high = (x * (1.0 / HALF)) as i32;
+    let low = (x - high as f32 * HALF) as i32;
+    (i64::from(high) << 31) + i64::from(low)
+}
+
 /// C's `sqrtf` for machines that have no C library, in one instruction.
 ///
 /// Under this name the code generator knows it, and where a call is optimised it puts the instruction itself in the call's

@@ -1,6 +1,7 @@
 //! Who sends the setpoints.
 
 use super::case::{Case, Random};
+use super::path::Path;
 use controller_core::governor::{Governor, Motion, Setpoint, Turn};
 use controller_core::prelude::{Reference, Vector3};
 use core::f32::consts::{PI, TAU};
@@ -24,14 +25,29 @@ pub enum Adversary {
     Moving { kind: u64 },
     /// Angles on both sides of ±180 degrees, and rates.
     Antipodes,
+    /// Along a path, at some rate: with jitter, with drop-outs, with other setpoints in between.
+    Following { path: Path, every: u32, trouble: Trouble },
     /// One setpoint from the start.
     Constant,
 }
 
+/// What is wrong with a link.
+#[derive(Clone, Copy)]
+pub enum Trouble {
+    /// Nothing.
+    None,
+    /// Setpoints come early and late.
+    Jitter,
+    /// Some are lost, sometimes for seconds.
+    Dropouts,
+    /// Others of another kind come in between, and the path jumps.
+    Switches,
+}
+
 impl Adversary {
-    pub fn draw(random: &mut Random, case: &Case) -> Self {
+    pub fn draw(random: &mut Random, case: &Case, here: &Vector3<f32>) -> Self {
         let [first, second] = case.windows();
-        match random.below(9) {
+        match random.below(11) {
             0 => Self::Jumps,
             1 => Self::Resonance { first, second },
             2 => Self::Reversals { ticks: random.sized(1.0, 200.0) as u32 },
@@ -40,6 +56,12 @@ impl Adversary {
             5 => Self::Broken,
             6 => Self::Moving { kind: random.below(4) },
             7 => Self::Antipodes,
+            8 | 9 => Self::Following {
+                path: Path::draw(random, case, here),
+                every: (random.sized(0.01, 0.1) / case.period).round().max(1.0) as u32,
+                trouble: [Trouble::None, Trouble::Jitter, Trouble::Dropouts, Trouble::Switches]
+                    [random.below(4) as usize],
+            },
             _ => Self::Constant,
         }
     }
@@ -49,9 +71,14 @@ impl Adversary {
         let along = Vector3::new(0.8, -0.6, 1.0);
         let sided = |positive: bool| if positive { along } else { -along };
         let side = |positive: bool| if positive { 1.0 } else { -1.0 };
-        let anywhere = |random: &mut Random| match random.below(3) {
+        let anywhere = |random: &mut Random| match random.below(4) {
             0 => Motion::Position(now.position + random.vector(10.0)),
             1 => Motion::Velocity(random.vector(8.0)),
+            2 => Motion::Mixed {
+                position: (now.position + random.vector(5.0)).data.0[0]
+                    .map(|place| (random.below(2) > 0).then_some(place)),
+                velocity: random.vector(5.0),
+            },
             _ => Motion::PositionVelocityAcceleration {
                 position: now.position + random.vector(5.0),
                 velocity: random.vector(5.0),
@@ -114,6 +141,20 @@ impl Adversary {
                     },
                 };
                 Setpoint { motion, turn: Turn::Angle { angle: rate * time, rate } }
+            }
+            Self::Following { path, every, trouble } => {
+                let time = f64::from(tick) * f64::from(period);
+                let (due, seconds) = (tick.is_multiple_of(every), time as u32);
+                let motion = match trouble {
+                    Trouble::None if due => path.motion(time),
+                    Trouble::Jitter if random.below(u64::from(every)) == 0 => path.motion(time),
+                    // Sent on time and lost, for a second now and then.
+                    Trouble::Dropouts if due && random.below(4) > 0 && seconds % 7 != 6 => path.motion(time),
+                    Trouble::Switches if due && seconds % 8 == 7 && tick.is_multiple_of(3) => anywhere(random),
+                    Trouble::Switches if due => path.motion(time + f64::from(seconds / 11)),
+                    _ => return,
+                };
+                Setpoint { motion, turn: Turn::Keep }
             }
             Self::Antipodes if tick.is_multiple_of(often) => {
                 let here = now.heading.direction().y.atan2(now.heading.direction().x);

@@ -9,6 +9,9 @@ pub struct Tally {
     pub ticks: u64,
     /// Starts in motion.
     pub moving: u64,
+    /// Ticks of undisturbed paths, and how many of them the reference was on.
+    pub sent: u64,
+    pub followed: u64,
     pub nearest: [f64; 6],
     pub longest: f32,
 }
@@ -17,6 +20,8 @@ impl Tally {
     pub fn merged(mut self, other: &Self) -> Self {
         self.ticks += other.ticks;
         self.moving += other.moving;
+        self.sent += other.sent;
+        self.followed += other.followed;
         self.longest = self.longest.max(other.longest);
         for (nearest, theirs) in self.nearest.iter_mut().zip(other.nearest) {
             *nearest = nearest.max(theirs);

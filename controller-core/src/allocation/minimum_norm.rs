@@ -11,7 +11,7 @@
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
 use crate::error::InputError;
-use crate::state::{STATE_RANGE, Wrench, check_vectors};
+use crate::state::{STATE_RANGE, Wrench, check_vectors, sum_of_squares};
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
@@ -37,7 +37,9 @@ impl Actuator {
 
     /// `thrust` moved into the rotor's range.
     pub(super) fn clip(&self, thrust: f32) -> f32 {
-        thrust.max(self.least).min(self.greatest)
+        // Not `max` and `min`, which are calls; a NaN becomes the least.
+        let thrust = if thrust > self.least { thrust } else { self.least };
+        if thrust < self.greatest { thrust } else { self.greatest }
     }
 }
 
@@ -73,19 +75,33 @@ impl MinimumNorm {
     ///
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`]; the law's own never are.
+    #[inline]
     pub fn allocate(&self, wrench: &Wrench) -> Result<Delivered, InputError> {
         let thrust = Vector3::new(wrench.thrust, 0.0, 0.0);
-        check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
-        let mut thrusts = self.preferred(&components(wrench));
-        let clipped = self.clip(&mut thrusts);
-        Ok(Delivered { achieved: self.wrench(&thrusts), thrusts, clipped })
+        // One comparison where all is well; a NaN compares false.
+        let usual = sum_of_squares(&[&thrust, &wrench.torque]) <= STATE_RANGE * STATE_RANGE;
+        if !usual {
+            check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
+        }
+        let asked = components(wrench);
+        let (mut thrusts, mut sum, mut clipped) = (Thrusts::new(), Vector4::zeros(), false);
+        // Rotor by rotor, what `preferred`, `clip` and `sum` do in three passes.
+        for actuator in &self.actuators {
+            let wanted = actuator.share.dot(&asked);
+            let thrust = actuator.clip(wanted);
+            // Also true for a NaN.
+            clipped |= thrust != wanted;
+            sum += actuator.column * thrust;
+            // There is room for as many as there are.
+            let _ = thrusts.push(thrust);
+        }
+        Ok(Delivered { thrusts, achieved: of_components(&sum), clipped })
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
-        let sum = self.sum(thrusts);
-        Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
+        of_components(&self.sum(thrusts))
     }
 
     /// The rotors, in their order.
@@ -121,4 +137,9 @@ impl MinimumNorm {
 /// (T, tau) as one vector.
 pub(super) fn components(wrench: &Wrench) -> Vector4<f32> {
     Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z)
+}
+
+/// One vector as (T, tau).
+fn of_components(sum: &Vector4<f32>) -> Wrench {
+    Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
 }

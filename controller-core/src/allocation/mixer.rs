@@ -29,6 +29,7 @@ use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors, normal};
 use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
 use crate::error::InputError;
 use crate::state::Wrench;
+use core::hint::cold_path;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector4};
 
@@ -134,12 +135,13 @@ impl Mixer {
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never are.
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
-        let asked = components(wrench);
         let Delivered { thrusts, achieved, clipped } = self.minimum_norm.allocate(wrench)?;
         if !clipped {
             let (roll_pitch_limited, thrust_limited, yaw_limited) = (false, false, false);
             return Ok(Allocation { thrusts, achieved, roll_pitch_limited, thrust_limited, yaw_limited });
         }
+        cold_path();
+        let asked = components(wrench);
         let given = self.attainable(&asked);
         let thrusts = self.deliver(&given);
         Ok(Allocation {

@@ -58,6 +58,10 @@ impl Fence {
                 self.contains(position)
             }
             Motion::Velocity(_) => true,
+            Motion::Mixed { position: [x, y, z], .. } => {
+                let Self { home, .. } = self;
+                self.contains(&Vector3::new(x.unwrap_or(home.x), y.unwrap_or(home.y), z.unwrap_or(home.z)))
+            }
         }
     }
 }
@@ -87,6 +91,16 @@ mod tests {
             assert_eq!(fence.allows(&setpoint), inside);
         }
         assert!(fence.allows(&Setpoint { motion: Motion::Velocity(Vector3::repeat(9.0)), turn: Turn::Keep }));
+        for (position, inside) in [
+            ([None, None, Some(4.0)], true),
+            ([None, None, Some(4.1)], false),
+            ([Some(13.0), Some(4.0), None], true),
+            ([Some(13.0), Some(4.1), None], false),
+            ([Some(15.1), None, None], false),
+        ] {
+            let motion = Motion::Mixed { position, velocity: Vector3::repeat(9.0) };
+            assert_eq!(fence.allows(&Setpoint { motion, turn: Turn::Keep }), inside, "{position:?}");
+        }
     }
 
     fn state(position: [f32; 3], roll: f32, pitch: f32, yaw: f32) -> State {

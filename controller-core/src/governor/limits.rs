@@ -3,6 +3,9 @@
 /// Ticks of commands remembered: what the three averages may span together.
 pub(super) const HISTORY: usize = 512;
 
+/// The longest last average, ticks.
+pub(super) const LAST: usize = HISTORY / 4;
+
 /// The greatest speed limit and starting speed, m/s.
 pub const SPEED_RANGE: f32 = 256.0;
 

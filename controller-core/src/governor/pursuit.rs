@@ -43,12 +43,12 @@ impl Cylinder {
 
 /// `y` as single precision has it.
 fn single(y: &Vector3<i64>) -> Vector3<f32> {
-    y.map(|component| component as f32)
+    y.map(math::single)
 }
 
 /// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
 fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
-    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(|x| x as i64) }
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
 }
 
 /// The law, in length units and ticks.

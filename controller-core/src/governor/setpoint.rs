@@ -24,6 +24,15 @@ pub enum Motion {
         /// m/s^2.
         acceleration: Vector3<f32>,
     },
+    /// Go to a position on the axes that have one, and move at a velocity on the others: across by velocity at a height that is
+    /// held, for one. Where an axis has a position, its velocity is that position's own. Velocities end in a smooth stop if not
+    /// renewed in time, positions are valid until replaced.
+    Mixed {
+        /// m.
+        position: [Option<f32>; 3],
+        /// m/s.
+        velocity: Vector3<f32>,
+    },
 }
 
 /// Which way to point. World frame, counter-clockwise from x seen from above.
@@ -53,9 +62,9 @@ pub struct Setpoint {
 
 /// A setpoint taken apart.
 pub(super) struct Parts {
-    /// The point to be at, if there is one, m.
-    pub position: Option<Vector3<f32>>,
-    /// Its velocity, or the one to move at, m/s.
+    /// The point to be at, on the axes that have one, m.
+    pub position: [Option<f32>; 3],
+    /// Its velocity, or on the other axes the one to move at, m/s.
     pub velocity: Vector3<f32>,
     /// m/s^2.
     pub acceleration: Vector3<f32>,
@@ -68,11 +77,12 @@ impl Setpoint {
     pub(super) fn checked(&self) -> Result<Parts, InputError> {
         let still = Vector3::zeros();
         let (position, velocity, acceleration) = match self.motion {
-            Motion::Position(position) => (Some(position), still, still),
-            Motion::Velocity(velocity) => (None, velocity, still),
+            Motion::Position(position) => (point(position), still, still),
+            Motion::Velocity(velocity) => ([None; 3], velocity, still),
             Motion::PositionVelocityAcceleration { position, velocity, acceleration } => {
-                (Some(position), velocity, acceleration)
+                (point(position), velocity, acceleration)
             }
+            Motion::Mixed { position, velocity } => (position, velocity, still),
         };
         let turn = match self.turn {
             Turn::Keep => None,
@@ -81,7 +91,7 @@ impl Setpoint {
         };
         let (angle, rate) = turn.unwrap_or_default();
         check_vectors(&[
-            (&position.unwrap_or_default(), POSITION_RANGE, "setpoint.position"),
+            (&Vector3::from(position.map(Option::unwrap_or_default)), POSITION_RANGE, "setpoint.position"),
             (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
             (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
             (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),
@@ -89,4 +99,10 @@ impl Setpoint {
         ])?;
         Ok(Parts { position, velocity, acceleration, turn })
     }
+}
+
+/// A position on every axis.
+fn point(position: Vector3<f32>) -> [Option<f32>; 3] {
+    let [x, y, z] = position.into();
+    [Some(x), Some(y), Some(z)]
 }

@@ -17,7 +17,7 @@ use super::limits::GovernorLimits;
 use super::windows::{ROUNDING_ROOM, ticks};
 use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
-use crate::math;
+use crate::math::{self, single, whole};
 use crate::reference::ReferenceBounds;
 use nalgebra::Vector2;
 
@@ -55,16 +55,22 @@ pub(super) struct Turning {
     length: usize,
     /// By how many ticks a steady turn comes out late.
     delay: f32,
-    period: f32,
+    /// What turns N times a difference into rad/s, and one over the period.
+    unit: f32,
+    per_period: f32,
     /// R and B in units a tick (squared).
     fastest: i64,
     strongest: i64,
     commanded: i64,
     rate: i64,
-    /// N (x_0 - Psi), and N times the newest first and second difference of Psi.
-    trail: i64,
+    /// N times the newest first and second difference of Psi.
     first: i64,
     second: i64,
+    /// The last Psi but one, the knot's: whole units, and N times the rest, which is a few units at most.
+    place: i64,
+    part: i64,
+    /// One over N, not too small: so what is a whole number of units goes over to the place, all of it.
+    per_length: f32,
 }
 
 impl Turning {
@@ -74,14 +80,17 @@ impl Turning {
         newest: 0,
         length: 0,
         delay: 0.0,
-        period: 0.0,
+        unit: 0.0,
+        per_period: 0.0,
         fastest: 0,
         strongest: 0,
         commanded: 0,
         rate: 0,
-        trail: 0,
         first: 0,
         second: 0,
+        place: 0,
+        part: 0,
+        per_length: 0.0,
     };
 
     /// Prepares for `bounds` that are positive.
@@ -98,8 +107,10 @@ impl Turning {
         let strongest = strongest_at(rate, bounds, period);
         require(strongest > 0, "reference_bounds.heading_second_derivative", Reason::NotPositive)?;
         self.length = length;
+        self.per_length = (1.0 / length as f32).next_up();
         self.delay = (length as f32 - 1.0) * 0.5 + 1.0;
-        self.period = period;
+        self.unit = 1.0 / (PER_RADIAN * length as f32 * period);
+        self.per_period = 1.0 / period;
         self.fastest = units(rate, period);
         self.strongest = strongest;
         Ok(())
@@ -108,8 +119,8 @@ impl Turning {
     /// Starts at rest at `phase`, units.
     pub fn start(&mut self, phase: i64) {
         self.history.fill(0);
-        (self.rate, self.trail, self.first, self.second) = (0, 0, 0, 0);
-        self.commanded = phase;
+        (self.rate, self.first, self.second, self.part) = (0, 0, 0, 0);
+        (self.commanded, self.place) = (phase, phase);
     }
 
     /// Advances by one tick towards `goal`.
@@ -129,12 +140,12 @@ impl Turning {
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
     fn approach(&self, phase: i64) -> i64 {
         let error = phase.wrapping_sub(self.commanded).wrapping_shl(SPARE_BITS) >> SPARE_BITS;
-        let strongest = BRAKING_SHARE * self.strongest as f32;
-        let distance = error as f32 / strongest;
+        let strongest = BRAKING_SHARE * single(self.strongest);
+        let distance = single(error) / strongest;
         if distance.abs() <= 1.0 {
             return error;
         }
-        (strongest * approach_speed(distance.abs()).copysign(distance)) as i64
+        whole(strongest * approach_speed(distance.abs()).copysign(distance))
     }
 
     fn push(&mut self, acceleration: i64) {
@@ -149,12 +160,16 @@ impl Turning {
         self.first += self.second;
         self.rate += acceleration;
         self.commanded = self.commanded.wrapping_add(self.rate);
-        self.trail += self.rate * self.length as i64 - self.first;
+        self.part += self.first - self.second;
+        let units = whole(single(self.part) * self.per_length);
+        self.place = self.place.wrapping_add(units);
+        self.part -= units * self.length as i64;
     }
 
     /// Whether nothing turns and `goal` asks for nothing else.
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
-        let still = self.rate == 0 && self.trail == 0 && self.first == 0 && self.second == 0;
+        let behind = self.commanded.wrapping_sub(self.place).wrapping_mul(self.length as i64) - self.part;
+        let still = self.rate == 0 && behind == 0 && self.first == 0 && self.second == 0;
         still && self.command(goal) == 0
     }
 
@@ -165,12 +180,10 @@ impl Turning {
 
     /// The heading at hand.
     pub fn heading(&self) -> Heading {
-        // A length of zero: never designed, so nothing trails.
-        let behind = (6 * (self.trail + self.first) - self.second).checked_div(6 * self.length as i64).unwrap_or(0);
-        let phase = self.commanded.wrapping_sub(behind);
-        let unit = 1.0 / (PER_RADIAN * self.length as f32 * self.period);
-        let rate = (2 * self.first - self.second) as f32 * (0.5 * unit);
-        Heading::from_phase((phase as u64) << SPARE_BITS, rate, self.second as f32 * (unit / self.period))
+        let second = single(self.second);
+        let phase = self.place.wrapping_add(whole((single(self.part) + second / 6.0) * self.per_length));
+        let rate = single(2 * self.first - self.second) * (0.5 * self.unit);
+        Heading::from_phase((phase as u64) << SPARE_BITS, rate, second * self.unit * self.per_period)
     }
 }
 

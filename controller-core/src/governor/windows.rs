@@ -12,7 +12,7 @@
 //! So T_1 = max(D/K_j, sqrt(2D/K_s)), T_2 = 2D/(K_s T_1): the least T_1 + T_2 that satisfies both. Should the windows not
 //! fit the memory, the authority A is lowered until they do: slower, never beyond a bound.
 
-use super::limits::{GovernorLimits, HISTORY, SPEED_RANGE};
+use super::limits::{GovernorLimits, HISTORY, LAST, SPEED_RANGE};
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
 use crate::reference::ReferenceBounds;
@@ -21,8 +21,9 @@ use crate::reference::ReferenceBounds;
 /// 6e-8 lie between an exact integer and a Euclidean norm).
 pub(super) const ROUNDING_ROOM: f32 = 4e-6;
 
-/// Greatest integer value of a commanded acceleration; three averages of it still fit 64 bits comfortably.
-const GREATEST_LEVEL: f32 = 131_072.0;
+/// Greatest integer value of a commanded acceleration: single precision has every whole number up to it, a comb of four still
+/// fits 32 bits, three averages 64.
+const GREATEST_LEVEL: f32 = 16_777_216.0;
 
 /// Fewest integer steps from zero to an acceleration bound.
 const FEWEST_LEVELS: f32 = 64.0;
@@ -50,7 +51,7 @@ impl Windows {
     /// The windows for `bounds`, all of them positive, at `period` seconds a tick.
     pub fn design(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         let third = (2 * ticks(0.5 * limits.snap_ramp, period)).max(2);
-        require(third <= HISTORY / 4, "governor.snap_ramp", Reason::NotAbove((HISTORY / 4) as f32 * period))?;
+        require(third <= LAST, "governor.snap_ramp", Reason::NotAbove(LAST as f32 * period))?;
         let mut share = 1.0 - ROUNDING_ROOM;
         let mut fitted = Self::lengths(bounds, share, period, third);
         for _ in 0..FITTING_STEPS {
@@ -81,11 +82,12 @@ impl Windows {
         let vertical = bounds.vertical_acceleration * share * period * period;
         let total: usize = lengths.iter().sum();
         let product: usize = lengths.iter().product();
-        // How far the averages may trail the command, times what they are divided by: kept below 2^62.
-        let trail = 2.0 * SPEED_RANGE * (total + 32) as f32 * period * product as f32;
+        let (product, total) = (product as f32, total as f32);
+        // The greatest sums: of speed, and of what a steady acceleration trails by. Kept below 2^61.
+        let sums = (4.0 * SPEED_RANGE * period * product).max(horizontal.max(vertical) * product * total * total);
         let mut per_metre = (1_u64 << FINEST_EXPONENT) as f32;
         for _ in 0..FINEST_EXPONENT {
-            if horizontal.max(vertical) * per_metre <= GREATEST_LEVEL && trail * per_metre < (1_u64 << 62) as f32 {
+            if horizontal.max(vertical) * per_metre <= GREATEST_LEVEL && sums * per_metre < (1_u64 << 61) as f32 {
                 break;
             }
             per_metre *= 0.5;
@@ -105,6 +107,17 @@ impl Windows {
     /// The product of the lengths: what sums are divided by to become averages.
     pub fn product(&self) -> i64 {
         self.lengths.iter().map(|&length| length as i64).product()
+    }
+
+    /// The product of the first two: what the head's sums are divided by.
+    pub fn head(&self) -> i64 {
+        let [first, second, _] = self.lengths;
+        first as i64 * second as i64
+    }
+
+    /// What the three span together, ticks.
+    pub fn span(&self) -> i64 {
+        self.lengths.iter().map(|&length| length as i64).sum()
     }
 
     /// By how many ticks a steady motion comes out late.

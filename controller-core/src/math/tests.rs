@@ -57,3 +57,25 @@ fn sqrt_is_correctly_rounded() {
         }
     }
 }
+
+#[test]
+fn integers_and_their_whole_parts_convert_in_halves_as_well_as_in_one() {
+    let mut worst: f64 = 0.0;
+    let mut x = 1_i64;
+    for step in 0..2_000_000_i64 {
+        x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let integer = x >> (step % 63);
+        let (found, exact) = (f64::from(single(integer)), integer as f64);
+        worst = worst.max((found - exact).abs() / exact.abs().max(1.0));
+        if integer.abs() < 1 << 24 {
+            assert_eq!(found, exact);
+        }
+        if integer.abs() < 1 << 61 {
+            let number = integer as f32 / 3.0;
+            assert_eq!((whole(number), whole(-number)), (number as i64, -number as i64), "{number}");
+        }
+    }
+    assert!(worst < 1.2e-7, "{worst:e}");
+    assert_eq!((whole(f32::NAN), whole(0.99), whole(-0.99)), (0, 0, 0));
+    assert!(whole(1e30) >= 1 << 61 && whole(-1e30) <= -(1 << 61));
+}

@@ -5,7 +5,8 @@
 //! | position | go there and rest |
 //! | velocity | move like that |
 //! | position and velocity, with or without acceleration | follow that moving point |
-//! | anything else: acceleration alone, single axes, forces | refused |
+//! | position on some axes, velocity on the others, or both | go there on those, move like that on these |
+//! | anything else: acceleration alone or with some axes only, nothing on an axis, forces | refused |
 //!
 //! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not looked
 //! at. Ranges are the governor's business: everything from here goes through it.
@@ -16,7 +17,8 @@
 //! | LOCAL_OFFSET_NED | from where the vehicle is | north, east, down | from where it points |
 //! | BODY_NED, BODY_OFFSET_NED, BODY_FRD | from where it is, ahead, right, down | ahead, right, down | from where it points |
 //!
-//! Ahead is where the vehicle points, level: it does not matter how it leans.
+//! Ahead is where the vehicle points, level: it does not matter how it leans. Axes that turn with the vehicle are none of the world's:
+//! there, what is asked ahead must be asked across too.
 
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};
@@ -128,34 +130,69 @@ pub fn setpoint(
 ) -> Result<Setpoint, SetpointRefusal> {
     let &SET_POSITION_TARGET_LOCAL_NED_DATA { x, y, z, vx, vy, vz, afx, afy, afz, type_mask: mask, .. } = message;
     let axes = axes(message.coordinate_frame, here)?;
-    let position = used([x, y, z], mask, NO_POSITION)?.map(|position| axes.place(position));
-    let velocity = used([vx, vy, vz], mask, NO_VELOCITY)?.map(|velocity| axes.vector(velocity));
-    let acceleration = used([afx, afy, afz], mask, NO_ACCELERATION)?.map(|acceleration| axes.vector(acceleration));
-    let motion = match (position, velocity, acceleration) {
-        (_, _, Some(_)) if mask.contains(Mask::POSITION_TARGET_TYPEMASK_FORCE_SET) => {
-            return Err(SetpointRefusal::Mask);
-        }
-        (Some(position), None, None) => Motion::Position(position),
-        (None, Some(velocity), None) => Motion::Velocity(velocity),
-        (Some(position), Some(velocity), acceleration) => {
-            let acceleration = acceleration.unwrap_or_else(Vector3::zeros);
-            Motion::PositionVelocityAcceleration { position, velocity, acceleration }
+    let position = Used::of([x, y, z], mask, NO_POSITION)?;
+    let velocity = Used::of([vx, vy, vz], mask, NO_VELOCITY)?;
+    let acceleration = Used::of([afx, afy, afz], mask, NO_ACCELERATION)?;
+    let place = axes.place(position.vector);
+    let (moving, accelerating) = (axes.vector(velocity.vector), axes.vector(acceleration.vector));
+    let motion = match (position.axes, velocity.axes, acceleration.axes) {
+        (_, _, [false, false, false]) => mixed(&axes, &place, &position, &moving, &velocity)?,
+        (ALL, ALL, ALL) if !mask.contains(Mask::POSITION_TARGET_TYPEMASK_FORCE_SET) => {
+            Motion::PositionVelocityAcceleration { position: place, velocity: moving, acceleration: accelerating }
         }
         _ => return Err(SetpointRefusal::Mask),
     };
     Ok(Setpoint { motion, turn: turn(message, axes.from)? })
 }
 
-/// A vector, unless the mask sets it aside. All three axes count, or none.
-fn used(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Option<[f32; 3]>, SetpointRefusal> {
-    if mask.contains(ignored) {
-        return Ok(None);
+/// Every axis.
+const ALL: [bool; 3] = [true; 3];
+
+/// Position, velocity, or some of each, axis by axis; nothing on an axis is refused.
+fn mixed(
+    axes: &Axes<'_>,
+    place: &Vector3<f32>,
+    position: &Used,
+    moving: &Vector3<f32>,
+    velocity: &Used,
+) -> Result<Motion, SetpointRefusal> {
+    Ok(match (position.axes, velocity.axes) {
+        (ALL, [false, false, false]) => Motion::Position(*place),
+        ([false, false, false], ALL) => Motion::Velocity(*moving),
+        (ALL, ALL) => {
+            Motion::PositionVelocityAcceleration { position: *place, velocity: *moving, acceleration: Vector3::zeros() }
+        }
+        ([px, py, pz], [vx, vy, vz]) => {
+            let together = px == py && vx == vy;
+            if !(px || vx) || !(py || vy) || !(pz || vz) || axes.turned && !together {
+                return Err(SetpointRefusal::Mask);
+            }
+            // North is the law's y.
+            let [x, y] = if axes.turned { [px, py] } else { [py, px] };
+            let on = |is: bool, place: f32| is.then_some(place);
+            Motion::Mixed { position: [on(x, place.x), on(y, place.y), on(pz, place.z)], velocity: *moving }
+        }
+    })
+}
+
+/// What of a vector a mask leaves: zero where it sets an axis aside.
+struct Used {
+    vector: [f32; 3],
+    axes: [bool; 3],
+}
+
+impl Used {
+    fn of(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Self, SetpointRefusal> {
+        // The bits of a vector are neighbours, x lowest.
+        let first = ignored.bits().trailing_zeros();
+        let axes = [0, 1, 2].map(|axis| mask.bits() >> (first + axis) & 1 == 0);
+        let [x, y, z] = vector;
+        let [has_x, has_y, has_z] = axes;
+        let kept = |has: bool, component: f32| if has { component } else { 0.0 };
+        let vector = [kept(has_x, x), kept(has_y, y), kept(has_z, z)];
+        let finite = vector.iter().all(|component| component.is_finite());
+        if finite { Ok(Self { vector, axes }) } else { Err(SetpointRefusal::NotFinite) }
     }
-    if mask.intersects(ignored) {
-        return Err(SetpointRefusal::Mask);
-    }
-    let finite = vector.iter().all(|component| component.is_finite());
-    if finite { Ok(Some(vector)) } else { Err(SetpointRefusal::NotFinite) }
 }
 
 /// Which way to point: from north, or from where the vehicle points.

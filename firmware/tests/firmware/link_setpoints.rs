@@ -69,6 +69,47 @@ fn the_type_mask_says_what_a_setpoint_is() {
 }
 
 #[test]
+fn a_mask_may_ask_for_position_on_some_axes_and_velocity_on_the_others() {
+    let [north, east, down] = [0b1, 0b10, 0b100].map(Mask::from_bits_retain);
+    let [vn, ve, vd] = [0b1_000, 0b10_000, 0b100_000].map(Mask::from_bits_retain);
+    for (used, position, velocity) in [
+        // Across by velocity at a height; to a place, up or down by velocity.
+        (down | vn | ve, [None, None, Some(3.0)], [0.2, 0.1, 0.0]),
+        (north | east | vd, [Some(2.0), Some(1.0), None], [0.0, 0.0, 0.3]),
+        // North is the law's y.
+        (north | ve | vd, [None, Some(1.0), None], [0.2, 0.0, 0.3]),
+        // A height that rises, too.
+        (down | VELOCITY, [None, None, Some(3.0)], [0.2, 0.1, 0.3]),
+    ] {
+        let motion = Motion::Mixed { position, velocity: velocity.into() };
+        assert_eq!(accepted(&target(only(used))), Some(Setpoint { motion, turn: Turn::Keep }), "{used:?}");
+    }
+}
+
+#[test]
+fn setpoints_of_the_body_may_mix_height_and_velocity_across_but_not_ahead_and_across() {
+    let [ahead, down] = [0b1, 0b100].map(Mask::from_bits_retain);
+    let [va, vr, vd] = [0b1_000, 0b10_000, 0b100_000].map(Mask::from_bits_retain);
+    let Motion::Mixed { position, velocity } =
+        asked_of_it(target(only(down | va | vr)), MavFrame::MAV_FRAME_BODY_FRD).motion
+    else {
+        panic!()
+    };
+    // 3 m up from where it is; 0.1 m/s north and 0.2 m/s east.
+    assert_eq!(position, [None, None, Some(6.0)]);
+    assert!((velocity - Vector3::new(0.2, 0.1, 0.0)).norm() < 1e-6, "{velocity}");
+    let shared = Local::new();
+    shared.report.put(Report { mode: Mode::Flying, state: Some(leaning_north()), ..Report::NONE }, 0);
+    let message = SET_POSITION_TARGET_LOCAL_NED_DATA {
+        coordinate_frame: MavFrame::MAV_FRAME_BODY_FRD,
+        ..target(only(ahead | vr | vd))
+    };
+    Fed::new(&shared).message(&message, 0);
+    assert!(shared.setpoint.get().is_none());
+    assert_eq!(texts(&shared), ["Setpoint refused: type mask not supported"]);
+}
+
+#[test]
 fn masks_that_say_nothing_flyable_are_refused_in_words() {
     let x = Mask::POSITION_TARGET_TYPEMASK_X_IGNORE;
     let force = Mask::POSITION_TARGET_TYPEMASK_FORCE_SET;
@@ -78,8 +119,12 @@ fn masks_that_say_nothing_flyable_are_refused_in_words() {
         only(ACCELERATION),
         only(POSITION | ACCELERATION),
         only(VELOCITY | ACCELERATION),
+        // Nothing on an axis.
         only(x),
-        only(POSITION).difference(VELOCITY).union(Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE),
+        only(POSITION.difference(x) | YAW),
+        only(VELOCITY.difference(Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE)),
+        // Acceleration on some axes.
+        only(POSITION | VELOCITY | Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE),
         only(POSITION | VELOCITY | ACCELERATION) | force,
     ] {
         let shared = Local::new();

@@ -14,6 +14,7 @@ use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::law::Law;
+use controller_core::math;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
@@ -81,6 +82,12 @@ fn measure() -> bool {
         return false;
     }
     governing.print("governor tick");
+    let mut following = Cost::default();
+    if !follow(&counter, &embedded, &mut following) {
+        hprintln!("the governor does not follow a circle");
+        return false;
+    }
+    following.print("governor tick, following a circle");
     if !estimation::measure(&counter) {
         hprintln!("the estimator does not believe an exact pose");
         return false;
@@ -171,6 +178,41 @@ const TUMBLING: State = State {
     attitude: Quaternion::from_vector(nalgebra::Vector4::new(1.0, 0.0, 0.0, 0.0)),
     angular_velocity: Vector3::new(10.0, -8.0, 6.0),
 };
+
+/// Half a minute of the governor following a circle inside the bounds, sent 20 times a second; the last ten seconds count.
+fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
+    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
+    const RATE: f32 = 1.0;
+    let bounds = configuration.bounds();
+    // At one radian a second all derivatives are as great as the radius.
+    let radius = 0.7 * bounds.horizontal_acceleration.min(bounds.jerk).min(bounds.snap).min(bounds.horizontal_speed);
+    let Ok(governor) = Governor::new(bounds, &GovernorLimits::default(), PERIOD, MEMORY.take()) else {
+        return false;
+    };
+    let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
+    let mut follows = true;
+    for number in 0..3500_u32 {
+        // In 2^-32 turns, then as a phase, which wraps.
+        let turned = f64::from(RATE * PERIOD * number as f32) / core::f64::consts::TAU * 4_294_967_296.0;
+        let (sin, cos) = math::sin_cos_turns((turned as u64) << 32);
+        let out = Vector3::new(cos, sin, 0.0) * radius;
+        if number % 5 == 0 {
+            let velocity = Vector3::new(-sin, cos, 0.0) * (radius * RATE);
+            let motion =
+                Motion::PositionVelocityAcceleration { position: out, velocity, acceleration: -out * (RATE * RATE) };
+            if governor.accept(&Setpoint { motion, turn: Turn::Keep }).is_err() {
+                return false;
+            }
+        }
+        let (instructions, reference) = counter.short(|| tick(governor));
+        if number >= 2500 {
+            cost.add(instructions);
+            // A tick later than sent.
+            follows &= (reference.position - out).norm() < radius * RATE * PERIOD + 0.001;
+        }
+    }
+    follows
+}
 
 /// A minute of the governor under steps of position: there and back every ten seconds.
 fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
