@@ -10,6 +10,7 @@
 //! | [`streams`] | which messages go out by the clock, and how often |
 //! | [`telemetry`] | what the vehicle knows as messages |
 //! | [`origin`] | a local frame on the globe |
+//! | [`plans`], [`files`] | answers to clients that ask for missions and files |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
@@ -20,8 +21,10 @@
 
 pub mod command;
 mod commander;
+pub mod files;
 pub mod frame;
 pub mod origin;
+pub mod plans;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;
