@@ -31,7 +31,8 @@ class Vehicle:
             [str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         self.lines = []
-        threading.Thread(target=self._read, daemon=True).start()
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
 
     def _read(self):
         for line in self.process.stdout:
@@ -58,6 +59,8 @@ class Vehicle:
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise
+        # The last line may still be on its way.
+        self.reader.join(10)
         if kind is not None:
             print("\n".join(f"    | {line}" for line in self.lines[-60:]))
             return
