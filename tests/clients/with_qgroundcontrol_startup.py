@@ -17,7 +17,7 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import all as m  # noqa: E402
 
-from vehicle import Vehicle  # noqa: E402
+from vehicle import vehicle  # noqa: E402
 
 # s; tries are all of them, the first included.
 HEARTBEAT = 1.0
@@ -254,8 +254,8 @@ STATES = [
 
 
 def main():
-    with Vehicle() as vehicle:
-        station = Station(vehicle.ground)
+    with vehicle() as flown:
+        station = Station(flown.ground)
         heartbeat = station.wait(lambda message: message.get_type() == "HEARTBEAT", 10.0)
         assert heartbeat is not None and heartbeat.autopilot == m.MAV_AUTOPILOT_GENERIC, heartbeat
         for name, state in STATES:

@@ -91,7 +91,7 @@ fn nobody_is_waited_for_without_end() {
 fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
     let (mut port, mut board) = connected(LONG);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let session = Session { duration: Some(0.03), pose_until: Some(0.02) };
+    let session = Session { duration: Some(0.03), pose_until: Some(0.02), speed: None };
     let board = std::thread::spawn(move || {
         for tick in 0..3 {
             let time = 5_000 + 10_000 * tick;
@@ -108,7 +108,7 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
             assert!((force - Vector3::z() * 9.81).norm() < 1e-4, "{force}");
         }
     });
-    let summary = serve(&scenario, &mut port, &session, None).unwrap();
+    let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap();
     assert_eq!((summary.pace.ticks(), summary.end), (3, End::Over));
     assert!(summary.to_string().contains(", 0 missed"), "{summary}");
@@ -137,8 +137,8 @@ fn heard_in_a_noisy_session() -> Vec<u8> {
         }
         bytes
     });
-    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None };
-    serve(&scenario, &mut port, &session, None).unwrap();
+    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed: None };
+    serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap()
 }
 
