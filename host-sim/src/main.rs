@@ -150,11 +150,11 @@ fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {
 
 fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
-    let session = arguments.session()?;
+    let (session, ground) = (arguments.session()?, arguments.ground()?);
     let (interrupt, patience) = (watch()?, arguments.patience()?);
     let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));
-    let clients = match arguments.ground()? {
+    let clients = match ground {
         None => None,
         Some((line, ports)) => {
             let relay = Relay::open(line, &ports, patience, &interrupt).map_err(|error| error.to_string())?;

@@ -162,10 +162,35 @@ fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_
 }
 
 #[test]
+fn a_session_is_held_to_a_speed_of_this_desks_time() {
+    const TICKS: u64 = 20;
+    let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
+    let took = |speed| {
+        let (mut port, mut board) = connected(LONG);
+        let board = std::thread::spawn(move || {
+            for tick in 1..=TICKS {
+                board.write_all(&command(10_000 * tick, 0.0)).unwrap();
+                while heard::<HIL_SENSOR_DATA>(&mut board).is_none() {}
+            }
+        });
+        let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed };
+        let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
+        board.join().unwrap();
+        assert_eq!(summary.pace.ticks(), TICKS);
+        summary.took
+    };
+    // 0.2 s of the vehicle's; the first tick starts the clock.
+    let (free, held) = (took(None), took(Some(0.25)));
+    assert!((Duration::from_millis(760)..LONG).contains(&held) && free < held, "{free:?} {held:?}");
+}
+
+#[test]
 fn a_command_that_is_no_number_ends_the_session_in_words() {
     let (mut port, mut board) = connected(LONG);
     board.write_all(&command(5_000, f32::NAN)).unwrap();
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None) else { panic!("flown") };
+    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None, None) else {
+        panic!("flown")
+    };
     assert!(what.contains("0 to 1"), "{what}");
 }
