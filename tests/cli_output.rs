@@ -58,6 +58,24 @@ fn a_report_that_standard_output_does_not_take_exits_with_2() {
 }
 
 #[test]
+fn a_session_without_a_speed_or_with_two_equal_ports_is_refused_by_name() {
+    let directory = directory("hil-arguments");
+    std::fs::write(directory.join("study.toml"), STUDY).unwrap();
+    for (wrong, named) in [
+        (&["--speed", "0"][..], "--speed: must be from 0.1 to 100, found 0"),
+        (
+            &["--ground", "127.0.0.1:1", "--ground-port", "14540"],
+            "--offboard-port, --ground-port, --local-port: must be three",
+        ),
+    ] {
+        let arguments = [&["hil", "study.toml", "--connect", "127.0.0.1:1"], wrong].concat();
+        let output = command(&directory, &arguments).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.contains(named), "{:?}: {said}", output.status);
+    }
+}
+
+#[test]
 fn an_answer_that_standard_output_does_not_take_exits_with_2() {
     let directory = directory("law");
     let mut child =

@@ -11,10 +11,11 @@
 //! | [`telemetry`] | what the vehicle knows as messages |
 //! | [`origin`] | a local frame on the globe |
 //! | [`download`] | a recording, part by part |
+//! | [`plans`], [`files`] | answers to clients that ask for missions and files |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
-//! both protocol versions are understood, version 2 is sent, without extension fields. Nothing is signed: whoever is on the line
+//! both protocol versions are understood, version 2 is sent, without extension fields but one ([`plans`]). Nothing is signed: whoever is on the line
 //! commands. What a message's fields are is the `mavlink` crate's to say: only the types that matter here are decoded, each by
 //! itself, because matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the
 //! dialect does not know (a frame, a command, a type) is none.
@@ -22,8 +23,10 @@
 pub mod command;
 mod commander;
 pub mod download;
+pub mod files;
 pub mod frame;
 pub mod origin;
+pub mod plans;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;

@@ -38,7 +38,7 @@ pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use queue::{Full, Queue};
-pub use reply::{Asked, Ping, Procedure, Reply};
+pub use reply::{Asked, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
 use crate::link::origin::Origin;

@@ -115,6 +115,13 @@ pub struct SitlArguments {
     /// Keep parameters in this file from one session to the next
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
+    #[command(flatten)]
+    ports: PortArguments,
+}
+
+/// Where MAVLink clients are.
+#[derive(Args)]
+struct PortArguments {
     /// Port at which offboard clients listen
     #[arg(long, value_name = "PORT", default_value_t = Ports::default().offboard)]
     offboard_port: u16,
@@ -154,6 +161,14 @@ pub struct HilArguments {
     /// Write a row for each command: state a period later, commands, thrust, the command's own time in us
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
+    /// Let the vehicle's time pass at most so many times as fast as the desk's, 0.1 to 100 [default: as fast as both sides go]
+    #[arg(long, value_name = "FACTOR")]
+    speed: Option<f64>,
+    /// Find the flight controller's line for ground stations at this address, and hand it to MAVLink clients by UDP, as sitl does
+    #[arg(long, value_name = "HOST:PORT")]
+    ground: Option<String>,
+    #[command(flatten)]
+    ports: PortArguments,
 }
 
 /// What a search is asked for.
@@ -232,6 +247,9 @@ With QEMU, from the top of the repository (this firmware's emulated board; its s
     -serial tcp:127.0.0.1:5760,server=on,nodelay=on -serial tcp:127.0.0.1:5761,server=on,wait=off,nodelay=on \\
     -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
   cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
+The two stay in lock-step however slow they are. For clients that live in the desk's time (MAVSDK, MAVProxy and so on), add
+--ground 127.0.0.1:5761 to have the second serial port on UDP 14540 and 14550, and --speed to keep the vehicle's time steady.
+
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
 Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too many for a period of 10 ms.
 
@@ -258,30 +276,44 @@ Faults, in seconds of the vehicle's time:
 A line of status each second, and every text of the vehicle's, go to standard output. The exit status is 0 after --duration, 130 or 143
 when interrupted, 2 for what cannot be used.";
 
-impl SitlArguments {
-    /// The session.
+/// A session's speed, if it is one.
+fn speed(speed: f64) -> Result<f64, String> {
+    let possible = (SPEED_MIN..=SPEED_MAX).contains(&speed);
+    possible.then_some(speed).ok_or_else(|| format!("--speed: must be from {SPEED_MIN} to {SPEED_MAX}, found {speed}"))
+}
+
+impl PortArguments {
+    /// The ports.
     ///
     /// # Errors
-    /// Names the argument that is no speed, no time, or no set of ports.
-    pub fn session(&self) -> Result<sitl::Session, String> {
-        if !(SPEED_MIN..=SPEED_MAX).contains(&self.speed) {
-            return Err(format!("--speed: must be from {SPEED_MIN} to {SPEED_MAX}, found {}", self.speed));
-        }
-        if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
-            return Err(format!("--duration: must not be negative, found {duration}"));
-        }
+    /// If they are not three, or one is none.
+    fn ports(&self) -> Result<Ports, String> {
         let ports = Ports { offboard: self.offboard_port, ground: self.ground_port, local: self.local_port };
         if ports.local == ports.offboard || ports.local == ports.ground || ports.offboard == ports.ground {
             return Err("--offboard-port, --ground-port, --local-port: must be three ports".to_owned());
         }
         let named =
             [("--offboard-port", ports.offboard), ("--ground-port", ports.ground), ("--local-port", ports.local)];
-        if let Some((name, _)) = named.into_iter().find(|(_, port)| *port == 0) {
-            return Err(format!("{name}: must be from 1 to 65535, found 0"));
+        match named.into_iter().find(|(_, port)| *port == 0) {
+            Some((name, _)) => Err(format!("{name}: must be from 1 to 65535, found 0")),
+            None => Ok(ports),
+        }
+    }
+}
+
+impl SitlArguments {
+    /// The session.
+    ///
+    /// # Errors
+    /// Names the argument that is no speed, no time, or no set of ports.
+    pub fn session(&self) -> Result<sitl::Session, String> {
+        let speed = speed(self.speed)?;
+        if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
+            return Err(format!("--duration: must not be negative, found {duration}"));
         }
         Ok(sitl::Session {
-            ports,
-            speed: self.speed,
+            ports: self.ports.ports()?,
+            speed,
             duration: self.duration,
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
@@ -322,7 +354,15 @@ impl HilArguments {
                 return Err(format!("{name}: must not be negative, found {time}"));
             }
         }
-        Ok(Session { duration: self.duration, pose_until: self.pose_until })
+        Ok(Session { duration: self.duration, pose_until: self.pose_until, speed: self.speed.map(speed).transpose()? })
+    }
+
+    /// The line for ground stations, and the clients it is handed to.
+    ///
+    /// # Errors
+    /// Names the ports that are none.
+    pub fn ground(&self) -> Result<Option<(&str, Ports)>, String> {
+        self.ground.as_deref().map(|line| Ok((line, self.ports.ports()?))).transpose()
     }
 }
 

@@ -8,19 +8,23 @@
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs, the
 //! flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far the vehicle has moved since.
 //! The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is [`senses`]' to say. Time is the
-//! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]).
+//! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]). A session may be held to a speed, for
+//! MAVLink clients that live in this desk's time and come by [`relay`].
 
 pub mod answer;
 pub mod messages;
 pub mod pace;
 pub mod port;
+pub mod relay;
 pub mod senses;
 pub mod vehicle;
 
 use crate::progress::Progress;
+use crate::sitl::pace::Pace as Speed;
 use crate::whole_file::WholeFile;
 use pace::Pace;
 use port::{Port, PortError};
+use relay::Relay;
 use scenario::Scenario;
 use senses::Senses;
 use std::fmt;
@@ -36,6 +40,8 @@ pub struct Session {
     pub duration: Option<f64>,
     /// Vehicle time from which poses are withheld, s.
     pub pose_until: Option<f64>,
+    /// How many times as fast as the desk's the vehicle's time may pass; none: as fast as both sides go.
+    pub speed: Option<f64>,
 }
 
 /// Why a session could not be run, or not to its end.
@@ -107,12 +113,29 @@ impl fmt::Display for Summary {
     }
 }
 
+/// Clients that are served meanwhile, and where what they may want to know is shown.
+pub struct Clients<'a> {
+    /// Their line to the flight controller.
+    pub relay: Relay,
+    /// Takes lines to show: a status each second of the desk's time, and the vehicle's texts.
+    pub tell: &'a mut dyn FnMut(&str),
+}
+
+/// Time between lines of status, by the desk's clock.
+const STATUS: Duration = Duration::from_secs(1);
+
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or somebody
 /// interrupts.
 ///
 /// # Errors
 /// [`HilError`].
-pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Option<&Path>) -> Result<Summary, HilError> {
+pub fn serve(
+    scenario: &Scenario,
+    port: &mut Port,
+    session: &Session,
+    log: Option<&Path>,
+    mut clients: Option<Clients<'_>>,
+) -> Result<Summary, HilError> {
     let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
     let mut senses = Senses::new(scenario);
     let mut log = log.map(Log::create).transpose().map_err(HilError::Log)?;
@@ -123,6 +146,8 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
     let mut pace = Pace::new(scenario.timing.period_us);
     let mut touchdowns = Vec::new();
     let mut started = None;
+    let mut speed = None;
+    let mut shown = Instant::now();
     let end = loop {
         if end.is_some_and(|end| pace.ticks() >= end) {
             break End::Over;
@@ -150,7 +175,19 @@ pub fn serve(scenario: &Scenario, port: &mut Port, session: &Session, log: Optio
         if pose_end.is_some_and(|end| tick >= end) {
             answer.poses.clear();
         }
+        if let Some(factor) = session.speed {
+            // The answer is of the period's end.
+            speed.get_or_insert_with(|| Speed::new(factor)).wait(pace.ticks() * scenario.timing.period_us);
+        }
         port.answer(&answer).map_err(HilError::Port)?;
+        if let Some(Clients { relay, tell }) = &mut clients {
+            relay.texts().iter().for_each(|text| tell(&format!("{time:9.2} s  \"{text}\"")));
+            if shown.elapsed() >= STATUS {
+                shown = Instant::now();
+                let [x, y, z]: [f64; 3] = moved.state.position.into();
+                tell(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
+            }
+        }
         if let Some(progress) = &mut progress {
             progress.show(pace.ticks());
         }

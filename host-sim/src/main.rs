@@ -8,7 +8,8 @@ use host_sim::certify::certify;
 use host_sim::claims;
 use host_sim::fly::{FlyError, fly};
 use host_sim::hil::port::Port;
-use host_sim::hil::{self, End, HilError};
+use host_sim::hil::relay::Relay;
+use host_sim::hil::{self, Clients, End, HilError};
 use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
@@ -149,10 +150,18 @@ fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {
 
 fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
-    let session = arguments.session()?;
-    let mut port =
-        Port::open(&arguments.address()?, arguments.patience()?, &watch()?).map_err(|error| error.to_string())?;
-    match hil::serve(&scenario, &mut port, &session, arguments.log.as_deref()) {
+    let (session, ground) = (arguments.session()?, arguments.ground()?);
+    let (interrupt, patience) = (watch()?, arguments.patience()?);
+    let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
+    let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));
+    let clients = match ground {
+        None => None,
+        Some((line, ports)) => {
+            let relay = Relay::open(line, &ports, patience, &interrupt).map_err(|error| error.to_string())?;
+            Some(Clients { relay, tell: &mut tell })
+        }
+    };
+    match hil::serve(&scenario, &mut port, &session, arguments.log.as_deref(), clients) {
         Ok(summary) => {
             print_text(&format!("{}: {summary}\n", scenario.name))?;
             let signal = if let End::Interrupted(signal) = summary.end { Some(signal) } else { None };

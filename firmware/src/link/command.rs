@@ -123,6 +123,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         }
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => DENIED,
         // What older clients say for REQUEST_MESSAGE.
+        MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Tell(Reply::Message(Kind::HomePosition)),
         MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Tell(Reply::Message(Kind::AutopilotVersion)),
         MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION => Action::Tell(Reply::Message(Kind::ProtocolVersion)),
         _ => Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),

@@ -20,10 +20,11 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA,
-    LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA,
-    MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-    SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, TIMESYNC_DATA,
+    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA,
+    LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA,
+    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA,
+    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    TIMESYNC_DATA,
 };
 
 mod commands;
@@ -132,6 +133,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
             MISSION_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::mission_list),
             MISSION_CLEAR_ALL_DATA::ID => self.decoded(frame, Self::mission_clear),
+            FILE_TRANSFER_PROTOCOL_DATA::ID => self.file(frame),
             TIMESYNC_DATA::ID => self.decoded(frame, Self::time_sync),
             Ping::ID => self.decoded(frame, Self::ping),
             PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),

@@ -3,7 +3,9 @@
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
 use super::download::Download;
+use super::files::NoFiles;
 use super::origin::Origin;
+use super::plans::About;
 use super::streams::{Schedule, interval_of_rate};
 use super::telemetry::kind::Kind;
 use super::telemetry::{View, vehicle};
@@ -13,7 +15,7 @@ use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, Reply, Severity, Shared};
+use crate::shared::{Event, MissionList, Reply, Severity, Shared};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
@@ -167,12 +169,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 let system = self.system();
                 return self.writer.write_some(system, vehicle::available_mode(index));
             }
-            Reply::NoMission(system, component) => {
-                self.say(&MISSION_COUNT_DATA { count: 0, target_system: system, target_component: component })
+            Reply::NoMission(MissionList { sender: (target_system, target_component), list }) => {
+                self.say(&About { message: MISSION_COUNT_DATA { count: 0, target_system, target_component }, list })
             }
-            Reply::Mission(system, component, result) => {
-                self.say(&MISSION_ACK_DATA { target_system: system, target_component: component, mavtype: result })
+            Reply::Mission(MissionList { sender: (target_system, target_component), list }, mavtype) => {
+                self.say(&About { message: MISSION_ACK_DATA { target_system, target_component, mavtype }, list })
             }
+            Reply::NoFiles(request) => self.say(&NoFiles(request)),
             Reply::IntervalOf(kind) => {
                 let interval = self.schedule.interval_of(kind, self.telemetry());
                 self.say(&MESSAGE_INTERVAL_DATA {

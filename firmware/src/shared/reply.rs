@@ -1,5 +1,6 @@
 //! What the vehicle answers, and to what.
 
+use crate::link::files::FileRequest;
 use crate::link::telemetry::kind::Kind;
 use crate::parameters::table::Name;
 use controller_core::flight::Request;
@@ -29,6 +30,15 @@ pub enum Procedure {
     Level,
     /// The accelerometer's offsets, in the level vehicle.
     OneSide,
+}
+
+/// A list of mission items that somebody asked about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MissionList {
+    /// Who: system and component.
+    pub sender: (u8, u8),
+    /// Which: MAV_MISSION_TYPE, whether the dialect has that one or not.
+    pub list: u8,
 }
 
 /// One message to send.
@@ -76,8 +86,10 @@ pub enum Reply {
         /// Bytes.
         count: u32,
     },
-    /// MISSION_COUNT to a system's component: there is none.
-    NoMission(u8, u8),
-    /// MISSION_ACK to a system's component.
-    Mission(u8, u8, MavMissionResult),
+    /// MISSION_COUNT: there is nothing in that list.
+    NoMission(MissionList),
+    /// MISSION_ACK.
+    Mission(MissionList, MavMissionResult),
+    /// FILE_TRANSFER_PROTOCOL: there are no files.
+    NoFiles(FileRequest),
 }

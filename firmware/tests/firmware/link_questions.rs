@@ -1,15 +1,16 @@
 //! What is asked of the vehicle, beside what it shall do: messages, missions, places, the time, nonsense.
 
 use crate::support::receiver::{Fed, Local, answer, command, replies};
-use crate::support::v2_of_payload;
+use crate::support::{extended, v2_of_payload};
 use controller_core::flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use firmware::link::files::FileRequest;
 use firmware::link::telemetry::kind::Kind;
-use firmware::shared::{Ping, REPLIES, Reply};
+use firmware::shared::{MissionList, Ping, REPLIES, Reply};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavCmd,
-    MavFrame, MavMissionResult, MavResult, TIMESYNC_DATA,
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA,
+    MISSION_REQUEST_LIST_DATA, MavCmd, MavFrame, MavMissionResult, MavResult, TIMESYNC_DATA,
 };
 use nalgebra::Vector3;
 
@@ -99,14 +100,48 @@ fn missions_are_refused_and_there_is_none() {
     fed.message(&MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
     fed.message(&MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1 }, 0);
     fed.message(&MISSION_COUNT_DATA { count: 3, target_system: 9, target_component: 1 }, 0);
+    let asked = MissionList { sender: (255, 190), list: 0 };
     assert_eq!(
         replies(&shared),
         [
-            Reply::Mission(255, 190, MavMissionResult::MAV_MISSION_UNSUPPORTED),
-            Reply::NoMission(255, 190),
-            Reply::Mission(255, 190, MavMissionResult::MAV_MISSION_ACCEPTED),
+            Reply::Mission(asked, MavMissionResult::MAV_MISSION_UNSUPPORTED),
+            Reply::NoMission(asked),
+            Reply::Mission(asked, MavMissionResult::MAV_MISSION_ACCEPTED),
         ]
     );
+}
+
+#[test]
+fn fence_and_rally_points_are_answered_as_what_they_are() {
+    for list in [1, 2, 255] {
+        let shared = Local::new();
+        let mut fed = Fed::new(&shared);
+        fed.bytes(&extended(&MISSION_COUNT_DATA { count: 3, target_system: 1, target_component: 1 }, &[list]), 0);
+        fed.bytes(&extended(&MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, &[list]), 0);
+        fed.bytes(&extended(&MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1 }, &[list]), 0);
+        let asked = MissionList { sender: (255, 190), list };
+        assert_eq!(
+            replies(&shared),
+            [
+                Reply::Mission(asked, MavMissionResult::MAV_MISSION_UNSUPPORTED),
+                Reply::NoMission(asked),
+                Reply::Mission(asked, MavMissionResult::MAV_MISSION_ACCEPTED),
+            ]
+        );
+    }
+}
+
+#[test]
+fn a_request_for_a_file_is_refused_and_an_answer_is_left_alone() {
+    // Open a file for reading (4), an acknowledgement (128), a refusal (129); to us, to all, to somebody else.
+    for (operation, target, answers) in [(4, 1, 1), (4, 0, 1), (127, 1, 1), (4, 7, 0), (128, 1, 0), (129, 1, 0)] {
+        let mut message = FILE_TRANSFER_PROTOCOL_DATA { target_system: target, ..Default::default() };
+        message.payload[..4].copy_from_slice(&[0xFF, 0x01, 3, operation]);
+        let shared = Local::new();
+        Fed::new(&shared).message(&message, 0);
+        let request = FileRequest { sender: (255, 190), sequence: 0x1FF, session: 3, operation };
+        assert_eq!(replies(&shared), vec![Reply::NoFiles(request); answers], "{operation} to {target}");
+    }
 }
 
 #[test]

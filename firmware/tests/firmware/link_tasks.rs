@@ -7,16 +7,18 @@ use controller_core::flight::{Mode, Refusal};
 use controller_core::state::State;
 use core::cell::RefCell;
 use embedded_io_async::{ErrorKind, ErrorType, Read};
+use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Event, Ping, Reply, Report, Severity, Timing, Traffic};
+use firmware::shared::{Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA,
-    MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavSysStatusSensor, MavType, PARAM_VALUE_DATA,
-    STATUSTEXT_DATA, SYS_STATUS_DATA, TIMESYNC_DATA,
+    ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavAutopilot, MavCmd, MavMissionResult, MavModeFlag,
+    MavResult, MavSeverity, MavState, MavSysStatusSensor, MavType, PARAM_VALUE_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
+    TIMESYNC_DATA,
 };
 use nalgebra::{Quaternion, Vector3};
 
@@ -276,4 +278,41 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     });
     // Events are taken, each one given up in its time, even though telemetry is always due.
     assert!(waiting.iter().any(|&time| time > 10 * WRITE_TIME_MAX), "{waiting:?}");
+}
+
+/// What these replies put into the payloads of messages of one number, byte for byte.
+fn payloads(replies: Vec<Reply>, number: u32) -> Vec<Vec<u8>> {
+    let shared = Local::new();
+    replies.into_iter().for_each(|reply| shared.reply(reply));
+    let written = transmitted(&shared, 100_000, |_| ());
+    let (mut parser, mut found) = (Parser::new(), Vec::new());
+    for &byte in written.borrow().iter() {
+        let frame = parser.push(byte, 0);
+        found.extend(frame.filter(|frame| frame.message == number).map(|frame| frame.payload.to_vec()));
+    }
+    assert_eq!(parser.discarded(), 0);
+    found
+}
+
+#[test]
+fn an_answer_about_missions_says_which_list_it_is_about() {
+    let about = |list| MissionList { sender: (255, 190), list };
+    let counts = payloads([0, 1, 2].map(|list| Reply::NoMission(about(list))).into(), MISSION_COUNT_DATA::ID);
+    assert_eq!(counts, [vec![0, 0, 255, 190], vec![0, 0, 255, 190, 1], vec![0, 0, 255, 190, 2]]);
+    let refused = MavMissionResult::MAV_MISSION_UNSUPPORTED;
+    let acks = [0, 1, 2].map(|list| Reply::Mission(about(list), refused)).into();
+    assert_eq!(payloads(acks, MISSION_ACK_DATA::ID), [vec![255, 190, 3], vec![255, 190, 3, 1], vec![255, 190, 3, 2]]);
+    // Accepted is zero, and the list stands behind it.
+    let accepted = vec![Reply::Mission(about(1), MavMissionResult::MAV_MISSION_ACCEPTED)];
+    assert_eq!(payloads(accepted, MISSION_ACK_DATA::ID), [vec![255, 190, 0, 1]]);
+}
+
+#[test]
+fn a_refused_file_request_is_named_with_the_next_number() {
+    for (sequence, next) in [(0x1FF, [0x00, 0x02]), (u16::MAX, [0, 0])] {
+        let request = FileRequest { sender: (255, 190), sequence, session: 3, operation: 4 };
+        let refused = payloads(vec![Reply::NoFiles(request)], FILE_TRANSFER_PROTOCOL_DATA::ID);
+        let header = [next[0], next[1], 3, 129, 1, 4, 0, 0, 0, 0, 0, 0];
+        assert_eq!(refused, [[&[0, 255, 190][..], &header, &[7]].concat()]);
+    }
 }

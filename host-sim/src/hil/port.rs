@@ -71,10 +71,7 @@ impl Port {
     /// # Errors
     /// [`PortError`] if there is nobody in time or the address cannot be used.
     pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
-        let stream = match address {
-            Address::Connect(to) => connect(to, address, patience, interrupt)?,
-            Address::Listen(on) => listen(on, address, patience, interrupt)?,
-        };
+        let stream = connected(address, patience, interrupt)?;
         Self::over(stream, patience, interrupt.clone()).map_err(PortError::Broken)
     }
 
@@ -142,6 +139,14 @@ impl Port {
 
 fn interrupted(interrupt: &Interrupt) -> Result<(), PortError> {
     interrupt.signal().map_or(Ok(()), |signal| Err(PortError::Interrupted(signal)))
+}
+
+/// A connection to whoever is to be found at `address` within `patience`.
+pub(super) fn connected(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
+    match address {
+        Address::Connect(to) => connect(to, address, patience, interrupt),
+        Address::Listen(on) => listen(on, address, patience, interrupt),
+    }
 }
 
 fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {

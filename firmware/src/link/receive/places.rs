@@ -1,13 +1,16 @@
-//! Places and missions in: an origin is kept, missions are refused.
+//! Places, missions and files in: an origin is kept, missions and files are refused.
 
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
 use super::Receiver;
+use crate::link::files::FileRequest;
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
+use crate::link::plans::list_of;
 use crate::link::telemetry::kind::Kind;
-use crate::shared::Reply;
+use crate::shared::{MissionList, Reply};
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::MessageData;
 use mavlink::dialects::common::{
     MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavMissionResult, SET_GPS_GLOBAL_ORIGIN_DATA,
 };
@@ -30,22 +33,34 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// Missions are not flown here: whoever sends one is told.
     pub(super) fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
-            let result = MavMissionResult::MAV_MISSION_UNSUPPORTED;
-            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
+            self.shared.reply(Reply::Mission(asked(frame, message), MavMissionResult::MAV_MISSION_UNSUPPORTED));
         }
     }
 
     pub(super) fn mission_list(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_LIST_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::NoMission(frame.header.system, frame.header.component));
+            self.shared.reply(Reply::NoMission(asked(frame, message)));
         }
     }
 
     /// There is none: that is what was wanted.
     pub(super) fn mission_clear(&mut self, frame: &Frame<'_>, message: &MISSION_CLEAR_ALL_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
-            let result = MavMissionResult::MAV_MISSION_ACCEPTED;
-            self.shared.reply(Reply::Mission(frame.header.system, frame.header.component, result));
+            self.shared.reply(Reply::Mission(asked(frame, message), MavMissionResult::MAV_MISSION_ACCEPTED));
         }
     }
+
+    /// There are no files either.
+    pub(super) fn file(&mut self, frame: &Frame<'_>) {
+        if let Some((request, _)) =
+            FileRequest::of(frame).filter(|(_, [system, component])| self.is_addressed(*system, *component))
+        {
+            self.shared.reply(Reply::NoFiles(request));
+        }
+    }
+}
+
+/// Who asked, and about which list.
+fn asked<D: MessageData>(frame: &Frame<'_>, _: &D) -> MissionList {
+    MissionList { sender: (frame.header.system, frame.header.component), list: list_of::<D>(frame) }
 }

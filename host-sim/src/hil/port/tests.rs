@@ -91,7 +91,7 @@ fn nobody_is_waited_for_without_end() {
 fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
     let (mut port, mut board) = connected(LONG);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let session = Session { duration: Some(0.03), pose_until: Some(0.02) };
+    let session = Session { duration: Some(0.03), pose_until: Some(0.02), speed: None };
     let board = std::thread::spawn(move || {
         for tick in 0..3 {
             let time = 5_000 + 10_000 * tick;
@@ -108,7 +108,7 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
             assert!((force - Vector3::z() * 9.81).norm() < 1e-4, "{force}");
         }
     });
-    let summary = serve(&scenario, &mut port, &session, None).unwrap();
+    let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap();
     assert_eq!((summary.pace.ticks(), summary.end), (3, End::Over));
     assert!(summary.to_string().contains(", 0 missed"), "{summary}");
@@ -137,8 +137,8 @@ fn heard_in_a_noisy_session() -> Vec<u8> {
         }
         bytes
     });
-    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None };
-    serve(&scenario, &mut port, &session, None).unwrap();
+    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed: None };
+    serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap()
 }
 
@@ -162,10 +162,35 @@ fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_
 }
 
 #[test]
+fn a_session_is_held_to_a_speed_of_this_desks_time() {
+    const TICKS: u64 = 20;
+    let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
+    let took = |speed| {
+        let (mut port, mut board) = connected(LONG);
+        let board = std::thread::spawn(move || {
+            for tick in 1..=TICKS {
+                board.write_all(&command(10_000 * tick, 0.0)).unwrap();
+                while heard::<HIL_SENSOR_DATA>(&mut board).is_none() {}
+            }
+        });
+        let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed };
+        let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
+        board.join().unwrap();
+        assert_eq!(summary.pace.ticks(), TICKS);
+        summary.took
+    };
+    // 0.2 s of the vehicle's; the first tick starts the clock.
+    let (free, held) = (took(None), took(Some(0.25)));
+    assert!((Duration::from_millis(760)..LONG).contains(&held) && free < held, "{free:?} {held:?}");
+}
+
+#[test]
 fn a_command_that_is_no_number_ends_the_session_in_words() {
     let (mut port, mut board) = connected(LONG);
     board.write_all(&command(5_000, f32::NAN)).unwrap();
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None) else { panic!("flown") };
+    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None, None) else {
+        panic!("flown")
+    };
     assert!(what.contains("0 to 1"), "{what}");
 }
