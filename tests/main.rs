@@ -29,6 +29,7 @@ mod estimator;
 mod extended_adversary;
 mod extended_flows;
 mod extended_independent;
+mod fault_campaign;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;

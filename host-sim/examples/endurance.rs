@@ -11,7 +11,7 @@ fn main(){
     let mut v=PilotedVehicle::new(&s,Ok(&c),&FlightSettings::DEFAULT,&mut place,0).unwrap();
     let t=Instant::now();
     let mut last=Mode::Boot;
-    for k in 0..10_000u64 {
+    for k in 0..200_000u64 {
         let request=match k {200=>Some(Request::Arm),250=>Some(Request::TakeOff(Some(3.0))),_=>None};
         let (o,_)=v.tick(&Inputs{request,ground_station:Some(v.now()),..Inputs::default()},&mut Nobody).unwrap();
         if o.mode!=last {println!("{k} {:?} {:?} {:?}",o.mode,o.transition, v.vehicle().state().position); last=o.mode;}
