@@ -36,6 +36,10 @@ const SPOOL_TICKS: u32 = 100;
 /// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
 const DRIFT: f32 = 0.05;
 
+/// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in a second: most
+/// drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
+const MOVING: (f32, f32) = (0.3, 0.01);
+
 /// The speed across at which a vehicle may go down, m/s.
 const AT_REST: f32 = 0.05;
 
@@ -357,6 +361,12 @@ impl<'m> Chain<'m> {
     /// Whether the vehicle has been levelled for a while, and goes down.
     pub fn sinks(&self) -> bool {
         self.reference.velocity.z < 0.0
+    }
+
+    /// Whether the vehicle rises or sinks, without a pose, faster than an accelerometer's drift explains.
+    pub fn moves(&self) -> bool {
+        let (speed, drift) = MOVING;
+        self.sinking.speed.abs() > speed + drift * self.sinking.time
     }
 
     /// The acceleration beside the one that was asked for, m/s^2, world.

@@ -18,7 +18,7 @@ use super::watch::{Seen, Watch};
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
 use crate::estimator::{Estimator, Fault};
-use crate::governor::GovernorLimits;
+use crate::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 3 KB, and its [`Memory`] and [`Estimator`].
@@ -95,7 +95,7 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let estimate = self.estimation.tick(inputs.increments, inputs.poses, self.mode.is_armed(), inputs.now);
+        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne());
         self.decide(inputs, &estimate)
     }
 
@@ -146,7 +146,14 @@ impl<'m> Pilot<'m> {
         match &mut self.chain {
             Ok(chain) if estimate.jumped && self.mode.flies() => {
                 self.fence.displace(&from, &position);
-                chain.jump(&estimated.state).is_ok()
+                let followed = chain.jump(&estimated.state).is_ok();
+                if self.mode == Mode::TakingOff {
+                    // It goes on, as high above where it began.
+                    self.rising_to += position.z - from.z;
+                    let to = Motion::Position(Vector3::new(position.x, position.y, self.rising_to));
+                    return followed && chain.accept(&Setpoint { motion: to, turn: Turn::Keep }).is_ok();
+                }
+                followed
             }
             _ => true,
         }
@@ -179,6 +186,10 @@ impl<'m> Pilot<'m> {
         }
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
+        }
+        if transition.reason == Reason::PoseRegained {
+            // A landing may have been broken off when the pose was lost.
+            self.watch.tell_low_again();
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {
