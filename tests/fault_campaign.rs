@@ -5,12 +5,14 @@
 //! - `phase`: where in a flight, and what an operator says to get there;
 //! - `expected`: what must follow, as data, and the order of severity;
 //! - `watch`: what must hold in every tick;
-//! - `run`: one flight, to the ground; `report`: the table.
+//! - `run`: one flight, to the ground; `report`: the table;
+//! - `found`: what the campaign has found, each defect with the flight that showed it.
 //!
 //! `cargo test -p host-sim fault_campaign -- --nocapture` prints the table.
 
 mod expected;
 mod failure;
+mod found;
 mod phase;
 mod report;
 mod run;
@@ -18,14 +20,15 @@ mod watch;
 
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use controller_core::flight::FlightSettings;
+use controller_core::flight::rules::{Row, TABLE};
+use controller_core::flight::{FlightSettings, Transition};
 use controller_core::reference::ReferenceBounds;
 use failure::Failure;
 use phase::Phase;
-use rayon::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt, SeedableRng};
+use rayon::prelude::*;
 use run::{Case, Flown, fly};
 use scenario::Scenario;
 use std::collections::HashSet;
@@ -44,9 +47,10 @@ const SETTINGS: FlightSettings = FlightSettings {
     ..FlightSettings::DEFAULT
 };
 
-/// A vehicle, what the certificate says of it, and what it says of one that asks too much.
+/// A vehicle, what an operator has chosen, what the certificate says of it, and what it says of one that asks too much.
 struct Vehicle {
     scenario: Scenario,
+    settings: FlightSettings,
     certified: Certified,
     refused: Refused,
 }
@@ -56,7 +60,7 @@ fn vehicle(name: &str) -> Vehicle {
     let scenario = Scenario::load(&folder.join(format!("{name}.toml"))).unwrap();
     let configuration = scenario.configuration.clone();
     let refused = Certified::new(too_agile(&configuration)).unwrap_err();
-    Vehicle { certified: Certified::new(configuration).unwrap(), scenario, refused }
+    Vehicle { certified: Certified::new(configuration).unwrap(), scenario, settings: SETTINGS, refused }
 }
 
 /// The same vehicle, asked to follow references that its torques are not enough for.
@@ -66,8 +70,8 @@ fn too_agile(configuration: &Configuration) -> Configuration {
 }
 
 fn singles() -> Vec<Case> {
-    let all = Phase::ALL.into_iter().flat_map(|phase| Failure::ALL.map(|first| Case { phase, first, second: None }));
-    all.collect()
+    let single = |phase| Failure::ALL.map(|first| Case { phase, first, second: None, height: FLIGHT_HEIGHT });
+    Phase::ALL.into_iter().flat_map(single).collect()
 }
 
 /// When the second of two failures strikes, in ticks after the first: with it, some hundred milliseconds later, seconds later.
@@ -80,7 +84,7 @@ fn pairs(random: &mut impl Rng) -> Vec<(Case, usize)> {
         for (first, second) in Failure::ALL.into_iter().flat_map(|first| Failure::ALL.map(|second| (first, second))) {
             for (which, later) in LATER.into_iter().enumerate().filter(|_| first != second) {
                 let second = Some((second, random.random_range(later)));
-                pairs.push((Case { phase, first, second }, which));
+                pairs.push((Case { phase, first, second, height: FLIGHT_HEIGHT }, which));
             }
         }
     }
@@ -137,4 +141,11 @@ fn fly_pairs(cases: Vec<Case>) {
     let ticks: u64 = flown.iter().map(|flown| flown.ticks).sum();
     println!("{} flights, {:.0} s", flown.len(), ticks as f64 * 0.01);
     judge(&flown);
+    let taken = |row: &&Row| {
+        let wanted = Transition { from: row.from, to: row.to, reason: row.reason };
+        row.from == row.to || flown.iter().any(|flown| flown.taken.contains(&wanted))
+    };
+    let (taken, left): (Vec<&Row>, Vec<&Row>) = TABLE.iter().partition(taken);
+    println!("{} of the table's {} rows were taken, or lead nowhere; not these:", taken.len(), TABLE.len());
+    left.iter().for_each(|row| println!("    {:?}, {:?}", row.from, row.condition));
 }

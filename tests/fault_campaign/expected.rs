@@ -94,12 +94,16 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         // On the ground a frame that stays where it has jumped to is followed.
         Failure::PoseJumps | Failure::PoseTurns => Answer { forbids_arming: false, ..NO_POSES },
         // The poses come back, and the vehicle holds.
-        Failure::PoseOutage => {
-            Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING }
-        }
-        // It takes a while until a drift is more than noise, and until identical poses cannot be of a vehicle that moves.
+        Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
+        // It takes a while until a drift is more than noise.
         Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
-        Failure::PoseFreezes => Answer { in_flight: &[(Descend, 15.0)], idling: None, forbids_arming: false, ..NO_POSES },
+        // On the ground they may be of a simulated vehicle that stands still.
+        Failure::PoseFreezes if phase == Phase::Spooling => {
+            Answer { in_flight: &[(Descend, 3.6)], idling: None, forbids_arming: false, ..NO_POSES }
+        }
+        Failure::PoseFreezes => {
+            Answer { in_flight: &[(Descend, 1.3)], idling: None, forbids_arming: false, ..NO_POSES }
+        }
         Failure::FrameMoves => NOTHING,
         Failure::PoseVague => Answer { in_flight: &[], idling: None, forbids_arming: false, ..NO_POSES },
         Failure::SetpointsLost if phase == Phase::Moving => {
@@ -113,7 +117,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
             forbids_arming: true,
             ..NOTHING
         },
-        Failure::BatteryLow | Failure::BatteryCritical => {
+        Failure::BatteryLow | Failure::BatteryCritical | Failure::BatteryWavers => {
             Answer { in_flight: &[(Land, 3.05)], most: Land, idling: Some(3.05), forbids_arming: true, ..NOTHING }
         }
         // Nothing pushes it away before it has left the ground.
@@ -124,23 +128,15 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::RotorWeak => LOST,
         Failure::RotorLost => Answer { in_flight: &[(Off, 20.0)], descending: Some(40.0), ..LOST },
         Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
-        Failure::GyroLies | Failure::AccelerometerLies => {
-            Answer { forbids_arming: true, ..LOST }
-        }
+        Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },
         Failure::Overrun => Answer { in_flight: &[(Land, 0.15)], most: Land, idling: Some(0.15), ..NOTHING },
-        Failure::Tipped => Answer {
-            in_flight: &[(Off, 20.0)],
-            idling: Some(1.7),
-            descending: Some(40.0),
-            forbids_arming: true,
-            ..LOST
-        },
-        Failure::Killed => Answer {
-            in_flight: &[(Off, 0.011)],
-            idling: Some(0.011),
-            descending: Some(0.011),
-            ..AT_ONCE
-        },
+        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => Answer { in_flight: &[(Off, 2.5)], ..LOST },
+        // From high enough, or on its legs, it flies on.
+        Failure::Tipped => Answer { idling: Some(1.7), ..LOST },
+        Failure::Leaned => LOST,
+        Failure::Killed => {
+            Answer { in_flight: &[(Off, 0.011)], idling: Some(0.011), descending: Some(0.011), ..AT_ONCE }
+        }
     }
 }
 
@@ -171,10 +167,23 @@ pub fn least(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
             _ => answer.in_flight.iter().filter(|(_, limit)| since > limit).map(|one| one.0).max().unwrap_or(CarryOn),
         }
     };
-    // Poses that come back end a landing too: the vehicle holds.
-    let holds = failed.iter().any(|(failure, _)| *failure == Failure::PoseOutage);
+    // Poses that are believed again end a landing too: the vehicle holds.
+    let holds = failed.iter().any(|(failure, _)| answer(*failure, phase).most >= Descend);
     let least = if holds && phase == Phase::Landing { Hold } else { of_phase(phase).0 };
-    failed.iter().map(by_one).max().unwrap_or(CarryOn).max(least)
+    // What may be lost need not get where it is pushed; and what a sender says of itself is believed.
+    let may_be_lost = failed.iter().any(|(failure, _)| answer(*failure, phase).most == Off);
+    let is_vague = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseVague | Failure::FrameMoves));
+    let freezes_anew = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseOutage | Failure::PoseDrifts));
+    let counts = |failure: Failure| match failure {
+        // Frozen poses that begin anew are found anew; and what is lost on the ground never moves.
+        // Hands that come later find it in the air.
+        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => failed.len() == 1,
+        Failure::PoseFreezes if freezes_anew || may_be_lost && phase == Phase::Spooling => false,
+        Failure::Gust | Failure::Updraft | Failure::Wind => !may_be_lost,
+        Failure::PoseJumps | Failure::PoseTurns | Failure::PoseDrifts | Failure::PoseFreezes => !is_vague,
+        _ => true,
+    };
+    failed.iter().filter(|(failure, _)| counts(*failure)).map(by_one).max().unwrap_or(CarryOn).max(least)
 }
 
 /// At most so much.

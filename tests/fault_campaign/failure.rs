@@ -6,6 +6,7 @@ use host_sim::piloted::{Meddler, PilotedVehicle};
 use host_sim::reality::RealVehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use scenario::body::BodyState;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// One thing that fails. Without another word it lasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub enum Failure {
     StationLost,
     BatteryLow,
     BatteryCritical,
+    /// The battery is low and, under load, critical, by turns of half a second.
+    BatteryWavers,
     /// A gust pushes it out of the fence.
     Gust,
     /// An updraft lifts it over the fence.
@@ -53,12 +56,14 @@ pub enum Failure {
     Overrun,
     /// Hands turn it on its back, within half a second, where it is.
     Tipped,
+    /// The same, by 45 degrees.
+    Leaned,
     /// The kill switch.
     Killed,
 }
 
 impl Failure {
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 26] = [
         Self::PoseLost,
         Self::PoseOutage,
         Self::PoseJumps,
@@ -71,6 +76,7 @@ impl Failure {
         Self::StationLost,
         Self::BatteryLow,
         Self::BatteryCritical,
+        Self::BatteryWavers,
         Self::Gust,
         Self::Updraft,
         Self::Wind,
@@ -82,6 +88,7 @@ impl Failure {
         Self::AccelerometerLies,
         Self::Overrun,
         Self::Tipped,
+        Self::Leaned,
         Self::Killed,
     ];
 }
@@ -117,9 +124,9 @@ impl Failures {
     pub fn strike(&mut self, failure: Failure, vehicle: &mut PilotedVehicle) {
         self.failed.push((failure, vehicle.now()));
         match failure {
-            Failure::RotorWeak => vehicle.weaken(0, 0.8),
+            Failure::RotorWeak => vehicle.weaken(2, 0.8),
             Failure::RotorLost => vehicle.weaken(0, 0.0),
-            Failure::Tipped => self.held = Some(*vehicle.vehicle().state()),
+            Failure::Tipped | Failure::Leaned => self.held = Some(*vehicle.vehicle().state()),
             _ => {}
         }
     }
@@ -143,10 +150,11 @@ impl Failures {
         if self.has(Failure::SetpointsLost) {
             given.setpoint = None;
         }
-        if self.has(Failure::BatteryLow) {
+        let half_seconds = self.since(Failure::BatteryWavers, given.now).map(|since| (2.0 * since) as u64);
+        if self.has(Failure::BatteryLow) || half_seconds.is_some() {
             given.battery = Battery::Low;
         }
-        if self.has(Failure::BatteryCritical) {
+        if self.has(Failure::BatteryCritical) || half_seconds.is_some_and(|count| count % 2 == 1) {
             given.battery = Battery::Critical;
         }
         given.is_late = self.has(Failure::Overrun);
@@ -164,11 +172,13 @@ impl Meddler for Failures {
         };
         let across = blows(Failure::Gust, GUST) + blows(Failure::Wind, WIND);
         vehicle.push(Vector3::new(across, 0.0, blows(Failure::Updraft, UPDRAFT)) * self.mass);
-        if let (Some(since), Some(held)) = (self.since(Failure::Tipped, now), &self.held)
-            && since <= TIPPING
-        {
-            let rate = if since < TIPPING { std::f64::consts::PI / TIPPING } else { 0.0 };
-            let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), since / TIPPING * std::f64::consts::PI);
+        for (failure, angle) in [(Failure::Tipped, PI), (Failure::Leaned, FRAC_PI_4)] {
+            let (Some(since), Some(held)) = (self.since(failure, now), &self.held) else { continue };
+            if since > TIPPING {
+                continue;
+            }
+            let rate = if since < TIPPING { angle / TIPPING } else { 0.0 };
+            let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), since / TIPPING * angle);
             let attitude = UnitQuaternion::new_normalize(held.attitude) * turned;
             vehicle.place(&BodyState {
                 position: held.position,

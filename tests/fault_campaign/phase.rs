@@ -1,6 +1,5 @@
 //! Where in a flight it fails, and what an operator says to get there.
 
-use super::FLIGHT_HEIGHT;
 use controller_core::flight::{Inputs, Mode, MotorTest, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use nalgebra::Vector3;
@@ -59,8 +58,9 @@ pub struct Sight {
     pub mode: Mode,
     /// Ticks since the mode began.
     pub lasts: u64,
-    /// How high the vehicle is, m.
+    /// How high the vehicle is, and is to fly, m.
     pub height: f64,
+    pub asked: f32,
     /// us.
     pub now: u64,
 }
@@ -76,7 +76,7 @@ const GO: u64 = 260;
 impl Phase {
     /// Whether it has been reached, and what is to fail now fails.
     pub fn is_reached(self, sight: &Sight) -> bool {
-        let Sight { tick, mode, lasts, height, .. } = *sight;
+        let Sight { tick, mode, lasts, height, asked, .. } = *sight;
         match self {
             Self::Boot => true,
             Self::Locked => mode == Mode::Locked && tick >= 100,
@@ -85,7 +85,7 @@ impl Phase {
             Self::MotorTest => mode == Mode::MotorTest && lasts >= 50,
             Self::Idling => mode == Mode::Idling && lasts >= 50,
             Self::Spooling => mode == Mode::TakingOff && lasts >= 50,
-            Self::Climbing => mode == Mode::TakingOff && height > 0.5 * f64::from(FLIGHT_HEIGHT),
+            Self::Climbing => mode == Mode::TakingOff && height > 0.5 * f64::from(asked),
             Self::AtPoint => mode == Mode::Flying && lasts >= 900,
             Self::Moving => mode == Mode::Flying && lasts >= 1_000,
             Self::Holding => mode == Mode::Holding && lasts >= 50,
@@ -97,16 +97,14 @@ impl Phase {
 
     /// What the operator says in this tick, with nothing failed.
     pub fn given(self, sight: &Sight) -> Inputs<'static> {
-        let Sight { tick, mode, lasts, now, .. } = *sight;
+        let Sight { tick, mode, lasts, asked, now, .. } = *sight;
         let request = match (self, tick) {
-            (Self::MotorTest, ARM) => {
-                Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 }))
-            }
+            (Self::MotorTest, ARM) => Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 })),
             (Self::Boot | Self::Locked | Self::Checks | Self::Ready | Self::MotorTest, _) => None,
             (_, ARM) => Some(Request::Arm),
             (Self::Idling, _) => None,
             (Self::AtPoint | Self::Moving, GO) => Some(Request::FlySetpoints),
-            (_, GO) => Some(Request::TakeOff(Some(FLIGHT_HEIGHT))),
+            (_, GO) => Some(Request::TakeOff(Some(asked))),
             (Self::Landing, _) if mode == Mode::Holding && lasts == 50 => Some(Request::Land),
             _ => None,
         };
@@ -132,7 +130,7 @@ impl Phase {
             let (sine, cosine) = (0.5 * (sight.lasts - 800) as f32 * 0.01).sin_cos();
             Motion::Velocity(Vector3::new(-sine, cosine, 0.0) * 0.5)
         } else {
-            Motion::Position(Vector3::new(0.0, 0.0, FLIGHT_HEIGHT))
+            Motion::Position(Vector3::new(0.0, 0.0, sight.asked))
         };
         Setpoint { motion, turn: Turn::Keep }
     }

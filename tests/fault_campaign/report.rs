@@ -47,7 +47,9 @@ fn way(flown: &Flown) -> String {
 
 /// Prints single failures: a row a failure, a column a phase.
 pub fn print(flown: &[Flown]) {
-    println!("from the failure on: modes, and when the motors stopped, s; Boot Checks Ready MotorTest Idling TakingOff");
+    println!(
+        "from the failure on: modes, and when the motors stopped, s; Boot Checks Ready MotorTest Idling TakingOff"
+    );
     println!("Flying Holding Landing Descending Stopped locKed");
     print!("{:18}", "");
     Phase::ALL.iter().for_each(|phase| print!("{:>12}", format!("{phase:?}")));

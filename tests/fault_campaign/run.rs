@@ -1,10 +1,10 @@
 //! One flight with failures, from boot to the ground.
 
+use super::Vehicle;
 use super::expected::{self, Severity};
 use super::failure::{Failure, Failures};
 use super::phase::{Phase, Sight};
 use super::watch;
-use super::{SETTINGS, Vehicle};
 use controller_core::flight::{Inputs, Mode, Output, Reason, Request, Transition};
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -28,6 +28,8 @@ pub struct Case {
     pub first: Failure,
     /// Another one, so many ticks later.
     pub second: Option<(Failure, u64)>,
+    /// How high it flies, m.
+    pub height: f32,
 }
 
 /// What came of it.
@@ -64,23 +66,16 @@ struct Flight<'m> {
 pub fn fly(vehicle: &Vehicle, case: Case) -> Flown {
     let mut place = Place::new(&vehicle.scenario.configuration);
     let certification = if case.phase == Phase::Locked { Err(&vehicle.refused) } else { Ok(&vehicle.certified) };
-    let piloted = PilotedVehicle::new(&vehicle.scenario, certification, &SETTINGS, &mut place, 0).unwrap();
+    let piloted = PilotedVehicle::new(&vehicle.scenario, certification, &vehicle.settings, &mut place, 0).unwrap();
     let mut flight = Flight {
         case,
         vehicle: piloted,
         failures: Failures::none(vehicle.scenario.configuration.vehicle().mass),
         struck: (None, None),
-        sight: Sight { tick: 0, mode: Mode::Boot, lasts: 0, height: 0.0, now: 0 },
+        sight: Sight { tick: 0, mode: Mode::Boot, lasts: 0, height: 0.0, asked: case.height, now: 0 },
         heard: None,
         down: None,
-        flown: Flown {
-            case,
-            path: Vec::new(),
-            taken: Vec::new(),
-            touchdown: None,
-            ticks: 0,
-            complaints: Vec::new(),
-        },
+        flown: Flown { case, path: Vec::new(), taken: Vec::new(), touchdown: None, ticks: 0, complaints: Vec::new() },
     };
     while !flight.is_over() {
         flight.tick(vehicle);
@@ -130,7 +125,7 @@ impl Flight<'_> {
         {
             given = Inputs { request: Some(Request::Land), setpoint: None, ..given };
         }
-        let given = self.failures.spoil(given, &mut self.heard);
+        let given = self.failures.spoil(Inputs { now: self.sight.now, ..given }, &mut self.heard);
         let before = self.sight.mode;
         let (outcome, command) = match self.vehicle.tick(&given, &mut self.failures) {
             Ok(answer) => answer,
@@ -162,7 +157,7 @@ impl Flight<'_> {
 
     /// Lets fail what is to fail now.
     fn strike(&mut self) {
-        let Case { phase, first, second } = self.case;
+        let Case { phase, first, second, .. } = self.case;
         if phase.loses_poses(&self.sight) {
             self.failures.strike(Failure::PoseLost, &mut self.vehicle);
         }
@@ -195,7 +190,7 @@ impl Flight<'_> {
 
     /// Whether it stands, or has hardly left the ground.
     fn is_on_ground(&self) -> bool {
-        self.stands() || self.sight.height < 0.05 && self.vehicle.vehicle().state().velocity.norm() < 0.2
+        self.stands() || self.sight.height < 0.1
     }
 
     /// What has failed, and for how long, s.
@@ -218,13 +213,19 @@ impl Flight<'_> {
             most = most.max(Severity::Land);
         }
         let does = Severity::of(self.sight.mode);
-        // What hits the ground hard may do as much as it likes down there.
+        if self.flown.taken.last().is_some_and(|last| last.reason == Reason::PoseRegained) && self.sight.lasts == 0 {
+            // One transition a tick: what else there is to be done is done in the next.
+            return;
+        }
+        // What has hit the ground hard may do as much as it likes.
         let gentle = failed.iter().all(|(failure, _)| expected::answer(*failure, phase).is_gentle);
-        let is_down = self.is_on_ground() && (does == Severity::Off && most >= Severity::Land || !gentle);
+        let is_hit = !gentle && self.flown.touchdown.is_some();
+        let is_down = self.is_on_ground() && does == Severity::Off && most >= Severity::Land;
         // Once off, always off: nobody arms.
         let rearmed = self.down.is_some() && does != Severity::Off;
-        if does < least || (does > most && !is_down) || rearmed {
-            self.complain(format!("{:?}, not {least:?} to {most:?}, {failed:?}", self.sight.mode));
+        if does < least || (does > most && !is_down && !is_hit) || rearmed {
+            let Sight { mode, height, .. } = self.sight;
+            self.complain(format!("{mode:?} at {height:.3} m, not {least:?} to {most:?}, {failed:.2?}"));
         }
     }
 
@@ -253,7 +254,7 @@ impl Flight<'_> {
         for request in [Request::Disarm, Request::Arm] {
             let given = self.case.phase.given(&Sight { tick: 100, now: self.sight.now + 10_000, ..self.sight });
             let given = self.failures.spoil(Inputs { request: Some(request), ..given }, &mut self.heard);
-                let before = self.sight.mode;
+            let before = self.sight.mode;
             let (outcome, command) = self.vehicle.tick(&given, &mut self.failures).unwrap();
             self.sight = Sight { mode: outcome.mode, now: self.vehicle.now(), tick: self.sight.tick + 1, ..self.sight };
             self.flown.taken.extend(outcome.transition);
