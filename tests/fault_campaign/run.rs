@@ -10,7 +10,7 @@ use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone.
-const GENTLE: (f64, f64) = (0.8, 1.2);
+const GENTLE: (f64, f64) = (0.6, 1.0);
 
 /// Ticks after the last failure after which the operator wants the vehicle down, whatever it does.
 const PATIENCE: u64 = 2_000;
@@ -40,12 +40,21 @@ pub struct Flown {
     pub path: Vec<(Transition, f64)>,
     /// Every transition of the flight.
     pub taken: Vec<Transition>,
-    /// The hardest touchdown after the first failure, m/s.
+    /// The hardest touchdown after the first failure, m/s, and whether everything that had failed permitted a gentle one.
     pub touchdown: Option<f64>,
+    pub is_gentle: bool,
     /// Ticks flown.
     pub ticks: u64,
     /// What must not be.
     pub complaints: Vec<String>,
+}
+
+impl Flown {
+    /// Whether it came down without poses.
+    pub fn is_by_imu(&self) -> bool {
+        self.path.iter().any(|(transition, _)| transition.to == Mode::Descending)
+            || self.case.phase == Phase::Descending
+    }
 }
 
 /// A flight on its way.
@@ -75,7 +84,15 @@ pub fn fly(vehicle: &Vehicle, case: Case) -> Flown {
         sight: Sight { tick: 0, mode: Mode::Boot, lasts: 0, height: 0.0, asked: case.height, now: 0 },
         heard: None,
         down: None,
-        flown: Flown { case, path: Vec::new(), taken: Vec::new(), touchdown: None, ticks: 0, complaints: Vec::new() },
+        flown: Flown {
+            case,
+            path: Vec::new(),
+            taken: Vec::new(),
+            touchdown: None,
+            is_gentle: true,
+            ticks: 0,
+            complaints: Vec::new(),
+        },
     };
     while !flight.is_over() {
         flight.tick(vehicle);
@@ -239,7 +256,8 @@ impl Flight<'_> {
         let (failed, phase) = (self.failed(), self.case.phase);
         let gentle = failed.iter().all(|(failure, _)| expected::answer(*failure, phase).is_gentle);
         let most = if expected::most(phase, &failed) >= Severity::Descend { GENTLE.1 } else { GENTLE.0 };
-        if gentle && phase != Phase::Stopped && touchdown.speed > most {
+        self.flown.is_gentle &= gentle && phase != Phase::Stopped;
+        if self.flown.is_gentle && touchdown.speed > most {
             self.complain(format!("touched down at {:.3} m/s, {most} m/s are gentle", touchdown.speed));
         }
     }
