@@ -240,9 +240,8 @@ pub fn fly(
 /// How much the last hour may differ from the first, relative: means over 300 s of noise that takes about half a second to forget.
 const ALIKE: f64 = 0.15;
 
-/// How far apart two delays of one kind may be, ticks: a take-off ends when its reference rests, which begins where noise has the vehicle;
-/// the others are counted by the clock.
-const SPREAD: [u64; TIMED.len()] = [6, 1, 1, 1, 1];
+/// How far apart two delays of one kind may be, ticks.
+const SPREAD: u64 = 1;
 
 impl Hours {
     /// Whether every delay was the same all the time, and the last hour as good as the first.
@@ -250,17 +249,17 @@ impl Hours {
     /// # Errors
     /// Says what was not.
     pub fn check(&self) -> Result<(), String> {
-        for ((reason, (least, most)), spread) in TIMED.iter().zip(self.extremes).zip(SPREAD) {
-            if most.checked_sub(least).is_none_or(|apart| apart > spread) {
-                return Err(format!("{reason:?}: after {least} to {most} ticks, not more than {spread} apart"));
+        for (reason, (least, most)) in TIMED.iter().zip(self.extremes) {
+            if most.checked_sub(least).is_none_or(|apart| apart > SPREAD) {
+                return Err(format!("{reason:?}: after {least} to {most} ticks, not more than {SPREAD} apart"));
             }
         }
         let (Some(first), Some(last)) = (self.hours.first(), self.hours.last()) else {
             return Err("no hour was flown".to_owned());
         };
         for (what, first, last) in [("hover", first.hover, last.hover), ("estimate", first.estimate, last.estimate)] {
-            // Written so that a number that is none is different.
-            if !((last / first - 1.0).abs() <= ALIKE) {
+            let is_alike = (1.0 - ALIKE..=1.0 + ALIKE).contains(&(last / first));
+            if !is_alike {
                 return Err(format!("{what}: RMS {first} m in the first hour, {last} m in the last"));
             }
         }
