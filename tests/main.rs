@@ -9,6 +9,7 @@
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`pilots_table`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
+//! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
 //! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`documentation`] |
 
@@ -24,11 +25,13 @@ mod cli_output;
 mod cli_verdicts;
 mod documentation;
 mod emulated_bits;
+mod endurance;
 mod estimated_flights;
 mod estimator;
 mod extended_adversary;
 mod extended_flows;
 mod extended_independent;
+mod fault_campaign;
 mod governor_campaign;
 mod hysteresis;
 mod independent_law;

@@ -108,6 +108,8 @@ pub struct Estimator {
     checkpoints: Checkpoints,
     candidate: Option<Candidate>,
     stream: Stream,
+    /// Whether the vehicle is known to be in the air.
+    airborne: bool,
     waiting: Vec<Stamped<Pose>, WAITING>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
@@ -127,6 +129,7 @@ impl Estimator {
             checkpoints: Checkpoints::EMPTY,
             candidate: None,
             stream: Stream::EMPTY,
+            airborne: false,
             waiting: Vec::new(),
             frame: None,
             statistics: Statistics::NONE,
@@ -152,11 +155,16 @@ impl Estimator {
             self.checkpoints.forget_before(end);
         }
         self.history.push(increment);
-        self.stream.note(self.moves(increment));
+        self.stream.note(if self.airborne { self.stirs(increment) } else { self.moves(increment) });
         if let Some(latest) = &mut self.latest {
             latest.advance(increment, self.settings.parameters().gravity);
         }
         self.take_waiting(increment.end);
+    }
+
+    /// The vehicle is known to be in the air, or not: there nothing stands still, and poses that do are frozen.
+    pub fn is_airborne(&mut self, airborne: bool) {
+        self.airborne = airborne;
     }
 
     /// Takes a pose that was true at its time stamp and arrives at `now`, us.

@@ -11,6 +11,7 @@
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
+//! | [`piloted`] | the whole pilot in closed loop, supervisor, estimator and conditioner included |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
@@ -31,6 +32,7 @@ pub mod instruments;
 pub mod interrupt;
 pub mod law;
 pub mod log;
+pub mod piloted;
 pub mod plant;
 pub mod plots;
 pub mod progress;

@@ -30,7 +30,7 @@ pub mod propulsion;
 pub mod wind;
 
 use crate::actuators::ActuationError;
-use crate::ground::Ground;
+use crate::ground::{Ground, Touchdown};
 use crate::plant::Diverged;
 use air::{Air, Flow};
 use body::{RigidBody, STAGE_TIMES};
@@ -68,6 +68,8 @@ pub struct RealVehicle {
     mixer: Option<Box<Mixer>>,
     propulsion: Propulsion,
     ground: Option<Ground>,
+    /// The last one.
+    touchdown: Option<Touchdown>,
     /// Plant step, s.
     step: f64,
     delay_steps: u64,
@@ -107,6 +109,7 @@ impl RealVehicle {
             mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
             propulsion,
             ground,
+            touchdown: None,
             step,
             delay_steps: scenario.delay_steps,
             now: 0,
@@ -155,6 +158,23 @@ impl RealVehicle {
             battery: self.propulsion.battery(),
             standing: self.ground.as_ref().is_some_and(Ground::stands),
         }
+    }
+
+    /// Pushes it from now on with a force, N, world, in place of the scenario's disturbance.
+    pub fn push(&mut self, force: Vector3<f64>) {
+        let nothing = Disturbance { acceleration: Vector3::zeros(), torque: Vector3::zeros(), start: 0.0 };
+        self.disturbance = Some((nothing, 0, force));
+    }
+
+    /// Moves its origin as somebody's hands do.
+    pub fn place(&mut self, state: &BodyState) {
+        self.body.place(state);
+        self.state = *state;
+    }
+
+    /// The last touch of the ground since this was asked; a vehicle that hops touches it more than once.
+    pub fn take_touchdown(&mut self) -> Option<Touchdown> {
+        self.touchdown.take()
     }
 
     /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
@@ -212,9 +232,10 @@ impl RealVehicle {
         if !carried {
             self.body.advance(self.step, forces);
             self.state = self.body.origin();
-            if let Some((landed, _)) = self.ground.as_mut().and_then(|ground| ground.touch(&self.state)) {
+            if let Some((landed, touchdown)) = self.ground.as_mut().and_then(|ground| ground.touch(&self.state)) {
                 self.body.place(&landed);
                 self.state = landed;
+                self.touchdown = Some(touchdown);
             }
         }
         if let Some(wind) = &mut self.wind {

@@ -3,7 +3,8 @@
 //! - A pose whose sender says that tracking has failed is none.
 //! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those forgotten.
 //! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved meanwhile. A
-//!   simulated vehicle that stands still may send such poses for ever; a camera never does.
+//!   simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the least of the IMU's noise is
+//!   motion enough: a vehicle that hovers well hardly moves, and poses that stand still would be believed while it drifts away.
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;

@@ -190,11 +190,26 @@ impl Estimator {
         const RATE: f32 = 0.02;
         /// m/s^2: a plausible bias, and noise.
         const ACCELERATION: f32 = 0.5;
+        self.differs(increment, RATE, ACCELERATION)
+    }
+
+    /// Whether an increment is of a sensor that says anything but what it does at perfect rest: in the air a real one has its noise,
+    /// and an exact one that is simulated says as little as its poses.
+    pub(super) fn stirs(&self, increment: &Increment) -> bool {
+        /// rad/s: less than a BMI088's noise over 5 ms.
+        const RATE: f32 = 0.002;
+        /// m/s^2: the same.
+        const ACCELERATION: f32 = 0.05;
+        self.differs(increment, RATE, ACCELERATION)
+    }
+
+    /// Whether an increment is not of rest, by more than a body rate, rad/s, or a specific force, m/s^2.
+    fn differs(&self, increment: &Increment, most_rate: f32, most_force: f32) -> bool {
         let biases = self.filter.as_ref().map_or(self.biases, Filter::biases);
         let per_second = 1.0 / increment.seconds();
         let rate = increment.delta_angle * per_second - biases.gyro;
         let force = increment.delta_velocity * per_second - biases.accelerometer;
         let weight = crate::math::sqrt(force.norm_squared()) - self.settings.parameters().gravity;
-        rate.norm_squared() > RATE * RATE || weight.abs() > ACCELERATION
+        rate.norm_squared() > most_rate * most_rate || weight.abs() > most_force
     }
 }

@@ -335,6 +335,11 @@ impl<'m> Chain<'m> {
         self.reference.velocity.z < 0.0
     }
 
+    /// Whether the vehicle rises or sinks, without a pose, faster than an accelerometer's drift explains.
+    pub fn moves(&self) -> bool {
+        self.sinking.is_motion()
+    }
+
     /// The acceleration beside the one that was asked for, m/s^2, world.
     pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
         let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);

@@ -3,11 +3,10 @@
 //! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that have jumped and
 //! agree among themselves; in flight it does not: such poses are refused as long as they lie.
 
+use super::exchange::Inputs;
 use super::rules::COASTING_MAX;
-use crate::estimator::{
-    COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Increment, PoseMeasurement, Rejected, Taken,
-};
-use crate::measurement::{Stamped, is_fresh};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Rejected, Taken};
+use crate::measurement::is_fresh;
 use crate::state::State;
 use nalgebra::Quaternion;
 
@@ -63,14 +62,10 @@ impl<'m> Estimation<'m> {
         Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
     }
 
-    /// Takes what the IMU did and the poses that came since the last tick, at `now`, us, `armed` or not.
-    pub fn tick(
-        &mut self,
-        increments: &[Increment],
-        poses: &[Stamped<PoseMeasurement>],
-        armed: bool,
-        now: u64,
-    ) -> Estimate {
+    /// Takes what the IMU did and the poses that came since the last tick, `armed` or not, in the air or not.
+    pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool) -> Estimate {
+        let Inputs { increments, poses, now, .. } = *inputs;
+        self.estimator.is_airborne(airborne);
         // What ends in a time to come did not happen.
         for increment in increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
             self.estimator.imu(increment);

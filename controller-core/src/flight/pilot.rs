@@ -90,7 +90,7 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let estimate = self.estimation.tick(inputs.increments, inputs.poses, self.mode.is_armed(), inputs.now);
+        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne());
         self.decide(inputs, &estimate)
     }
 
@@ -171,6 +171,10 @@ impl<'m> Pilot<'m> {
         }
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
+        }
+        if transition.reason == Reason::PoseRegained {
+            // A landing may have been broken off when the pose was lost.
+            self.watch.tell_low_again();
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {

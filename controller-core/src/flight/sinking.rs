@@ -8,6 +8,10 @@ const DESCENT: f32 = 0.7;
 /// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
 const DRIFT: f32 = 0.05;
 
+/// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in a second: most
+/// drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
+const MOVING: (f32, f32) = (0.3, 0.01);
+
 /// How a vehicle that has lost its pose sinks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Sinking {
@@ -34,6 +38,12 @@ impl Sinking {
         self.last = Some((now, jumps));
         self.time += period;
         self.speed
+    }
+
+    /// Whether the vehicle rises or sinks faster than an accelerometer's drift explains.
+    pub fn is_motion(&self) -> bool {
+        let (speed, drift) = MOVING;
+        self.speed.abs() > speed + drift * self.time
     }
 
     /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.

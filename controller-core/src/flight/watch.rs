@@ -1,12 +1,14 @@
 //! What a flight looks like: whether the vehicle follows its reference, has landed, or lies on its back.
 //!
-//! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still. Nothing in the air does that.
+//! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer than a vehicle does
+//!   that turns round in the air: where wind carries it upwards faster than it may go down, say.
 //! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust than carries it.
 //!   Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not. Rotors that give 8 % more
-//!   than the law knows would look the same: with the law's thrust scale they do not.
+//!   than the law knows would look the same: with the law's thrust scale they do not. What rises or sinks on stands on nothing.
 //! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, or the vehicle does not
 //!   come upright, or turns on.
-//! - *Crashed*: tilted by 60 degrees or more and still. A vehicle that recovers in the air from there turns or falls.
+//! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
+//! - *Tracking lost*: far from the reference; or still, well below it: a vehicle that does not get off the ground.
 
 use super::chain::{Chain, Flown};
 use super::exchange::{Battery, Inputs};
@@ -19,8 +21,13 @@ use nalgebra::Vector3;
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
 
-/// How far below the vehicle the reference is when it has landed, m.
+/// How far below the vehicle the reference is when it has landed, m; how slow the vehicle is then, m/s; and for how long, us.
 const GONE_ON: f32 = 0.25;
+const STANDING: f32 = 0.1;
+const STANDING_LASTING: u64 = 1_000_000;
+
+/// How far above the vehicle the reference may be that does not move towards it, m.
+const HELD_DOWN: f32 = 0.5;
 
 /// The speed, m/s, and the rate, rad/s, at most, of what lies on the ground.
 const STILL: (f32, f32) = (0.15, 0.5);
@@ -45,12 +52,16 @@ const DOUBT_LASTING: u64 = 300_000;
 /// The cosine of the least tilt of a crash, 60 degrees.
 const LYING_COSINE: f32 = 0.5;
 
+/// The least part of theta~ across, of a vehicle that lies beside where the law wants it: tan(30 degrees / 4).
+const LYING_BESIDE: f32 = 0.131_652_5;
+
 /// Since when what holds.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Watch {
     tracking: Lasting,
     saturated: Lasting,
     lying: Lasting,
+    standing: Lasting,
     resting: Lasting,
     low: Lasting,
     critical: Lasting,
@@ -90,21 +101,29 @@ impl Look<'_> {
         self.mode.is_guided() && self.flown.is_some_and(|flown| !within(&flown.position_error, most))
     }
 
+    /// Whether it stands still where it should be going up.
+    fn is_held_down(&self) -> bool {
+        let (true, Some(state), Some(flown)) = (self.mode.is_guided(), self.state, self.flown) else { return false };
+        is_still(state) && flown.reference.position.z > state.state.position.z + HELD_DOWN
+    }
+
     /// Whether the rotors do not give what the law asks for.
     fn is_inexact(&self) -> bool {
         self.mode.flies() && self.chain.is_some_and(|chain| !chain.is_exact())
     }
 
-    /// Whether the vehicle lies still on its side or its back.
+    /// Whether the vehicle lies still on its side or its back, or does not turn to where the law wants it.
     fn lies(&self) -> bool {
-        let lies = |state| is_still(state) && up(&state.state.attitude) < LYING_COSINE;
+        let beside = self.flown.is_some_and(|flown| flown.mrp.xy().norm_squared() > LYING_BESIDE * LYING_BESIDE);
+        let lies = |state| is_still(state) && (beside || up(&state.state.attitude) < LYING_COSINE);
         self.mode.is_armed() && self.state.is_some_and(lies)
     }
 
     /// Whether it stands still where it should be going down, by the estimate.
     fn is_left_behind(&self) -> bool {
         let (Mode::Landing, Some(state), Some(flown)) = (self.mode, self.state, self.flown) else { return false };
-        is_still(state) && flown.reference.position.z + GONE_ON < state.state.position.z
+        let stands = is_still(state) && within(&state.state.velocity, STANDING);
+        stands && flown.reference.position.z + GONE_ON < state.state.position.z
     }
 
     /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only where nothing
@@ -127,7 +146,11 @@ impl Look<'_> {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
         self.by_imu().is_some_and(|(_, asked, state)| {
-            asked < falling && within(&state.acceleration, measured) && within(&state.state.angular_velocity, STILL.1)
+            let moves = self.chain.is_some_and(Chain::moves);
+            !moves
+                && asked < falling
+                && within(&state.acceleration, measured)
+                && within(&state.state.angular_velocity, STILL.1)
         })
     }
 
@@ -158,16 +181,19 @@ impl Watch {
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
         let look = Look { mode, state, chain, flown };
         self.jerked = mode == Mode::Descending && (self.jerked || look.jerks());
+        let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
-        let on_ground = look.is_left_behind() || look.is_held_up(self.jerked);
+        let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
+        let held_up = self.resting.is_so(look.is_held_up(self.jerked), GROUND_LASTING, now);
+        let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected(), DOUBT_LASTING, now);
         let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
         Seen {
-            tracking_lost: self.tracking.is_so(look.is_far(tracking_error_max), TRACKING_LASTING, now),
+            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now),
             saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
-            landed: self.resting.is_so(on_ground, GROUND_LASTING, now) || stands,
+            landed: left_behind || held_up || stands,
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
-            battery_low: self.low.is_so(battery == Battery::Low, BATTERY_LASTING, now) && !self.low_is_told,
+            battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
             imu_doubtful: doubtful || turning,
             overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
@@ -177,6 +203,11 @@ impl Watch {
     /// A low battery has been acted on.
     pub fn tell_low(&mut self) {
         self.low_is_told = true;
+    }
+
+    /// What was done about it has come to nothing: it is to be acted on again.
+    pub fn tell_low_again(&mut self) {
+        self.low_is_told = false;
     }
 }
 

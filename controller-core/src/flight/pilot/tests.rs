@@ -22,7 +22,7 @@ fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, 
     let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
     let inputs = Inputs { increments: &[increment], poses: &[pose], request, ..quiet(now) };
-    let estimate = pilot.estimation.tick(inputs.increments, inputs.poses, pilot.mode.is_armed(), inputs.now);
+    let estimate = pilot.estimation.tick(&inputs, pilot.mode.is_armed(), pilot.is_airborne());
     let outcome = pilot.decide(&inputs, &estimate);
     (estimate, outcome)
 }

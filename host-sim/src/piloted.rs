@@ -1,0 +1,264 @@
+//! A vehicle under the core's whole pilot: supervisor, estimator, conditioner, governor, law and allocation, in closed loop.
+//!
+//! ```text
+//! Pilot::tick -> motor command -> (delay) -> rotors, air, ground -> IMU, each millisecond -> Meddler -> conditioner
+//!      ^                                                        '-> poses, late ----------> Meddler
+//!      '------------------------------- increments, poses <-------------------------------------'
+//! ```
+//!
+//! It does in one call a tick what the firmware's tasks do, without their link and their clock: so hours pass in seconds. What
+//! an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or changes in what they say.
+//! SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
+
+use crate::instruments::{Instruments, SAMPLE};
+use crate::reality::RealVehicle;
+use controller_core::allocation::{Rotor, ThrustCurve};
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
+use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use controller_core::flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, PERIOD, Pilot, Pose, Stamped};
+use controller_core::governor::GovernorLimits;
+use controller_core::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
+use firmware::hardware::{MOTORS, MotorCommand};
+use firmware::outputs::Outputs;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use scenario::Scenario;
+use scenario::body::{BodyState, attitude_from_euler};
+use scenario::reality::ground::Ground;
+use std::collections::VecDeque;
+use std::fmt;
+
+/// What motors idle at, part of a full command: the firmware's default.
+const IDLE: f32 = 0.03;
+
+/// Where a pilot's estimator, governor and mixer lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    estimator: Estimator,
+    memory: Memory,
+}
+
+impl Place {
+    /// For a pilot of `configuration`, whose sensors are a BMI088 and a camera system.
+    #[must_use]
+    pub fn new(configuration: &Configuration) -> Box<Self> {
+        let settings = Settings::bmi088(configuration.vehicle());
+        Box::new(Self { estimator: Estimator::new(&settings), memory: Memory::EMPTY })
+    }
+}
+
+/// Who stands between the sensors and the pilot, and lays hands on the vehicle.
+pub trait Meddler {
+    /// What becomes of the vehicle a millisecond on, at `time`, us, before its sensors look.
+    fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
+
+    /// What becomes of an IMU's sample that was taken at `time`, us; none: it does not come.
+    fn sample(&mut self, sample: ImuSample, _time: u64) -> Option<ImuSample> {
+        Some(sample)
+    }
+
+    /// What becomes of a pose that arrives at `now`, us.
+    fn pose(&mut self, pose: Stamped<Pose>, _now: u64) -> Option<Stamped<PoseMeasurement>> {
+        Some(Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
+    }
+}
+
+/// Nobody.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Nobody;
+
+impl Meddler for Nobody {}
+
+/// Why a vehicle cannot be flown like this, or no further.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PilotedError {
+    /// A parameter is refused.
+    Parameter(ParameterError),
+    /// The motion is not finite any more.
+    Diverged,
+}
+
+impl fmt::Display for PilotedError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(error) => write!(f, "{error}"),
+            Self::Diverged => f.write_str("the motion is not finite"),
+        }
+    }
+}
+
+impl std::error::Error for PilotedError {}
+
+impl From<ParameterError> for PilotedError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+/// The vehicle, its sensors and its pilot.
+#[derive(Debug)]
+pub struct PilotedVehicle<'m> {
+    pilot: Pilot<'m>,
+    vehicle: RealVehicle,
+    instruments: Instruments,
+    conditioner: Conditioner,
+    outputs: Outputs,
+    curves: [ThrustCurve; MOTORS],
+    /// Plant steps in a millisecond.
+    steps: u32,
+    /// From a motor command to its effect, us.
+    delay: u64,
+    /// us.
+    now: u64,
+    /// Commands on their way, with the times at which they act, us.
+    waiting: VecDeque<(u64, MotorCommand)>,
+    acting: MotorCommand,
+    /// The part of its thrust that each rotor is left with.
+    left: [f32; MOTORS],
+    increments: Vec<Increment>,
+    poses: Vec<Stamped<PoseMeasurement>>,
+}
+
+impl<'m> PilotedVehicle<'m> {
+    /// The scenario's vehicle, standing on level ground at the origin with its rotors still, at `now`, us, of its clock. The pilot has
+    /// just booted, with what the certificate said about the scenario's configuration.
+    ///
+    /// # Errors
+    /// [`PilotedError::Parameter`]: without four rotors there is nothing to command.
+    pub fn new(
+        scenario: &Scenario,
+        certification: Result<&Certified, &Refused>,
+        settings: &FlightSettings,
+        place: &'m mut Place,
+        now: u64,
+    ) -> Result<Self, PilotedError> {
+        let configuration = &scenario.configuration;
+        let rotors = configuration.rotors().ok_or(firmware::configuration::NO_ROTORS)?;
+        let outputs = Outputs::new(rotors, 0.0)?;
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+        let [a, b, c, d] = &rotors[..] else { return Err(firmware::configuration::NO_ROTORS.into()) };
+        let standing = standing(scenario);
+        let what = standing.reality.estimator.unwrap_or_default();
+        let gravity = f64::from(configuration.vehicle().gravity);
+        let Place { estimator, memory } = place;
+        Ok(Self {
+            pilot: Pilot::new(certification, &GovernorLimits::default(), settings, estimator, memory),
+            vehicle: RealVehicle::new(&standing, configuration).switched_off(),
+            instruments: Instruments::new(&what, gravity, Vector3::zeros(), 0),
+            conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE)?,
+            outputs,
+            curves: [curve(a)?, curve(b)?, curve(c)?, curve(d)?],
+            steps: (SAMPLE as f64 * 1e-6 / scenario.timing.step()).round() as u32,
+            delay: (scenario.delay() * 1e6).round() as u64,
+            now,
+            waiting: VecDeque::new(),
+            acting: MotorCommand::Stop,
+            left: [1.0; MOTORS],
+            increments: Vec::new(),
+            poses: Vec::new(),
+        })
+    }
+
+    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments and poses of that are
+    /// replaced by the vehicle's own. With what it decided comes what the motors are told from now on.
+    ///
+    /// # Errors
+    /// [`PilotedError::Diverged`].
+    pub fn tick(
+        &mut self,
+        given: &Inputs,
+        meddler: &mut impl Meddler,
+    ) -> Result<(Outcome, MotorCommand), PilotedError> {
+        self.increments.clear();
+        self.poses.clear();
+        for _ in 0..PERIOD / SAMPLE {
+            self.pass(meddler)?;
+        }
+        let inputs = Inputs { now: self.now, increments: &self.increments, poses: &self.poses, ..*given };
+        let outcome = self.pilot.tick(&inputs);
+        let command = self.outputs.command(&outcome.output, 1.0, IDLE);
+        self.waiting.push_back((self.now + self.delay, command));
+        Ok((outcome, command))
+    }
+
+    /// A millisecond.
+    fn pass(&mut self, meddler: &mut impl Meddler) -> Result<(), PilotedError> {
+        while let Some((_, command)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+            self.acting = command;
+        }
+        let (thrusts, before) = (self.thrusts(), self.vehicle.state().attitude);
+        for _ in 0..self.steps {
+            self.vehicle.drive(&thrusts).map_err(|_| PilotedError::Diverged)?;
+        }
+        self.now += SAMPLE;
+        meddler.act(&mut self.vehicle, self.now);
+        let sample = self.instruments.sample(&turned(&before, self.vehicle.state()), self.now);
+        if let Some(sample) = meddler.sample(sample, self.now) {
+            let force = Some(&sample.specific_force);
+            let taken = self.conditioner.sample(self.now, &sample.angular_velocity, force);
+            // As the firmware's IMU task has it: a gyro that is stuck is none.
+            let is_stuck = taken.fault == Some(ImuFault::GyroStuck);
+            self.increments.extend(taken.increment.filter(|_| !is_stuck));
+        }
+        while let Some(pose) = self.instruments.arrived() {
+            self.poses.extend(meddler.pose(pose, self.now));
+        }
+        Ok(())
+    }
+
+    /// What is asked of the rotors, N, as far as they can give it.
+    fn thrusts(&self) -> [f32; MOTORS] {
+        let commands = self.acting.levels();
+        std::array::from_fn(|rotor| self.left[rotor] * self.curves[rotor].thrust(commands[rotor], 1.0))
+    }
+
+    /// The vehicle's clock, us.
+    #[must_use]
+    pub fn now(&self) -> u64 {
+        self.now
+    }
+
+    /// The pilot.
+    #[must_use]
+    pub fn pilot(&self) -> &Pilot<'m> {
+        &self.pilot
+    }
+
+    /// The vehicle as it really is.
+    #[must_use]
+    pub fn vehicle(&self) -> &RealVehicle {
+        &self.vehicle
+    }
+
+    /// The same, for whoever pushes it, picks it up or asks for its touchdowns.
+    pub fn vehicle_mut(&mut self) -> &mut RealVehicle {
+        &mut self.vehicle
+    }
+
+    /// Leaves a rotor with a part of the thrust that is asked of it, from now on.
+    pub fn weaken(&mut self, rotor: usize, left: f32) {
+        if let Some(part) = self.left.get_mut(rotor) {
+            *part = left;
+        }
+    }
+}
+
+/// `state` with the mean rate since `before`, a sample ago, if that was no turn at the body's own rate: legs that put a leaning
+/// vehicle upright turn it at once, and a gyro sees that.
+fn turned(before: &Quaternion<f64>, state: &BodyState) -> BodyState {
+    let turn = UnitQuaternion::new_normalize(before.conjugate() * state.attitude).scaled_axis();
+    let rate = turn / (SAMPLE as f64 * 1e-6);
+    let is_set_upright = state.angular_velocity == Vector3::zeros() && turn.norm() > 1e-9;
+    BodyState { angular_velocity: if is_set_upright { rate } else { state.angular_velocity }, ..*state }
+}
+
+/// The scenario, begun on the ground at the origin, level and at rest.
+fn standing(scenario: &Scenario) -> Scenario {
+    let mut standing = scenario.clone();
+    standing.reality.ground = Some(Ground { height: 0.0 });
+    let still = Vector3::zeros();
+    let attitude = attitude_from_euler(0.0, 0.0, 0.0);
+    standing.initial = BodyState { position: still, velocity: still, attitude, angular_velocity: still };
+    standing
+}

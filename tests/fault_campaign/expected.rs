@@ -1,0 +1,195 @@
+//! What must follow, as data: of each failure, by when the vehicle must do how much about it, and how much it may do at most.
+//!
+//! **The order of severity**, from the least that may be done to the most: carry on; hold; land; go down by the IMU alone; stop the motors. Of
+//! two failures the more severe answer must be given, each by its own time, and no answer may be given that is more severe than the
+//! more severe of the two allows.
+//!
+//! These are read off `docs/firmware.md` and the limits in it. The rules' table is not asked.
+
+use super::failure::Failure;
+use super::phase::Phase;
+use controller_core::flight::Mode;
+
+/// How much a vehicle does about a failure, the least first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    CarryOn,
+    Hold,
+    Land,
+    Descend,
+    Off,
+}
+
+impl Severity {
+    /// What a mode amounts to.
+    pub fn of(mode: Mode) -> Self {
+        match mode {
+            Mode::MotorTest | Mode::Idling | Mode::TakingOff | Mode::Flying => Self::CarryOn,
+            Mode::Holding => Self::Hold,
+            Mode::Landing => Self::Land,
+            Mode::Descending => Self::Descend,
+            Mode::Boot | Mode::Checks | Mode::Ready | Mode::Stopped | Mode::Locked => Self::Off,
+        }
+    }
+}
+
+use Severity::{CarryOn, Descend, Hold, Land, Off};
+
+/// What must follow from a failure.
+#[derive(Debug, Clone, Copy)]
+pub struct Answer {
+    /// In flight on the estimate: at least so much, so long after it has failed, s.
+    pub in_flight: &'static [(Severity, f64)],
+    /// In flight on the estimate: at most so much. Motors that stop on the ground after a landing are no more than that landing.
+    pub most: Severity,
+    /// Idling: motors off so long after it has failed, s.
+    pub idling: Option<f64>,
+    /// Going down by the IMU alone: motors off so long after it has failed, s.
+    pub descending: Option<f64>,
+    /// Whether going down by the IMU alone may be ended in the air.
+    pub descent_may_end: bool,
+    /// Whether what is left permits a gentle touchdown.
+    pub is_gentle: bool,
+    /// Whether the vehicle must not arm as long as it lasts.
+    pub forbids_arming: bool,
+}
+
+/// Nothing follows.
+const NOTHING: Answer = Answer {
+    in_flight: &[],
+    most: CarryOn,
+    idling: None,
+    descending: None,
+    descent_may_end: false,
+    is_gentle: true,
+    forbids_arming: false,
+};
+
+/// No poses, or poses that lie: a second on the IMU, and half a tick for the last to arrive late; then down.
+const NO_POSES: Answer =
+    Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NOTHING };
+
+/// Something outside pushes: the vehicle may go where it likes, and without a pose the IMU cannot tell it from a lie.
+const PUSHED: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NOTHING };
+
+/// Nothing can be flown any more, at once.
+const AT_ONCE: Answer = Answer {
+    in_flight: &[(Off, 0.05)],
+    most: Off,
+    idling: Some(0.05),
+    descending: Some(0.05),
+    descent_may_end: true,
+    is_gentle: false,
+    forbids_arming: true,
+};
+
+/// The vehicle may be lost: it must be off in the end, and nothing is too much.
+const LOST: Answer =
+    Answer { in_flight: &[], most: Off, idling: None, descent_may_end: true, is_gentle: false, ..NOTHING };
+
+/// What must follow from a failure.
+pub fn answer(failure: Failure, phase: Phase) -> Answer {
+    match failure {
+        Failure::PoseLost => NO_POSES,
+        // On the ground a frame that stays where it has jumped to is followed.
+        Failure::PoseJumps | Failure::PoseTurns => Answer { forbids_arming: false, ..NO_POSES },
+        // The poses come back, and the vehicle holds.
+        Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
+        // It takes a while until a drift is more than noise.
+        Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
+        // On the ground they may be of a simulated vehicle that stands still.
+        Failure::PoseFreezes if phase == Phase::Spooling => {
+            Answer { in_flight: &[(Descend, 3.6)], idling: None, forbids_arming: false, ..NO_POSES }
+        }
+        Failure::PoseFreezes => {
+            Answer { in_flight: &[(Descend, 1.3)], idling: None, forbids_arming: false, ..NO_POSES }
+        }
+        Failure::FrameMoves => NOTHING,
+        Failure::PoseVague => Answer { in_flight: &[], idling: None, forbids_arming: false, ..NO_POSES },
+        Failure::SetpointsLost if phase == Phase::Moving => {
+            Answer { in_flight: &[(Hold, 1.05)], most: Hold, ..NOTHING }
+        }
+        Failure::SetpointsLost => NOTHING,
+        Failure::StationLost => Answer {
+            in_flight: &[(Hold, 2.55), (Land, 5.05)],
+            most: Land,
+            idling: Some(2.55),
+            forbids_arming: true,
+            ..NOTHING
+        },
+        Failure::BatteryLow | Failure::BatteryCritical | Failure::BatteryWavers => {
+            Answer { in_flight: &[(Land, 3.05)], most: Land, idling: Some(3.05), forbids_arming: true, ..NOTHING }
+        }
+        // Nothing pushes it away before it has left the ground.
+        Failure::Gust | Failure::Updraft | Failure::Wind if phase == Phase::Spooling => PUSHED,
+        Failure::Gust => Answer { in_flight: &[(Land, 4.0)], ..PUSHED },
+        Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED },
+        Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED },
+        Failure::RotorWeak => LOST,
+        Failure::RotorLost => Answer { in_flight: &[(Off, 20.0)], descending: Some(40.0), ..LOST },
+        Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
+        Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },
+        Failure::Overrun => Answer { in_flight: &[(Land, 0.15)], most: Land, idling: Some(0.15), ..NOTHING },
+        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => Answer { in_flight: &[(Off, 2.5)], ..LOST },
+        // From high enough, or on its legs, it flies on.
+        Failure::Tipped => Answer { idling: Some(1.7), ..LOST },
+        Failure::Leaned => LOST,
+        Failure::Killed => {
+            Answer { in_flight: &[(Off, 0.011)], idling: Some(0.011), descending: Some(0.011), ..AT_ONCE }
+        }
+    }
+}
+
+/// The least and the most that a phase does by itself.
+pub fn of_phase(phase: Phase) -> (Severity, Severity) {
+    match phase {
+        Phase::Boot | Phase::Locked | Phase::Checks | Phase::Ready | Phase::Stopped => (Off, Off),
+        // They come to their end.
+        Phase::MotorTest | Phase::Idling => (CarryOn, Off),
+        Phase::Spooling | Phase::Climbing => (CarryOn, Hold),
+        Phase::AtPoint | Phase::Moving => (CarryOn, CarryOn),
+        Phase::Holding => (Hold, Hold),
+        Phase::Landing => (Land, Land),
+        Phase::Descending => (Descend, Descend),
+    }
+}
+
+/// At least so much, `since` s after each failure, in a flight whose failures began in `phase`.
+pub fn least(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
+    let by_one = |(failure, since): &(Failure, f64)| {
+        let answer = answer(*failure, phase);
+        let late = |limit: Option<f64>| if limit.is_some_and(|limit| *since > limit) { Off } else { CarryOn };
+        match phase {
+            Phase::Idling => late(answer.idling),
+            Phase::Descending => late(answer.descending),
+            Phase::MotorTest if *failure == Failure::Killed => late(Some(0.011)),
+            Phase::MotorTest => CarryOn,
+            _ => answer.in_flight.iter().filter(|(_, limit)| since > limit).map(|one| one.0).max().unwrap_or(CarryOn),
+        }
+    };
+    // Poses that are believed again end a landing too: the vehicle holds.
+    let holds = failed.iter().any(|(failure, _)| answer(*failure, phase).most >= Descend);
+    let least = if holds && phase == Phase::Landing { Hold } else { of_phase(phase).0 };
+    // What may be lost need not get where it is pushed; and what a sender says of itself is believed.
+    let may_be_lost = failed.iter().any(|(failure, _)| answer(*failure, phase).most == Off);
+    let is_vague = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseVague | Failure::FrameMoves));
+    let freezes_anew = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseOutage | Failure::PoseDrifts));
+    let counts = |failure: Failure| match failure {
+        // Frozen poses that begin anew are found anew; and what is lost on the ground never moves.
+        // Hands that come later find it in the air.
+        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => failed.len() == 1,
+        Failure::PoseFreezes if freezes_anew || may_be_lost && phase == Phase::Spooling => false,
+        Failure::Gust | Failure::Updraft | Failure::Wind => !may_be_lost,
+        Failure::PoseJumps | Failure::PoseTurns | Failure::PoseDrifts | Failure::PoseFreezes => !is_vague,
+        _ => true,
+    };
+    failed.iter().filter(|(failure, _)| counts(*failure)).map(by_one).max().unwrap_or(CarryOn).max(least)
+}
+
+/// At most so much.
+pub fn most(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
+    let answers = || failed.iter().map(|(failure, _)| answer(*failure, phase));
+    let (_, most) = of_phase(phase);
+    let most = answers().map(|answer| answer.most).max().unwrap_or(CarryOn).max(most);
+    if most >= Descend && answers().any(|answer| answer.descent_may_end) { Off } else { most }
+}
