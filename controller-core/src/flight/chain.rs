@@ -42,7 +42,7 @@ const AT_REST: f32 = 0.05;
 /// The least speed of a descent by the IMU alone, m/s.
 const DESCENT: f32 = 0.7;
 
-/// Where a chain's governor and mixer lie, 7 KB and 6 KB. Its user makes it, where it stays.
+/// Where a chain's governor and mixer lie, 9 KB and 6 KB. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory {
     governor: governor::Memory,
