@@ -63,7 +63,7 @@ use stream::Stream;
 use turning::{TurnGoal, Turning};
 use windows::Windows;
 
-/// Where a governor lies: 7 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
+/// Where a governor lies: 9 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory(Governor);
 

@@ -35,7 +35,7 @@ const AT_REST: f32 = 0.05;
 /// How near the height of its take-off the reference has to be, m, and how slow, m/s.
 const RISEN: (f32, f32) = (0.01, 0.01);
 
-/// Where a chain's governor and mixer lie, 7 KB and 6 KB. Its user makes it, where it stays.
+/// Where a chain's governor and mixer lie, 9 KB and 6 KB. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory {
     governor: governor::Memory,
