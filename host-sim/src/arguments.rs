@@ -360,9 +360,13 @@ impl HilArguments {
     /// The line for ground stations, and the clients it is handed to.
     ///
     /// # Errors
-    /// Names the ports that are none.
+    /// Names the ports that are none, or that nothing is handed to.
     pub fn ground(&self) -> Result<Option<(&str, Ports)>, String> {
-        self.ground.as_deref().map(|line| Ok((line, self.ports.ports()?))).transpose()
+        let ports = self.ports.ports()?;
+        if self.ground.is_none() && ports != Ports::default() {
+            return Err("--offboard-port, --ground-port, --local-port: need --ground".to_owned());
+        }
+        Ok(self.ground.as_deref().map(|line| (line, ports)))
     }
 }
 

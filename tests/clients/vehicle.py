@@ -27,7 +27,7 @@ STRETCH = 8.0 if EMULATED else 1.0
 BOARD_HEARTBEAT = 100_000  # us
 
 # The longest wait for the emulator or for the simulator to come or go, s.
-PATIENCE = 30.0
+PATIENCE = 60.0
 
 VEHICLE = os.path.join(os.path.dirname(__file__), "../../vehicles/study.toml")
 
