@@ -1,6 +1,7 @@
 //! Hours of flight, and any time of the clock: `cargo run --release -p host-sim --example endurance -- vehicles/study.toml 24` flies a day.
 
 use controller_core::certificate::certified::Certified;
+use controller_core::flight::Reason;
 use host_sim::campaign::hours::{Hours, Plan, fly};
 use rayon::prelude::*;
 use scenario::Scenario;
@@ -24,14 +25,19 @@ fn two_hours_of_missions_with_faults_are_alike() {
 
 #[test]
 fn what_time_it_is_makes_no_difference_to_the_last_bit() {
-    // A mission of ten minutes each, in whose middle: nothing happens; microseconds, milliseconds and ticks overflow 32 bits, with and
-    // without a sign; microseconds are more than double precision holds, and half of what 64 bits do.
-    let overflows = [1 << 31, 1 << 32, (1 << 31) * 1_000, (1 << 32) * 1_000, (1 << 32) * 10_000, 1 << 53, 1 << 63];
-    let starts: Vec<u64> = overflows.into_iter().map(|overflow| overflow - 300_000_000).collect();
+    // A mission of ten minutes, again and again: a fifth of a second before one of its transitions something overflows.
     let plan = |start| Plan { hours: 1, missions: 1, start, seed: 3 };
     let first = flown(plan(10_000_000));
+    let before = |overflow: u64, tick: u64| overflow - (tick - 20) * 10_000;
+    // Microseconds, 32 bits, before each of them.
+    let mut starts: Vec<u64> = first.taken.iter().map(|(tick, _)| before(1 << 32, *tick)).collect();
+    // The same with a sign; milliseconds and ticks; more than double precision holds, and half of what 64 bits do.
+    let (lost, _) = *first.taken.iter().find(|(_, reason)| *reason == Reason::PoseLost).unwrap();
+    let others: [u64; 6] = [1 << 31, (1 << 31) * 1_000, (1 << 32) * 1_000, (1 << 32) * 10_000, 1 << 53, 1 << 63];
+    starts.extend(others.map(|overflow| before(overflow, lost)));
     for (start, other) in starts.par_iter().map(|start| (start, flown(plan(*start)))).collect::<Vec<_>>() {
-        // What is printed of a number tells it from any other; one that is none, of a battery that was not low, equals itself.
+        // What is printed of a number tells it from any other.
         assert_eq!(format!("{first:?}"), format!("{other:?}"), "{start}");
     }
+    assert_eq!(first.taken.len(), 11);
 }

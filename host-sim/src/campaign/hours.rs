@@ -76,6 +76,8 @@ pub struct Hours {
     pub moves: u64,
     /// How often somebody had to ask again, because a pose of the last second was not believed.
     pub refusals: u64,
+    /// Every transition but those between checks and ready, with its tick since the beginning.
+    pub taken: Vec<(u64, Reason)>,
     /// Where the vehicle was at the end, m.
     pub position: Vector3<f64>,
 }
@@ -210,6 +212,7 @@ pub fn fly(
                 let Some(transition) = outcome.transition else { continue };
                 if !matches!(transition.reason, Reason::Started | Reason::Ready | Reason::NotReady) {
                     reasons.push(transition.reason);
+                    shown.taken.push((number * MISSION + tick, transition.reason));
                 }
                 if transition.reason == Reason::TakeOffCommanded {
                     up = tick;
