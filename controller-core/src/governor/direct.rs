@@ -59,7 +59,9 @@ const BARRED: f32 = 1.0;
 const BARRED_LONGEST: f32 = 32.0;
 
 /// What the head is driven by.
+/// Tagged, so that averaged at the beginning is all zeros: [`super::Memory::EMPTY`] counts on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(u32)]
 enum Stage {
     /// With the ticks for which a stream has been near.
     Averaged { near: u32 },
