@@ -170,17 +170,21 @@ pub fn least(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
     // Poses that are believed again end a landing too: the vehicle holds.
     let holds = failed.iter().any(|(failure, _)| answer(*failure, phase).most >= Descend);
     let least = if holds && phase == Phase::Landing { Hold } else { of_phase(phase).0 };
-    // What may be lost need not get where it is pushed; and what a sender says of itself is believed.
+    // What may be lost need not get where it is pushed, nor what is lower by the move of its frame; what a sender says of itself is believed;
+    // frozen poses that begin anew, or drift, are found anew; and hands that come later find it in the air.
+    let has = |wanted: &[Failure]| failed.iter().any(|(failure, _)| wanted.contains(failure));
     let may_be_lost = failed.iter().any(|(failure, _)| answer(*failure, phase).most == Off);
-    let is_vague = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseVague | Failure::FrameMoves));
-    let freezes_anew = failed.iter().any(|(failure, _)| matches!(failure, Failure::PoseOutage | Failure::PoseDrifts));
     let counts = |failure: Failure| match failure {
-        // Frozen poses that begin anew are found anew; and what is lost on the ground never moves.
-        // Hands that come later find it in the air.
+        Failure::Gust | Failure::Updraft | Failure::Wind => !may_be_lost && !has(&[Failure::FrameMoves]),
+        Failure::PoseFreezes if has(&[Failure::PoseOutage, Failure::PoseDrifts]) => false,
+        Failure::PoseFreezes if may_be_lost && phase == Phase::Spooling => false,
+        Failure::PoseDrifts if has(&[Failure::PoseFreezes]) => false,
+        Failure::PoseJumps | Failure::PoseTurns | Failure::PoseDrifts | Failure::PoseFreezes => {
+            !has(&[Failure::PoseVague, Failure::FrameMoves])
+        }
         Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => failed.len() == 1,
-        Failure::PoseFreezes if freezes_anew || may_be_lost && phase == Phase::Spooling => false,
-        Failure::Gust | Failure::Updraft | Failure::Wind => !may_be_lost,
-        Failure::PoseJumps | Failure::PoseTurns | Failure::PoseDrifts | Failure::PoseFreezes => !is_vague,
+        Failure::Tipped | Failure::Leaned => !has(&[Failure::Tipped]) || !has(&[Failure::Leaned]),
+        Failure::RotorLost => failed.len() == 1,
         _ => true,
     };
     failed.iter().filter(|(failure, _)| counts(*failure)).map(by_one).max().unwrap_or(CarryOn).max(least)
