@@ -3,7 +3,8 @@
 //! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
 //! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
-//! - `permission`: what arming and turning a motor need; `bench`: what is done with one motor while nothing else turns;
+//! - `permission`: what arming and turning a motor need; `motor`, `bench`: what is asked of one
+//!   motor while nothing else turns, and done with it;
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
@@ -33,6 +34,7 @@ mod fence;
 mod lasting;
 mod leaning;
 mod lift_off;
+mod motor;
 mod permission;
 pub mod pilot;
 pub mod reason;
@@ -48,10 +50,10 @@ mod watch;
 pub use crate::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
 };
-pub use bench::{MotorSetting, MotorTest, Setting, Word};
 pub use chain::{Flown, Memory};
 pub use estimate::SETTLED_AFTER;
 pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
+pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;
 pub use reason::Reason;
 pub use refusal::{Grounded, Refusal};

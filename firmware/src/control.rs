@@ -14,7 +14,6 @@ use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::recorder::tick::Tick;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
@@ -110,7 +109,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
         let voltage = voltage.filter(|voltage| voltage.age(now) <= VOLTAGE_AGE_MAX).map(|voltage| voltage.value);
-        self.shared.recorder.record(report.mode.is_armed(), || Tick { time: now, report, command, voltage });
+        self.shared.recorder.record(report.mode.is_armed(), || report.tick(now, command, voltage));
         command
     }
 

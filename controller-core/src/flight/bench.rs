@@ -8,6 +8,7 @@
 //! A tick's command goes out ten times, which is more than the six that such words take to be believed.
 
 use super::exchange::{Output, PERIOD};
+use super::motor::{MotorSetting, MotorTest, Setting, Word};
 use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
 
@@ -16,50 +17,6 @@ const SETTING_LASTS: u64 = 300_000;
 
 /// When a direction is saved, us after it was told.
 const SAVED_AFTER: u64 = 5 * PERIOD;
-
-/// One motor to be turned slowly for a while, to see which it is and which way it turns.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotorTest {
-    /// Its index in the rotors' order.
-    pub rotor: usize,
-    /// Part of the command's range, in (0, [`MOTOR_TEST_LEVEL_MAX`]].
-    pub level: f32,
-    /// How long, us, in (0, [`MOTOR_TEST_MAX`]].
-    pub duration: u64,
-}
-
-/// Something for one motor's controller.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MotorSetting {
-    /// The motor's index in the rotors' order.
-    pub rotor: usize,
-    /// What it is to do.
-    pub setting: Setting,
-}
-
-/// What a motor's controller can be told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Setting {
-    /// Make itself heard.
-    Beep,
-    /// Turn the motor as it is wired, from now on.
-    Normal,
-    /// Turn the motor the other way, from now on.
-    Reversed,
-}
-
-/// One word to a motor's controller.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Word {
-    /// Beep.
-    Beep,
-    /// Turn as it is wired.
-    Normal,
-    /// Turn the other way.
-    Reversed,
-    /// Keep that.
-    Save,
-}
 
 /// What is under way on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! What a tick is given, and what it decides.
 
-use super::bench::Word;
 use super::chain::Flown;
+use super::motor::Word;
 use super::refusal::Refusal;
 use super::request::Request;
 use super::rules::{Mode, Transition};

@@ -1,6 +1,6 @@
 //! What somebody may ask for, and the setpoints that come beside it.
 
-use super::bench::{MotorSetting, MotorTest};
+use super::motor::{MotorSetting, MotorTest};
 use crate::governor::{Motion, Setpoint};
 
 /// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.

@@ -3,7 +3,9 @@
 //! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is NaN.
 
 use crate::hardware::MotorCommand;
-use crate::shared::Report;
+use controller_core::flight::Mode;
+use controller_core::reference::Reference;
+use controller_core::state::{State, Wrench};
 use nalgebra::Vector3;
 
 /// The fields of a record in the order of [`Tick::to_bytes`], in ULog's words. The longest first: ULog knows no gaps.
@@ -19,8 +21,22 @@ pub const SIZE: usize = 8 + 4 * 30 + 2 + 1 + 1;
 pub struct Tick {
     /// us since the start.
     pub time: u64,
-    /// What control tells everybody.
-    pub report: Report,
+    /// The mode that the tick left the vehicle in.
+    pub mode: Mode,
+    /// Whether it has left the ground.
+    pub is_airborne: bool,
+    /// Where it is and how it moves, as it is estimated.
+    pub state: Option<State>,
+    /// What the law follows, and what it asks for.
+    pub reference: Option<Reference>,
+    /// See [`Self::reference`].
+    pub wrench: Option<Wrench>,
+    /// What the rotors are believed to give of it.
+    pub thrust_scale: Option<f32>,
+    /// The age of the last pose that was believed, us.
+    pub pose_age: Option<u64>,
+    /// Ticks that were missed since boot.
+    pub missed: u32,
     /// What the motors are told.
     pub command: MotorCommand,
     /// The battery, V, if it is known.
@@ -31,10 +47,9 @@ impl Tick {
     /// The record.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; SIZE] {
-        let Self { time, report, command, voltage } = self;
         let mut record = Writer { bytes: [0; SIZE], at: 0 };
-        record.put(&time.to_le_bytes());
-        let state = report.state.as_ref();
+        record.put(&self.time.to_le_bytes());
+        let state = self.state.as_ref();
         record.vector(state.map(|state| &state.position));
         record.vector(state.map(|state| &state.velocity));
         record.floats(state.map_or([f32::NAN; 4], |state| {
@@ -42,18 +57,18 @@ impl Tick {
             [q.w, q.i, q.j, q.k]
         }));
         record.vector(state.map(|state| &state.angular_velocity));
-        record.vector(report.reference.as_ref().map(|reference| &reference.position));
-        record.vector(report.reference.as_ref().map(|reference| &reference.velocity));
-        record.floats([report.wrench.map_or(f32::NAN, |wrench| wrench.thrust)]);
-        record.vector(report.wrench.as_ref().map(|wrench| &wrench.torque));
-        record.floats(command.levels());
+        record.vector(self.reference.as_ref().map(|reference| &reference.position));
+        record.vector(self.reference.as_ref().map(|reference| &reference.velocity));
+        record.floats([self.wrench.map_or(f32::NAN, |wrench| wrench.thrust)]);
+        record.vector(self.wrench.as_ref().map(|wrench| &wrench.torque));
+        record.floats(self.command.levels());
         record.floats([
-            voltage.unwrap_or(f32::NAN),
-            report.thrust_scale.unwrap_or(f32::NAN),
-            report.health.pose_age.map_or(f32::NAN, |age| age as f32 * 1e-6),
+            self.voltage.unwrap_or(f32::NAN),
+            self.thrust_scale.unwrap_or(f32::NAN),
+            self.pose_age.map_or(f32::NAN, |age| age as f32 * 1e-6),
         ]);
-        record.put(&u16::try_from(report.timing.missed).unwrap_or(u16::MAX).to_le_bytes());
-        record.put(&[report.mode as u8, u8::from(report.is_airborne)]);
+        record.put(&u16::try_from(self.missed).unwrap_or(u16::MAX).to_le_bytes());
+        record.put(&[self.mode as u8, u8::from(self.is_airborne)]);
         record.bytes
     }
 }
@@ -117,8 +132,19 @@ mod tests {
 
     #[test]
     fn what_is_not_known_is_no_number_and_all_of_a_record_is_written() {
-        let report = Report { mode: controller_core::flight::Mode::Locked, is_airborne: true, ..Report::NONE };
-        let tick = Tick { time: 7, report, command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]), voltage: None };
+        let tick = Tick {
+            time: 7,
+            mode: Mode::Locked,
+            is_airborne: true,
+            state: None,
+            reference: None,
+            wrench: None,
+            thrust_scale: None,
+            pose_age: None,
+            missed: 0,
+            command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]),
+            voltage: None,
+        };
         let bytes = tick.to_bytes();
         let mut at = 0;
         for (size, count, name) in fields() {
@@ -130,7 +156,7 @@ mod tests {
                 "timestamp" => assert_eq!(field, [7, 0, 0, 0, 0, 0, 0, 0]),
                 "motors" => assert_eq!(floats, [0.1, 0.2, 0.3, 0.4]),
                 "missed_ticks" => assert_eq!(field, [0, 0]),
-                "mode" => assert_eq!(field, [report.mode as u8]),
+                "mode" => assert_eq!(field, [Mode::Locked as u8]),
                 "airborne" => assert_eq!(field, [1]),
                 _ => assert!(floats.len() == count && floats.iter().all(|x| x.is_nan()), "{name}: {floats:?}"),
             }

@@ -1,5 +1,7 @@
 //! What a control tick did and what the line carried, for telemetry and the log.
 
+use crate::hardware::MotorCommand;
+use crate::recorder::tick::Tick;
 use controller_core::estimator::Health;
 use controller_core::flight::Mode;
 use controller_core::reference::Reference;
@@ -45,6 +47,26 @@ impl Report {
         thrust_scale: None,
         timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
     };
+}
+
+impl Report {
+    /// For the flight recorder: with what the motors are told, and the battery, V.
+    #[must_use]
+    pub fn tick(&self, time: u64, command: MotorCommand, voltage: Option<f32>) -> Tick {
+        Tick {
+            time,
+            mode: self.mode,
+            is_airborne: self.is_airborne,
+            state: self.state,
+            reference: self.reference,
+            wrench: self.wrench,
+            thrust_scale: self.thrust_scale,
+            pose_age: self.health.pose_age,
+            missed: self.timing.missed,
+            command,
+            voltage,
+        }
+    }
 }
 
 /// How well control keeps time, since boot.

@@ -8,7 +8,6 @@ use firmware::hardware::MotorCommand;
 use firmware::link::transmit::transmit;
 use firmware::recorder::AFTERWARDS;
 use firmware::recorder::ring::{Ring, SLOT};
-use firmware::recorder::tick::Tick;
 use firmware::recorder::ulog;
 use firmware::shared::Report;
 use mavlink::dialects::common::{
@@ -27,9 +26,8 @@ fn shared() -> Local {
 /// Ticks of a vehicle that is armed or not, from tick `from` on.
 fn ticks(shared: &Local, armed: bool, from: u64, count: u64) {
     for number in from..from + count {
-        let tick =
-            Tick { time: number * 10_000, report: Report::NONE, command: MotorCommand::Stop, voltage: Some(11.1) };
-        shared.recorder.record(armed, || tick);
+        let tick = || Report::NONE.tick(number * 10_000, MotorCommand::Stop, Some(11.1));
+        shared.recorder.record(armed, tick);
     }
 }
 
