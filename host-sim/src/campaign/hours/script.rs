@@ -60,7 +60,7 @@ impl Script {
             frame: [about(32_000), about(50_000)],
             go: about(34_000),
             land: about(36_000),
-            runs_down: number % 4 == 0,
+            runs_down: number.is_multiple_of(4),
             points: (0..12).map(|_| point(random)).collect(),
         }
     }
