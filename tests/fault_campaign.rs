@@ -150,7 +150,7 @@ fn two_failures_end_as_the_more_severe_of_them_must() {
 
 /// All of them: `cargo test --release -p host-sim fault_campaign -- --ignored --nocapture`.
 #[test]
-#[ignore = "takes 15 minutes of a core"]
+#[ignore = "takes 7 minutes of two cores"]
 fn all_pairs_of_failures_end_as_the_more_severe_of_them_must() {
     fly_pairs(pairs(&mut ChaCha8Rng::seed_from_u64(2)).into_iter().map(|(case, _)| case).collect());
 }
