@@ -133,12 +133,12 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    /// Goes along where the estimate has jumped in flight; whether that was possible.
+    /// Goes along where the estimate has jumped; in flight, whether that was possible.
     fn follow(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
-            (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.flies() => {
+            (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
                 self.fence.displace(before, state);
-                chain.jump(before, state, self.mode == Mode::TakingOff).is_ok()
+                !self.mode.flies() || chain.jump(before, state, self.mode == Mode::TakingOff).is_ok()
             }
             _ => true,
         }

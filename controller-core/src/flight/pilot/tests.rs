@@ -114,6 +114,21 @@ fn a_pilot_and_its_estimator_take_the_memory_their_documentation_says() {
 }
 
 #[test]
+fn the_fence_of_a_vehicle_that_idles_goes_along_with_its_frame() {
+    let mut pilot = pilot();
+    for tick in 1..SETTLING {
+        rest(&mut pilot, tick, None);
+    }
+    let (estimate, arming) = rest(&mut pilot, SETTLING, Some(Request::Arm));
+    assert_eq!(arming.mode, Mode::Idling);
+    let mut state = estimate.state;
+    let jumped_from = state.map(|estimated| estimated.state);
+    state.as_mut().unwrap().state.position = Vector3::new(3.0, 4.0, -20.0);
+    pilot.decide(&quiet((SETTLING + 1) * PERIOD), &Estimate { state, jumped_from, ..estimate });
+    assert!((pilot.fence.home() - Vector3::new(3.0, 4.0, -20.0)).norm() < 1e-4, "{}", pilot.fence.home());
+}
+
+#[test]
 fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
     let (mut pilot, last, broken) = armed();
     let mut found = sound(&broken);
