@@ -8,7 +8,7 @@
 //! - `run`: one flight, to the ground; `report`: the table;
 //! - `found`: what the campaign has found, each defect with the flight that showed it.
 //!
-//! `cargo test -p host-sim fault_campaign -- --nocapture` prints the table.
+//! `cargo test -p host-sim fault_campaign -- --nocapture` prints the table. `tests/all_pairs.rs` flies every pair.
 
 mod expected;
 mod failure;
@@ -92,7 +92,7 @@ fn singles() -> Vec<Case> {
 const LATER: [Range<u64>; 3] = [0..1, 10..100, 100..500];
 
 /// Every ordered pair of failures in every phase, each as much later as `random` has it within one of [`LATER`].
-fn pairs(random: &mut impl Rng) -> Vec<(Case, usize)> {
+pub fn pairs(random: &mut impl Rng) -> Vec<(Case, usize)> {
     let mut pairs = Vec::new();
     for phase in Phase::ALL {
         for (first, second) in Failure::ALL.into_iter().flat_map(|first| Failure::ALL.map(|second| (first, second))) {
@@ -148,14 +148,8 @@ fn two_failures_end_as_the_more_severe_of_them_must() {
     fly_pairs(pairs.into_iter().filter(is_new).map(|(case, _)| case).collect());
 }
 
-/// All of them: `cargo test --release -p host-sim fault_campaign -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes 7 minutes of two cores"]
-fn all_pairs_of_failures_end_as_the_more_severe_of_them_must() {
-    fly_pairs(pairs(&mut ChaCha8Rng::seed_from_u64(2)).into_iter().map(|(case, _)| case).collect());
-}
-
-fn fly_pairs(mut cases: Vec<Case>) {
+/// Flies them, and asks that they take every row of the table that failures lead to.
+pub fn fly_pairs(mut cases: Vec<Case>) {
     // A take-off that is long enough to be lost on the ground.
     cases.push(Case { phase: Phase::Spooling, first: Failure::RotorLost, second: None, height: 3.5 });
     let flown = fly_all(&vehicle("study"), cases);

@@ -92,6 +92,16 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
     assert_eq!(asked(&goto(MavFrame::MAV_FRAME_LOCAL_NED, 3.0, 0.0)), None);
 }
 
+/// What sending, asking for and clearing a list is answered with.
+fn there_is_none(list: u8) -> [Reply; 3] {
+    let asked = MissionList { sender: (255, 190), list };
+    [
+        Reply::Mission(asked, MavMissionResult::MAV_MISSION_UNSUPPORTED),
+        Reply::NoMission(asked),
+        Reply::Mission(asked, MavMissionResult::MAV_MISSION_ACCEPTED),
+    ]
+}
+
 #[test]
 fn missions_are_refused_and_there_is_none() {
     let shared = Local::new();
@@ -100,15 +110,7 @@ fn missions_are_refused_and_there_is_none() {
     fed.message(&MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
     fed.message(&MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1 }, 0);
     fed.message(&MISSION_COUNT_DATA { count: 3, target_system: 9, target_component: 1 }, 0);
-    let asked = MissionList { sender: (255, 190), list: 0 };
-    assert_eq!(
-        replies(&shared),
-        [
-            Reply::Mission(asked, MavMissionResult::MAV_MISSION_UNSUPPORTED),
-            Reply::NoMission(asked),
-            Reply::Mission(asked, MavMissionResult::MAV_MISSION_ACCEPTED),
-        ]
-    );
+    assert_eq!(replies(&shared), there_is_none(0));
 }
 
 #[test]
@@ -119,15 +121,7 @@ fn fence_and_rally_points_are_answered_as_what_they_are() {
         fed.bytes(&extended(&MISSION_COUNT_DATA { count: 3, target_system: 1, target_component: 1 }, &[list]), 0);
         fed.bytes(&extended(&MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, &[list]), 0);
         fed.bytes(&extended(&MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1 }, &[list]), 0);
-        let asked = MissionList { sender: (255, 190), list };
-        assert_eq!(
-            replies(&shared),
-            [
-                Reply::Mission(asked, MavMissionResult::MAV_MISSION_UNSUPPORTED),
-                Reply::NoMission(asked),
-                Reply::Mission(asked, MavMissionResult::MAV_MISSION_ACCEPTED),
-            ]
-        );
+        assert_eq!(replies(&shared), there_is_none(list));
     }
 }
 

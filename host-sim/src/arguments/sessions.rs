@@ -1,0 +1,177 @@
+//! What a session with somebody else's program is asked to be: `sitl` and `hil`, in clap's terms, and what of it is refused.
+
+use clap::{ArgGroup, Args};
+use host_sim::hil::Session;
+use host_sim::hil::port::Address;
+use host_sim::sitl;
+use host_sim::sitl::faults::Fault;
+use host_sim::sitl::port::Ports;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What a session with MAVLink clients is asked to be.
+#[derive(Args)]
+pub struct SitlArguments {
+    /// Scenario file: vehicle, rotors, gains, delay, [estimator], wind and the like [default: vehicles/study.toml, built in]
+    pub file: Option<PathBuf>,
+    /// How many times as fast as the desk's the vehicle's time passes, 0.1 to 100
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    speed: f64,
+    /// End after so much vehicle time, s [default: at Ctrl-C]
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+    /// Let something fail: pose, gyro, accelerometer, motors, ground-station or battery=VOLTS; may be given again
+    #[arg(long = "fault", value_name = "WHAT@START..END")]
+    faults: Vec<Fault>,
+    /// Keep parameters in this file from one session to the next
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
+    #[command(flatten)]
+    ports: PortArguments,
+}
+
+/// Where MAVLink clients are.
+#[derive(Args)]
+struct PortArguments {
+    /// Port at which offboard clients listen
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().offboard)]
+    offboard_port: u16,
+    /// Port at which ground stations listen
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().ground)]
+    ground_port: u16,
+    /// Port from which all is sent, and which answers whoever speaks to it
+    #[arg(long, value_name = "PORT", default_value_t = Ports::default().local)]
+    local_port: u16,
+}
+
+/// The fastest session: no desk is faster.
+const SPEED_MAX: f64 = 100.0;
+const SPEED_MIN: f64 = 0.1;
+
+/// What a session with a flight controller is asked to be.
+#[derive(Args)]
+#[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
+pub struct HilArguments {
+    /// Scenario file: vehicle, rotors, delay, [estimator]; it starts on the ground below its initial position
+    pub file: PathBuf,
+    /// Find the flight controller at this address
+    #[arg(long, value_name = "HOST:PORT")]
+    connect: Option<String>,
+    /// Wait at this address for the flight controller
+    #[arg(long, value_name = "HOST:PORT")]
+    listen: Option<String>,
+    /// End after so much vehicle time, s [default: when the other side goes]
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+    /// Withhold the pose from this vehicle time on, s: a pose source that fails
+    #[arg(long, value_name = "SECONDS")]
+    pose_until: Option<f64>,
+    /// Longest wait for the other side, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    patience: f64,
+    /// Write a row for each command: state a period later, commands, thrust, the command's own time in us
+    #[arg(long, value_name = "FILE.csv")]
+    pub log: Option<PathBuf>,
+    /// Let the vehicle's time pass at most so many times as fast as the desk's, 0.1 to 100 [default: as fast as both sides go]
+    #[arg(long, value_name = "FACTOR")]
+    speed: Option<f64>,
+    /// Find the flight controller's line for ground stations at this address, and hand it to MAVLink clients by UDP, as sitl does
+    #[arg(long, value_name = "HOST:PORT")]
+    ground: Option<String>,
+    #[command(flatten)]
+    ports: PortArguments,
+}
+
+/// A session's speed, if it is one.
+fn speed(speed: f64) -> Result<f64, String> {
+    let possible = (SPEED_MIN..=SPEED_MAX).contains(&speed);
+    possible.then_some(speed).ok_or_else(|| format!("--speed: must be from {SPEED_MIN} to {SPEED_MAX}, found {speed}"))
+}
+
+impl PortArguments {
+    /// The ports.
+    ///
+    /// # Errors
+    /// If they are not three, or one is none.
+    fn ports(&self) -> Result<Ports, String> {
+        let ports = Ports { offboard: self.offboard_port, ground: self.ground_port, local: self.local_port };
+        if ports.local == ports.offboard || ports.local == ports.ground || ports.offboard == ports.ground {
+            return Err("--offboard-port, --ground-port, --local-port: must be three ports".to_owned());
+        }
+        let named =
+            [("--offboard-port", ports.offboard), ("--ground-port", ports.ground), ("--local-port", ports.local)];
+        match named.into_iter().find(|(_, port)| *port == 0) {
+            Some((name, _)) => Err(format!("{name}: must be from 1 to 65535, found 0")),
+            None => Ok(ports),
+        }
+    }
+}
+
+impl SitlArguments {
+    /// The session.
+    ///
+    /// # Errors
+    /// Names the argument that is no speed, no time, or no set of ports.
+    pub fn session(&self) -> Result<sitl::Session, String> {
+        let speed = speed(self.speed)?;
+        if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
+            return Err(format!("--duration: must not be negative, found {duration}"));
+        }
+        Ok(sitl::Session {
+            ports: self.ports.ports()?,
+            speed,
+            duration: self.duration,
+            faults: self.faults.clone(),
+            parameters: self.parameters.clone(),
+        })
+    }
+}
+
+impl HilArguments {
+    /// Where the other side is to be found.
+    ///
+    /// # Errors
+    /// If neither is given; clap does not let that pass.
+    pub fn address(&self) -> Result<Address, String> {
+        match (&self.connect, &self.listen) {
+            (Some(address), _) => Ok(Address::Connect(address.clone())),
+            (None, Some(address)) => Ok(Address::Listen(address.clone())),
+            (None, None) => Err("--connect or --listen: one is needed".to_owned()),
+        }
+    }
+
+    /// The longest wait for the other side.
+    ///
+    /// # Errors
+    /// Names the argument if it is no time.
+    pub fn patience(&self) -> Result<Duration, String> {
+        let patience = Duration::try_from_secs_f64(self.patience).ok().filter(|patience| !patience.is_zero());
+        patience.ok_or_else(|| format!("--patience: must be greater than zero, found {}", self.patience))
+    }
+
+    /// The session's times.
+    ///
+    /// # Errors
+    /// Names the argument that is no time.
+    pub fn session(&self) -> Result<Session, String> {
+        let times = [("--duration", self.duration), ("--pose-until", self.pose_until)];
+        for (name, time) in times {
+            if let Some(time) = time.filter(|time| !(*time >= 0.0 && time.is_finite())) {
+                return Err(format!("{name}: must not be negative, found {time}"));
+            }
+        }
+        Ok(Session { duration: self.duration, pose_until: self.pose_until, speed: self.speed.map(speed).transpose()? })
+    }
+
+    /// The line for ground stations, and the clients it is handed to.
+    ///
+    /// # Errors
+    /// Names the ports that are none, or that nothing is handed to.
+    pub fn ground(&self) -> Result<Option<(&str, Ports)>, String> {
+        let ports = self.ports.ports()?;
+        if self.ground.is_none() && ports != Ports::default() {
+            return Err("--offboard-port, --ground-port, --local-port: need --ground".to_owned());
+        }
+        Ok(self.ground.as_deref().map(|line| (line, ports)))
+    }
+}
