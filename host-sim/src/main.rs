@@ -80,10 +80,12 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
     file.map_or_else(Scenario::paper, Scenario::load).map_err(|error| error.to_string())
 }
 
-/// What a scenario was read from.
-fn text_of(file: Option<&Path>) -> Result<String, String> {
-    let read = |file: &Path| std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()));
-    file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
+/// A scenario and the text it was read from, once: a pipe cannot be read twice.
+fn load_with_text(file: Option<&Path>) -> Result<(Scenario, String), String> {
+    let Some(path) = file else { return Ok((load(None)?, scenario::PAPER.to_owned())) };
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{name}: cannot be read: {error}"))?;
+    Ok((Scenario::parse(&text, &name).map_err(|error| error.to_string())?, text))
 }
 
 fn watch() -> Result<Interrupt, String> {
@@ -100,7 +102,7 @@ fn status(holds: bool, signal: Option<u8>) -> ExitCode {
 }
 
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
-    let scenario = load(file)?;
+    let (scenario, text) = load_with_text(file)?;
     if let Some(size) = large(&scenario) {
         let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
         if !large_log {
@@ -111,8 +113,7 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
         eprintln!("{named}{size}");
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
-    let text = mcap.then(|| text_of(file)).transpose()?;
-    let outcome = match fly(&scenario, &directory, text.as_deref(), &watch()?) {
+    let outcome = match fly(&scenario, &text, &directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
             eprintln!("error: {}: {error}", scenario.name);
