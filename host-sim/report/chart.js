@@ -41,7 +41,7 @@ class Chart {
     this.box.style.height = `${height}px`;
     place.append(this.box);
     Object.assign(this, { paint, mark, height, width: 0, visible: false });
-    this.margin = { left: 58, right: 14, top: 10, bottom: 24 };
+    this.margin = { left: 58, right: 26, top: 10, bottom: 24 };
     new ResizeObserver(() => this.resize()).observe(this.box);
     new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
@@ -57,7 +57,7 @@ class Chart {
 
   /** Draws, if anybody can see it or, with `always`, even so. */
   draw(always = false) {
-    if (this.width === 0) this.width = this.box.clientWidth;
+    if (this.width === 0 || always) this.width = this.box.clientWidth;
     if (this.width === 0 || !(this.visible || always)) return;
     const density = Math.max(devicePixelRatio || 1, document.documentElement.dataset.print === "" ? 3 : 1);
     for (const canvas of [this.base, this.layer]) {
@@ -131,12 +131,22 @@ class Chart {
       const half = context.measureText(text).width / 2;
       context.textAlign = "center";
       this.line([[x, bottom], [x, bottom + 4]]);
-      if (x + half < width - 26) context.fillText(text, Math.max(x, half), bottom + 8);
+      if (x + half < width - 16) context.fillText(text, Math.max(x, half), bottom + 8);
     }
     context.textAlign = "right";
-    context.fillText(unit, width - 2, bottom + 8);
+    context.fillText(unit, width, bottom + 8);
     context.strokeStyle = color("axis");
     this.line([[margin.left, bottom + 0.5], [right, bottom + 0.5]]);
+  }
+
+  /** Text that stays legible on lines. */
+  label(text, x, y) {
+    this.context.lineWidth = 3;
+    this.context.lineJoin = "round";
+    this.context.strokeStyle = color("card");
+    this.context.strokeText(text, x, y);
+    this.context.fillText(text, x, y);
+    this.context.lineWidth = 1;
   }
 
   line(points) {

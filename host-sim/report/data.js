@@ -15,7 +15,7 @@ class Track {
     this.decoded = new Map();
     const first = Object.keys(columns)[0];
     this.rows = first === undefined ? 0 : this.column(first).length;
-    this.end = start + step * Math.max(this.rows - 1, 0);
+    this.end = start + step * this.rows;
   }
 
   column(name) {
@@ -46,7 +46,7 @@ class Track {
 const tracks = data.tracks.map((track) => new Track(track));
 const flightEnd = Math.max(1e-9, ...tracks.map((track) => track.end));
 
-/** The time that plots and replay show, s. */
+/** The time that plots and replay show, s. A flight ends one row after its last. */
 const clock = {
   time: 0,
   listeners: [],
@@ -108,6 +108,7 @@ function repaint() {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 addEventListener("beforeprint", () => {
   document.documentElement.dataset.print = "";
+  document.querySelectorAll("details:has(> .tables)").forEach((details) => (details.open = true));
   repaint();
 });
 addEventListener("afterprint", () => {

@@ -7,7 +7,7 @@ const cursor = () => (view.hover === null ? clock.time : view.hover);
 
 /** Shows another range of time, within the flight and not below a few rows. */
 function show(from, to) {
-  const least = Math.min(flightEnd, 5 * Math.min(...tracks.map((track) => track.step)));
+  const least = Math.min(flightEnd, 4 * Math.min(...tracks.map((track) => track.step)));
   const width = Math.min(Math.max(to - from, least), flightEnd);
   view.from = Math.min(Math.max(from, 0), flightEnd - width);
   view.to = view.from + width;
@@ -89,20 +89,20 @@ class Plot {
     return least > greatest ? (this.logarithmic ? [0.1, 1] : [-1, 1]) : [least, greatest];
   }
 
-  /** The vertical axis: what is shown, and the bounds unless they would flatten it. */
+  /** The vertical axis: what is shown, what is proven, and other bounds unless they would flatten it. */
   axis() {
     let [least, greatest] = this.extremes(view.from, view.to);
     const most = 8 * Math.max(this.reach[1] - this.reach[0], 1e-12);
-    for (const { value } of this.fit ? [] : this.bounds) {
+    for (const { value, always } of this.fit ? [] : this.bounds) {
       const [low, high] = [Math.min(least, value), Math.max(greatest, value)];
-      if (this.logarithmic || Math.max(high, this.reach[1]) - Math.min(low, this.reach[0]) <= most) [least, greatest] = [low, high];
+      if (always || this.logarithmic || Math.max(high, this.reach[1]) - Math.min(low, this.reach[0]) <= most) [least, greatest] = [low, high];
     }
     if (this.logarithmic) {
       const high = Math.ceil(Math.log10(greatest) + 1e-9);
       const low = Math.max(Math.min(Math.floor(Math.log10(least)), high - 1), high - 9);
       return { least: 10 ** low, greatest: 10 ** high, logarithmic: true };
     }
-    const room = greatest - least > 1e-9 * Math.max(Math.abs(greatest), 1e-6) ? 0.07 * (greatest - least) : Math.max(Math.abs(greatest) * 0.1, 1e-6);
+    const room = greatest - least > 1e-9 * Math.max(Math.abs(greatest), 1e-6) ? 0.07 * (greatest - least) : Math.abs(greatest) * 0.1 || 1;
     return { least: least - room, greatest: greatest + room };
   }
 
@@ -121,21 +121,24 @@ class Plot {
   paintBounds(context) {
     const { chart } = this;
     const written = [];
+    const mirrored = (bound) => this.bounds.find(({ value, label }) => label === bound.label && value === -bound.value);
     context.textAlign = "right";
-    for (const { value, label, color: name, text } of this.bounds) {
+    for (const bound of this.bounds) {
+      const { value, label, color: name, text } = bound;
       const y = chart.y(value);
       context.strokeStyle = context.fillStyle = color(name);
       context.globalAlpha = 0.75;
       context.setLineDash([2, 3]);
-      chart.line([[chart.margin.left, y], [chart.width, y]]);
+      chart.line([[chart.margin.left, y], [chart.width - chart.margin.right, y]]);
       context.setLineDash([]);
       context.globalAlpha = 1;
       const above = value > 0 ? y - 3 : y + 14;
       // Only where no other label stands; the table below the plot has them all.
+      if (value < 0 && mirrored(bound)) continue;
       if (!(y > 2 && y < chart.height - chart.margin.bottom) || written.some((other) => Math.abs(other - above) < 13)) continue;
       written.push(above);
       context.textBaseline = "alphabetic";
-      context.fillText(`${label}: ${text}`, chart.width - chart.margin.right - 4, Math.max(above, 14));
+      chart.label(`${label}: ${mirrored(bound) ? "±" : ""}${text}`, chart.width - chart.margin.right - 4, Math.max(above, 12));
     }
   }
 

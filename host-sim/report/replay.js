@@ -34,12 +34,12 @@ class Replay {
     const greatest = [0, 1, 2].map((axis) => Math.max(...points.map((at) => at[axis])));
     this.middle = least.map((value, axis) => (value + greatest[axis]) / 2);
     this.extent = Math.max(...least.map((value, axis) => greatest[axis] - value), 6 * this.shape.arm);
-    const square = ticks(0, this.extent, 8)[1];
+    const square = ticks(0, this.extent, 14)[1];
     this.floor = { square, z: Math.floor(least[2] / square) * square };
     this.floor.x = [Math.floor(least[0] / square) - 1, Math.ceil(greatest[0] / square) + 1];
     this.floor.y = [Math.floor(least[1] / square) - 1, Math.ceil(greatest[1] / square) + 1];
     this.largest = Math.max(1, (0.25 * this.extent) / this.shape.arm);
-    this.scale = Math.max(1, (0.06 * this.extent) / this.shape.arm);
+    this.scale = Math.max(1, (0.07 * this.extent) / this.shape.arm);
   }
 
   build() {
@@ -86,7 +86,10 @@ class Replay {
       }
     });
     this.listen();
-    new ResizeObserver(() => this.draw()).observe(frame);
+    new ResizeObserver(() => {
+      if (this.untouched) this.frame();
+      this.draw();
+    }).observe(frame);
   }
 
   /** What the lines mean. */
@@ -97,29 +100,55 @@ class Replay {
       return make("li", {}, swatch, text);
     };
     const paths = this.bodies.map(({ color: name, label }) => entry(name, this.bodies.length > 1 ? label : "flown"));
-    return make("ul", { class: "key" }, ...paths, entry("orange", "reference"), entry("vermilion", "thrust; front rotors"));
+    return make("ul", { class: "key" }, ...paths, entry("orange", "reference"), entry("vermilion", "thrust; front rotors"),
+      ...(Number.isFinite(this.bodies[0].source.value("rotor_1", 0)) ? [entry("sky", "rotor thrusts")] : []));
   }
 
   reset() {
+    Object.assign(this.camera, { azimuth: -0.65, elevation: 0.36 });
     this.setFollow(false);
-    Object.assign(this.camera, { azimuth: -0.65, elevation: 0.36, target: this.middle, distance: 1.95 * this.extent });
-    this.draw();
+  }
+
+  /** Comes as close as lets everything be seen, floor and vehicle included, and centres it. */
+  frame() {
+    const { camera, canvas, floor } = this;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (width === 0) return;
+    const corners = floor.x.flatMap((x) => floor.y.map((y) => [x * floor.square, y * floor.square, floor.z]));
+    const points = [...corners, ...[...this.paths.flat(), ...this.asked].map(({ at }) => at)];
+    const room = Math.min(24, 0.06 * width);
+    camera.target = [...this.middle];
+    for (camera.distance = 0.7 * this.extent; camera.distance < 8 * this.extent; camera.distance *= 1.04) {
+      camera.aim(width, height);
+      let at = points.map((point) => camera.project(point));
+      if (at.includes(null)) continue;
+      const span = (axis) => [Math.min(...at.map((point) => point[axis])), Math.max(...at.map((point) => point[axis]))];
+      const [[left, right], [top, bottom]] = [span(0), span(1)];
+      if (right - left > width - 2 * room || bottom - top > height - 44 - 2 * room) continue;
+      const metres = camera.distance / camera.focal;
+      camera.target = add(camera.target, camera.right, ((left + right - width) / 2) * metres);
+      camera.target = add(camera.target, camera.up, (-(top + bottom - height - 30) / 2) * metres);
+      return;
+    }
   }
 
   setFollow(follow) {
     this.follow = follow;
     this.followButton.setAttribute("aria-pressed", follow);
-    this.camera.distance = follow ? Math.max(9 * this.shape.arm * this.scale, 0.3 * this.extent) : 1.95 * this.extent;
-    if (!follow) this.camera.target = this.middle;
+    this.untouched = !follow;
+    if (follow) this.camera.distance = Math.max(9 * this.shape.arm * this.scale, 0.3 * this.extent);
+    else this.frame();
     this.draw();
   }
 
   approach(factor) {
+    this.untouched = false;
     this.camera.distance = Math.min(Math.max(this.camera.distance / factor, 3 * this.shape.arm), 6 * this.extent);
     this.draw();
   }
 
   orbit(right, up) {
+    this.untouched = false;
     this.camera.azimuth -= right;
     this.camera.elevation = Math.min(Math.max(this.camera.elevation + up, -0.2), 1.55);
     this.draw();

@@ -126,10 +126,15 @@ fn about_plots(ticks_per_row: u64) -> String {
 fn claims_table(claims: &[Claim]) -> Table {
     let mut table = Table::new("What was claimed and what was flown", &["claim", "required", "flown", "verdict"]);
     table.rows.extend(claims.iter().map(|claim| {
-        let [required, flown] = [&claim.required, &claim.flown].map(|text| Cell::number(text.clone()));
+        let [required, flown] = [&claim.required, &claim.flown].map(|text| Cell::number(typeset(text)));
         vec![Cell::text(claim.claim.clone()), required, flown, Cell::Verdict(claim.holds)]
     }));
     table
+}
+
+/// As a page may write what a terminal has to spell.
+fn typeset(text: &str) -> String {
+    text.replace("<=", "≤").replace(">=", "≥").replace("^2", "²")
 }
 
 /// The inequalities that decide whether the commands are proven to stay within the limits.
@@ -137,7 +142,7 @@ fn inequalities(verdict: &Verdict) -> Table {
     let head = ["inequality", "required", "available", "margin", "verdict"];
     let mut table = Table::new("Commands: a proof", &head);
     table.rows.extend(verdict.certificate().inequalities().map(|inequality| {
-        let side = |value: f64| Cell::number(format!("{} {}", short(value), inequality.unit).trim_end());
+        let side = |value: f64| Cell::number(typeset(format!("{} {}", short(value), inequality.unit).trim_end()));
         let margin = Cell::number(percent(inequality.margin()));
         let (required, available) = (side(inequality.required), side(inequality.available));
         vec![Cell::text(inequality.name), required, available, margin, Cell::Verdict(Some(inequality.holds()))]

@@ -87,6 +87,8 @@ pub struct Bound {
     pub label: String,
     /// The colour of the curve that it belongs to, or [`Color::Ink`].
     pub color: Color,
+    /// Whether the axis reaches it even where that flattens the curves. A reader can leave all bounds out.
+    pub always: bool,
 }
 
 /// Curves over time.
@@ -131,7 +133,7 @@ impl Plot {
                 "dashed": curve.dashed })
         });
         let bounds = self.bounds.iter().map(|bound| {
-            json!({ "value": bound.value, "label": bound.label, "color": bound.color.name(), "text": self.measure(bound.value) })
+            json!({ "value": bound.value, "label": bound.label, "color": bound.color.name(), "always": bound.always, "text": self.measure(bound.value) })
         });
         json!({ "title": self.title, "unit": self.unit, "logarithmic": self.logarithmic,
             "curves": curves.collect::<Vec<_>>(), "bounds": bounds.collect::<Vec<_>>() })

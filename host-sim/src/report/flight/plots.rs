@@ -7,7 +7,10 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
-/// Every plot for which `track` has columns.
+/// What the vehicle has, which may be far from what is ever commanded.
+const LIMIT: &str = "vehicle's limit";
+
+/// Every plot for which `track` has columns; cut commands only where there are any.
 #[must_use]
 pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> Vec<Plot> {
     let mut plots = motion(scenario);
@@ -15,7 +18,11 @@ pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> V
     plots.extend(inside(scenario));
     plots.extend(estimates());
     plots.extend(surroundings());
-    plots.retain(|plot| plot.curves.iter().all(|curve| track.column(&curve.column).is_some()));
+    let cut = track.column("clipped").is_some_and(|clipped| clipped.contains(&1.0));
+    plots.retain(|plot| {
+        let mut columns = plot.curves.iter().map(|curve| curve.column.as_str());
+        columns.all(|column| track.column(column).is_some() && (column != "clipped" || cut))
+    });
     plots
 }
 
@@ -53,12 +60,12 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     if scenario.is_papers() {
         thrust.extend([PUBLISHED_THRUST.0, PUBLISHED_THRUST.1].map(|value| ink(value, "published")));
     }
-    thrust.push(ink(f64::from(limits.thrust_max), "vehicle's limit"));
+    thrust.push(ink(f64::from(limits.thrust_max), LIMIT));
     let mut torque = both(certificate.torque().into(), "proven");
     if scenario.is_papers() {
         torque.extend(both(PUBLISHED_TORQUE, "published"));
     }
-    torque.extend(both(limits.torque_max.map(f64::from).into(), "vehicle's limit"));
+    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT));
     let mut plots = vec![
         Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).within(thrust),
         Plot::new("Torques", "N m", axes(["tau_x", "tau_y", "tau_z"])).within(torque),
@@ -82,8 +89,9 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
 /// What the law goes through on its way: filters and saturated feedbacks.
 fn inside(scenario: &Scenario) -> Vec<Plot> {
     let gains = scenario.configuration.gains();
-    let level = |value: f32, label: &str, color| Bound { value: value.into(), label: label.to_owned(), color };
-    let m_p = gains.map(|gains| [level(gains.m_p, "M_p", Color::Ink), level(-gains.m_p, "−M_p", Color::Ink)]);
+    let level =
+        |value: f32, label: &str, color| Bound { value: value.into(), label: label.to_owned(), color, always: true };
+    let m_p = gains.map(|gains| [level(gains.m_p, "M_p", Color::Ink), level(-gains.m_p, "M_p", Color::Ink)]);
     let norm = gains.map(|gains| ink(3f64.sqrt() * f64::from(gains.m_p), "√3 M_p"));
     let feedbacks =
         gains.map(|gains| [level(gains.m_theta, "M_ϑ", Color::Blue), level(gains.m_omega, "M_ω", Color::Vermilion)]);
@@ -147,17 +155,18 @@ fn desired(columns: [&str; 3]) -> Vec<Curve> {
 }
 
 fn ink(value: f64, label: &str) -> Bound {
-    Bound { value, label: label.to_owned(), color: Color::Ink }
+    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT }
 }
 
 fn interval(Interval { least, greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
-    [least, greatest].map(|value| Bound { value, label: label.to_owned(), color }).into()
+    [least, greatest].map(|value| Bound { value, label: label.to_owned(), color, always: true }).into()
 }
 
 /// A level on each side of zero for each axis; equal levels are one.
 fn both(levels: [f64; 3], label: &str) -> Vec<Bound> {
-    let sides =
-        |level: f64, label: String, color| [level, -level].map(|value| Bound { value, label: label.clone(), color });
+    let sides = |level: f64, named: String, color| {
+        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT })
+    };
     if levels.iter().all(|level| *level == levels[0]) {
         return sides(levels[0], format!("each, {label}"), Color::Ink).into();
     }
