@@ -82,7 +82,9 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
 
 /// What a scenario was read from.
 fn text_of(file: Option<&Path>) -> Result<String, String> {
-    let read = |file: &Path| std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()));
+    let read = |file: &Path| {
+        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+    };
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }
 
@@ -176,12 +178,12 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
 }
 
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
-    let session = arguments.session()?;
-    let scenario = match &arguments.file {
-        Some(file) => Scenario::load(file),
-        None => Scenario::parse(STUDY, "vehicles/study.toml (built in)"),
+    let (text, name) = match &arguments.file {
+        Some(file) => (text_of(Some(file))?, file.display().to_string()),
+        None => (STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned()),
     };
-    let scenario = scenario.map_err(|error| error.to_string())?;
+    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+    let session = arguments.session(text)?;
     // Whoever has stopped to read is none the less a pilot.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
     match sitl::run(&scenario, &session, &watch()?, show) {
