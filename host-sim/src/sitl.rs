@@ -30,6 +30,7 @@ mod voice;
 pub mod world;
 
 use crate::interrupt::Interrupt;
+use crate::recording::session::Moment;
 use clock::SimClock;
 use controller_core::flight::Mode;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
@@ -197,9 +198,15 @@ impl Sitl {
         self.clock.run(&mut self.pool, end);
     }
 
-    /// The vehicle's time, us.
-    fn now(&self) -> u64 {
-        self.clock.now()
+    /// What there is to be seen of it.
+    fn moment(&self) -> Moment {
+        Moment {
+            now: self.clock.now(),
+            truth: self.world.state(),
+            rotors: self.world.thrusts(),
+            report: self.shared.report.get().map(|report| report.value),
+            voltage: self.shared.voltage.get().map(|voltage| voltage.value),
+        }
     }
 
     /// One line: time, mode, position, battery.
@@ -272,7 +279,7 @@ pub fn run(
             tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
             record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
-        record.iter_mut().try_for_each(|record| record.look(&sitl)).map_err(SitlError::Input)?;
+        record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
         if shown.elapsed() >= STATUS {
             shown += STATUS;
             tell(&sitl.status());

@@ -25,16 +25,16 @@ pub const TOPICS: &[Topic] = &[
 const INFORMATION: u8 = 2;
 
 /// One moment of a session.
-#[derive(Debug, Clone, Copy)]
-pub struct Moment<'a> {
+#[derive(Debug, Clone)]
+pub struct Moment {
     /// The vehicle's time, us.
     pub now: u64,
     /// Where it really is.
-    pub truth: &'a BodyState,
+    pub truth: BodyState,
     /// What its rotors really give, N.
-    pub rotors: &'a [f64],
+    pub rotors: Vec<f64>,
     /// What the last control tick did, once there was one.
-    pub report: Option<&'a Report>,
+    pub report: Option<Report>,
     /// The battery as it is measured, V, if it is.
     pub voltage: Option<f32>,
 }
@@ -44,8 +44,9 @@ impl<W: Write> Recording<W> {
     ///
     /// # Errors
     /// As the writer's.
-    pub fn moment(&mut self, moment: &Moment<'_>) -> io::Result<()> {
-        let Moment { now, truth, rotors, report, voltage } = *moment;
+    pub fn moment(&mut self, moment: &Moment) -> io::Result<()> {
+        let Moment { now, truth, rotors, report, voltage } = moment;
+        let now = *now;
         self.message("/vehicle", now, &pose(now, &truth.position, &truth.attitude))?;
         self.message("/tf", now, &transform(now, &truth.position, &truth.attitude))?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;

@@ -1,6 +1,5 @@
 //! A session's recording: a moment every control tick, half a tick after it, and all that the vehicle says.
 
-use super::Sitl;
 use crate::recording::Recording;
 use crate::recording::session::{Moment, TOPICS};
 use crate::whole_file::WholeFile;
@@ -34,25 +33,16 @@ impl Record {
         self.due
     }
 
-    /// Adds what there is to be seen of `sitl`, if it is due.
+    /// Adds a moment, if one is due.
     ///
     /// # Errors
     /// In words, if it cannot be written.
-    pub fn look(&mut self, sitl: &Sitl) -> Result<(), String> {
-        let now = sitl.now();
-        if now < self.due {
+    pub fn look(&mut self, moment: &Moment) -> Result<(), String> {
+        if moment.now < self.due {
             return Ok(());
         }
         self.due += self.period;
-        let report = sitl.shared.report.get().map(|report| report.value);
-        let moment = Moment {
-            now,
-            truth: &sitl.world.state(),
-            rotors: &sitl.world.thrusts(),
-            report: report.as_ref(),
-            voltage: sitl.shared.voltage.get().map(|voltage| voltage.value),
-        };
-        self.recording.moment(&moment).map_err(failed(&self.path))
+        self.recording.moment(moment).map_err(failed(&self.path))
     }
 
     /// Adds a text that the vehicle said at `time`, us.

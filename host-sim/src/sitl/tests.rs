@@ -174,7 +174,7 @@ fn a_recording_has_the_flight_tick_by_tick_and_every_word() {
     let mut watch = |flown: &mut Flown, seconds: u32| {
         for _ in 0..seconds * 100 {
             flown.pass(0.01);
-            record.look(&flown.sitl).unwrap();
+            record.look(&flown.sitl.moment()).unwrap();
             let said = flown.sitl.texts.take();
             said.iter().for_each(|(time, text)| record.said(*time, text).unwrap());
             (ticks, words) = (ticks + 1, words + said.len());
