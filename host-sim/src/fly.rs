@@ -9,7 +9,7 @@ use crate::plots;
 use crate::plots::canvas::PlotError;
 use crate::plots::record::Record;
 use crate::progress::Progress;
-use crate::recording::Recording;
+use crate::recording::{Recording, flight};
 use crate::report::flight as report_page;
 use crate::report::recorder::Recorder as PageRecorder;
 use crate::whole_file::WholeFile;
@@ -194,10 +194,7 @@ struct Recorder {
 impl Recorder {
     fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
         let Output { file, path } = Output::create(directory, "flight.mcap")?;
-        let rotors = scenario.configuration.rotors();
-        let places: Vec<[f64; 3]> =
-            rotors.into_iter().flat_map(|rotors| rotors.iter()).map(|rotor| rotor.position.cast().into()).collect();
-        let recording = Recording::begin(file, &scenario.name, text, &places).map_err(failed(&path))?;
+        let recording = Recording::begin(file, scenario, text, flight::TOPICS).map_err(failed(&path))?;
         Ok(Self { recording, path })
     }
 

@@ -80,12 +80,12 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
     file.map_or_else(Scenario::paper, Scenario::load).map_err(|error| error.to_string())
 }
 
-/// A scenario and the text it was read from, once: a pipe cannot be read twice.
-fn load_with_text(file: Option<&Path>) -> Result<(Scenario, String), String> {
-    let Some(path) = file else { return Ok((load(None)?, scenario::PAPER.to_owned())) };
-    let name = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| format!("{name}: cannot be read: {error}"))?;
-    Ok((Scenario::parse(&text, &name).map_err(|error| error.to_string())?, text))
+/// What a scenario is read from, once: a pipe cannot be read twice.
+fn text_of(file: Option<&Path>) -> Result<String, String> {
+    let read = |file: &Path| {
+        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+    };
+    file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }
 
 fn watch() -> Result<Interrupt, String> {
@@ -102,7 +102,9 @@ fn status(holds: bool, signal: Option<u8>) -> ExitCode {
 }
 
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
-    let (scenario, text) = load_with_text(file)?;
+    let text = text_of(file)?;
+    let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
+    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
     if let Some(size) = large(&scenario) {
         let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
         if !large_log {
@@ -177,12 +179,12 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
 }
 
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
-    let session = arguments.session()?;
-    let scenario = match &arguments.file {
-        Some(file) => Scenario::load(file),
-        None => Scenario::parse(STUDY, "vehicles/study.toml (built in)"),
+    let (text, name) = match &arguments.file {
+        Some(file) => (text_of(Some(file))?, file.display().to_string()),
+        None => (STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned()),
     };
-    let scenario = scenario.map_err(|error| error.to_string())?;
+    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+    let session = arguments.session(text)?;
     // Whoever has stopped to read is none the less a pilot.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
     match sitl::run(&scenario, &session, &watch()?, show) {

@@ -13,6 +13,7 @@
 //! | [`pace`] | the vehicle's time against everybody else's |
 //! | [`faults`] | what is to fail, and when |
 //! | [`flash`] | where parameters are kept |
+//! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status and parameters are the library's tasks that boards run; here they share
 //! a thread and a simulated clock, which is let go no further than the desk's. The configuration is certified as at a board's boot, and a
@@ -24,10 +25,12 @@ pub mod flash;
 pub mod line;
 pub mod pace;
 pub mod port;
+mod record;
 mod voice;
 pub mod world;
 
 use crate::interrupt::Interrupt;
+use crate::recording::session::Moment;
 use clock::SimClock;
 use controller_core::flight::Mode;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
@@ -45,6 +48,7 @@ use futures::task::LocalSpawnExt;
 use line::Line;
 use pace::Pace;
 use port::{Port, Ports};
+use record::Record;
 use scenario::{Scenario, board};
 use std::cell::RefCell;
 use std::fmt;
@@ -74,12 +78,14 @@ pub struct Session {
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,
+    /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
+    pub recording: Option<(PathBuf, String)>,
 }
 
 /// Why a session could not be run, or not to its end.
 #[derive(Debug)]
 pub enum SitlError {
-    /// The scenario, a file or a port cannot be used: why, in a line.
+    /// The scenario, a file or a port cannot be used, or a file not be written: why, in a line.
     Input(String),
     /// The vehicle's motion is not finite any more, at this time, s.
     Diverged(f64),
@@ -192,6 +198,17 @@ impl Sitl {
         self.clock.run(&mut self.pool, end);
     }
 
+    /// What there is to be seen of it.
+    fn moment(&self) -> Moment {
+        Moment {
+            now: self.clock.now(),
+            truth: self.world.state(),
+            rotors: self.world.thrusts(),
+            report: self.shared.report.get().map(|report| report.value),
+            voltage: self.shared.voltage.get().map(|voltage| voltage.value),
+        }
+    }
+
     /// One line: time, mode, position, battery.
     fn status(&self) -> String {
         let report = self.shared.report.get().map(|report| report.value);
@@ -232,6 +249,8 @@ pub fn run(
     mut tell: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
     let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
+    let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
+    let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
     tell(&format!(
@@ -241,26 +260,34 @@ pub fn run(
     let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
     let mut pace = Pace::new(session.speed);
     let mut shown = Instant::now();
-    loop {
+    let ended = loop {
         let now = sitl.clock.now();
         if let Some(signal) = interrupt.signal() {
-            return Ok(sitl.summary(Some(signal)));
+            break Ok(sitl.summary(Some(signal)));
         }
         if end.is_some_and(|end| now >= end) {
-            return Ok(sitl.summary(None));
+            break Ok(sitl.summary(None));
         }
-        let next = pace.next(now).min(end.unwrap_or(u64::MAX));
+        let due = record.as_ref().map_or(u64::MAX, Record::due);
+        let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
         pace.wait(next);
         sitl.pass(next);
-        sitl.world.check().map_err(|_| SitlError::Diverged(next as f64 * 1e-6))?;
+        if sitl.world.check().is_err() {
+            break Err(SitlError::Diverged(next as f64 * 1e-6));
+        }
         for (time, text) in sitl.texts.take() {
             tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+            record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
+        record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
         if shown.elapsed() >= STATUS {
             shown += STATUS;
             tell(&sitl.status());
         }
-    }
+    };
+    // Also of a session that ended badly: what led to it is in there.
+    record.map_or(Ok(()), Record::finish).map_err(SitlError::Input)?;
+    ended
 }
 
 #[cfg(test)]

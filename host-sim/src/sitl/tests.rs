@@ -21,7 +21,7 @@ impl Flown {
         let ports = Ports { offboard: port(&client), ground: port(&ground), local: port(&free) };
         drop(free);
         let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-        let session = Session { ports, speed: 1.0, duration: None, faults, parameters };
+        let session = Session { ports, speed: 1.0, duration: None, faults, parameters, recording: None };
         let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
         assert_eq!(warning, None);
         Self { sitl, client, local: ports.local, sequence: 0 }
@@ -148,11 +148,63 @@ fn parameters_outlast_a_session_and_count_at_the_next_boot() {
 
 #[test]
 fn what_no_board_could_fly_is_refused_by_name() {
-    let session = Session { ports: Ports::default(), speed: 1.0, duration: None, faults: Vec::new(), parameters: None };
+    let session = Session {
+        ports: Ports::default(),
+        speed: 1.0,
+        duration: None,
+        faults: Vec::new(),
+        parameters: None,
+        recording: None,
+    };
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();
     assert!(refused(scenario::PAPER).starts_with("paper: rotors: missing"));
     let slow = STUDY.replace("lag = 0.030 ", "lag = 1.0 ");
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
     assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
+}
+
+#[test]
+fn a_recording_has_the_flight_tick_by_tick_and_every_word() {
+    let path = std::env::temp_dir().join(format!("host-sim-session-{}.mcap", std::process::id()));
+    let mut flown = Flown::boot(STUDY, &[], None);
+    let mut record = Record::create(&path, &Scenario::parse(STUDY, "a test").unwrap(), STUDY).unwrap();
+    assert!(!path.exists(), "it shows up when it is finished");
+    let (mut ticks, mut words) = (0, 0);
+    let mut watch = |flown: &mut Flown, seconds: u32| {
+        for _ in 0..seconds * 100 {
+            flown.pass(0.01);
+            record.look(&flown.sitl.moment()).unwrap();
+            let said = flown.sitl.texts.take();
+            said.iter().for_each(|(time, text)| record.said(*time, text).unwrap());
+            (ticks, words) = (ticks + 1, words + said.len());
+        }
+    };
+    watch(&mut flown, 5);
+    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+    watch(&mut flown, 12);
+    let height = flown.sitl.world.state().position.z;
+    record.finish().unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let mut last = std::collections::HashMap::new();
+    let mut counts = std::collections::HashMap::<String, usize>::new();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        *counts.entry(message.channel.topic.clone()).or_default() += 1;
+        let value = serde_json::from_slice::<serde_json::Value>(&message.data).unwrap();
+        let schema = &message.channel.schema.as_ref().unwrap().data;
+        let described = serde_json::from_slice::<serde_json::Value>(schema).unwrap();
+        let known = |field| described["properties"].get(field).is_some();
+        assert!(value.as_object().unwrap().keys().all(known), "{}", message.channel.topic);
+        last.insert(message.channel.topic.clone(), value);
+    }
+    assert_eq!((counts["/vehicle"], counts["/state"], counts["/log"]), (ticks, ticks, words));
+    assert_eq!(last["/vehicle"]["pose"]["position"]["z"].as_f64(), Some(height));
+    assert_eq!(last["/state"]["mode"], Mode::Holding.text());
+    // The law flies from the arming on, and knows where it is to be.
+    assert!(counts["/law"] > 1_000 && counts["/law"] == counts["/reference"], "{counts:?}");
+    assert!((last["/reference"]["pose"]["position"]["z"].as_f64().unwrap() - height).abs() < 0.05);
+    assert!((last["/told"]["pose"]["position"]["z"].as_f64().unwrap() - height).abs() < 0.05);
 }
