@@ -190,11 +190,11 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         "thrust_scale",
         "rotor_scales",
     ])?;
-    if let Some(key) = NOISE.into_iter().find(|key| section.has(key)) {
-        if let Some(other) = ["sensors", "estimator"].into_iter().find(|other| root.has(other)) {
-            let problem = format!("[{other}] says what is measured: leave that section or this key out");
-            return Err(FieldError::new(section.path_of(key), problem));
-        }
+    let measured = NOISE.into_iter().find(|key| section.has(key));
+    let told = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
+    if let (Some(key), Some(other)) = (measured, told) {
+        let problem = format!("[{other}] says what is measured: leave that section or this key out");
+        return Err(FieldError::new(section.path_of(key), problem));
     }
     if section.has("rotor_scales") && configuration.rotors().is_none() {
         let problem = "needs [rotors]: add that section or leave this key out";

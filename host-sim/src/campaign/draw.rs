@@ -50,7 +50,7 @@ const WHOLE: f64 = 1e-9;
 #[must_use]
 pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u64) -> Scenario {
     let mut drawn = Drawn(ChaCha8Rng::seed_from_u64(number));
-    drawn.0.set_stream(seed.into());
+    drawn.0.set_stream(seed);
     let mut thrown = scenario.clone();
     let hovers = match ranges.reference {
         Asked::File => false,
