@@ -130,6 +130,12 @@ pub trait Watchdog {
     fn feed(&mut self);
 }
 
+/// What starts the whole firmware anew.
+pub trait Restart {
+    /// Starts it anew. On a board this does not return.
+    fn restart(&mut self);
+}
+
 /// The battery's voltage, where a board can measure it.
 pub trait Battery {
     /// Volts; none where there is nothing to measure with.

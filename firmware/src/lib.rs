@@ -17,13 +17,14 @@
 //! | [`mounting`] | how a sensor sits in the vehicle |
 //! | [`outputs`] | thrusts to motor commands |
 //! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
-//! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
+//! | [`parameters`] | the numbers that may be set from the ground, certified where that matters, kept in flash |
 //! | [`radio`] | a transmitter in somebody's hands: arming, kill switch, sticks |
 //! | [`recorder`] | the last seconds of the last flight, in memory that outlives a reset |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`repeat`] | motor commands sent again while they are young |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
+//! | [`restart`] | the restart that a command asked for |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
 //!
@@ -59,5 +60,6 @@ pub mod redundant;
 mod registers;
 pub mod repeat;
 pub mod replay;
+pub mod restart;
 pub mod shared;
 pub mod status;

@@ -21,6 +21,9 @@
 //! | link | [`Shared::replies`] | link, its other half | until sent |
 //! | board | [`Shared::clock_doubtful`] | control | until reboot |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
+//! | link | [`Shared::judging`] | control | while it lasts |
+//! | link | [`Shared::restarting`] | control, restart | until the restart |
+//! | restart | [`Shared::can_restart`] | link | for ever |
 //! | control | [`Shared::recorder`] | link | until the next flight |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
@@ -88,6 +91,12 @@ pub struct Shared<M: RawMutex> {
     pub requests: Queue<M, Asked, REQUESTS>,
     /// Raised while parameters are written to flash: nothing begins to turn.
     pub saving: Flag,
+    /// Raised while a changed configuration is certified: nothing begins to turn.
+    pub judging: Flag,
+    /// Raised by a command to restart: nothing begins to turn any more.
+    pub restarting: Flag,
+    /// Raised where somebody can restart the vehicle.
+    pub can_restart: Flag,
     /// Raised at boot where the clock's crystal does not run: nobody arms.
     pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
@@ -138,6 +147,9 @@ impl<M: RawMutex> Shared<M> {
             setpoint: Latest::new(),
             requests: Queue::new(),
             saving: Flag::new(),
+            judging: Flag::new(),
+            restarting: Flag::new(),
+            can_restart: Flag::new(),
             clock_doubtful: Flag::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
@@ -220,6 +232,12 @@ impl<M: RawMutex> Shared<M> {
     #[must_use]
     pub fn lost_events(&self) -> u32 {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Whether somebody has something to do during which nothing may begin to turn.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        [&self.saving, &self.judging, &self.restarting].iter().any(|flag| flag.is_raised())
     }
 
     /// Whether the last report says that the law drives the motors. Until there is a report, nothing does.

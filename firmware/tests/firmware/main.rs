@@ -24,5 +24,7 @@ mod parameters;
 mod radio;
 mod recorder;
 mod repeat;
+mod restart;
 mod status;
 mod support;
+mod tuned;

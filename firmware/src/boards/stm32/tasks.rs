@@ -6,7 +6,7 @@ use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::Cause;
+use super::restart::{Cause, Chip};
 use super::storage::ParameterFlash;
 use crate::boards::chosen::{
     self, BoardBattery, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
@@ -19,7 +19,7 @@ use crate::parameters::storage::Storage;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
-use crate::{boot, imu, link, radio, status};
+use crate::{boot, imu, link, radio, restart, status};
 use controller_core::flight::Pilot;
 use embassy_executor::Executor;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -47,7 +47,7 @@ pub fn run() -> ! {
         shared.recorder.attach(Ring::recover(memory));
     }
     static PLACE: boot::Place = boot::Place::new();
-    let (pilot, outputs) = boot::start(&PLACE, &shared.parameters).unwrap();
+    let (pilot, outputs) = boot::start(&PLACE, shared).unwrap();
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
@@ -72,6 +72,7 @@ pub fn run() -> ! {
         }
         spawner.spawn(show(shared, board.light, board.battery).unwrap());
         spawner.spawn(keep(shared, parameters).unwrap());
+        spawner.spawn(restart_when_asked(shared).unwrap());
     })
 }
 
@@ -132,4 +133,9 @@ async fn show(shared: &'static Shared, light: Lamp, battery: BoardBattery) {
 #[embassy_executor::task]
 async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
     storage.keep(&SystemClock, shared).await;
+}
+
+#[embassy_executor::task]
+async fn restart_when_asked(shared: &'static Shared) {
+    restart::run(shared, &SystemClock, &mut Chip).await;
 }
