@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`bmi088`], [`bmi270`] | the boards' inertial measurement units, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
+//! | [`card`] | every flight as a file on a memory card |
 //! | [`configuration`] | the scenario this build embeds |
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
@@ -40,6 +41,7 @@ pub mod bmi270;
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod boot;
+pub mod card;
 pub mod configuration;
 pub mod control;
 pub mod deadline;

@@ -2,6 +2,8 @@
 
 #![expect(deprecated, reason = "PING's fields are, and clients still send it")]
 
+mod card;
+mod card_cuts;
 mod control;
 mod embedded;
 mod hil_answers;
