@@ -6,7 +6,7 @@
 //! | [`laws`] | the control law, one vehicle or rows of them |
 //! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
-//! | [`flights`], [`tuning`] | whole flights, the search for gains |
+//! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
 //! | [`vehicles`] | rows of simulated vehicles, for environments |
 //! | [`rows`] | numpy arrays as states, references and wrenches, and back |
 //! | [`refused`], [`waiting`] | errors; long work that lets other threads run and Ctrl-C through |
@@ -16,6 +16,7 @@
 //! `source/saturated_hybrid/_core.pyi` repeats with types; a test compares the two.
 
 mod allocations;
+mod campaigns;
 mod certificates;
 mod flights;
 mod governors;
@@ -33,6 +34,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::allocations::Allocation;
+    #[pymodule_export]
+    use super::campaigns::{Campaign, campaign, merge};
     #[pymodule_export]
     use super::certificates::{Certificate, Inequality, Loop, certify};
     #[pymodule_export]

@@ -23,6 +23,7 @@ from importlib.metadata import version as _version
 
 from ._core import (
     Allocation,
+    Campaign,
     Certificate,
     Claim,
     Flight,
@@ -34,8 +35,10 @@ from ._core import (
     Scenario,
     Tuned,
     VehicleRows,
+    campaign,
     certify,
     fly,
+    merge,
     reference,
     state,
     tune,
@@ -45,6 +48,7 @@ __version__ = _version("saturated-hybrid")
 
 __all__ = [
     "Allocation",
+    "Campaign",
     "Certificate",
     "Claim",
     "Flight",
@@ -56,8 +60,10 @@ __all__ = [
     "Scenario",
     "Tuned",
     "VehicleRows",
+    "campaign",
     "certify",
     "fly",
+    "merge",
     "reference",
     "state",
     "tune",

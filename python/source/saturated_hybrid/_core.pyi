@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Allocation",
+    "Campaign",
     "Certificate",
     "Claim",
     "Flight",
@@ -23,8 +24,10 @@ __all__ = [
     "Scenario",
     "Tuned",
     "VehicleRows",
+    "campaign",
     "certify",
     "fly",
+    "merge",
     "reference",
     "state",
     "tune",
@@ -367,6 +370,58 @@ class Flight:
 
 def fly(scenario: Scenario) -> Flight:
     """Flies a scenario. `RuntimeError` with the time if the flight cannot go on."""
+
+@final
+class Campaign:
+    """What a campaign showed. As text: what `host-sim campaign` prints."""
+
+    @property
+    def flights(self) -> int:
+        """How many there are, of a shard its own."""
+    @property
+    def tracking(self) -> int:
+        """Flights that recovered and tracked."""
+    @property
+    def beyond(self) -> int:
+        """Flights with a command beyond a certified bound."""
+    @property
+    def clipped(self) -> int:
+        """Flights with a command that a rotor could not follow."""
+    @property
+    def refusal(self) -> str | None:
+        """Why the scenario may not fly, if so."""
+    @property
+    def holds(self) -> bool:
+        """Whether every flight tracks within all bounds, and the scenario may fly."""
+
+def campaign(
+    scenario: Scenario,
+    directory: str | PathLike[str],
+    *,
+    flights: int | None = None,
+    seed: int | None = None,
+    shard: tuple[int, int] = (1, 1),
+    plant_step: float | None = None,
+) -> Campaign:
+    """Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
+
+    The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any interruption
+    give the same. What is there already is not flown again.
+
+    Args:
+        scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.
+        directory: where `campaign.arrow` and the rest go.
+        flights, seed: of the whole campaign; left out: the scenario's.
+        shard: (I, N): part I of N, from 1; `merge` puts the parts together.
+        plant_step: s; left out: the longest of at most 5 ms that fits.
+
+    Raises:
+        ValueError: names the argument, or says that the directory holds another campaign.
+        OSError: it cannot be written.
+    """
+
+def merge(shards: Sequence[str | PathLike[str]], directory: str | PathLike[str]) -> Campaign:
+    """Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split."""
 
 @final
 class Tuned:
