@@ -11,7 +11,7 @@
 //! | references from setpoints | [`governor_campaign`] |
 //! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
-//! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`documentation`] |
+//! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`cli_campaign`], [`documentation`] |
 
 mod adversary;
 mod attitude_sign;
@@ -20,6 +20,7 @@ mod beyond_the_model;
 mod bounds;
 mod certified_flights;
 mod cli;
+mod cli_campaign;
 mod cli_certify;
 mod cli_output;
 mod cli_verdicts;

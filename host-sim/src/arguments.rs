@@ -1,7 +1,9 @@
 //! What the program can be asked on its command line, in clap's terms, and what of it is refused.
 
+mod campaign;
 mod sessions;
 
+pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
 use host_sim::tune::requirements::Requirements;
 use scenario::stability::LoopMargin;
@@ -27,6 +29,7 @@ Examples:
   host-sim fly mine.toml --out results       choose where the results go
   host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
   host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
+  host-sim campaign mine.toml --flights 1000 thrown into the air a thousand times, in every way, in wind and noise
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
                                              the vehicle alone, for firmware in an emulator or on a board
@@ -81,6 +84,11 @@ pub enum Command {
     /// Search gains: everything certifies; then the least cost of what a pilot feels: height lost, gusts, steps, noise.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
+    /// Fly a scenario thousands of times in circumstances drawn at random; the same to the bit however it is split.
+    #[command(after_help = campaign::HELP)]
+    Campaign(CampaignArguments),
+    /// Put the shards of a campaign together: the same bytes as the campaign that was never split.
+    Merge(MergeArguments),
     /// Serve the control law alone, lock-step on standard input and output.
     #[command(after_help = LAW_HELP)]
     Law {

@@ -1,17 +1,69 @@
-//! Many flights at once: on all cores, without a file.
+//! Many flights at once, on all cores.
 //!
 //! A campaign is a number of flights in circumstances that differ: where they start, what the vehicle really is, how the air
 //! moves, how noisy the sensors are, what is asked for. Each flight's circumstances come from its number alone, so a campaign gives
 //! the same again whatever the number of cores, and any of its flights can be flown again by itself.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`draw`] | the circumstances of a flight, from seed and number |
+//! | [`step`] | the plant step of a campaign's flights |
+//! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
+//! | [`manifest`], [`store`] | what a directory holds; its files |
+//! | [`fly`], [`summary`] | the commands `campaign` and `merge`, and what they print |
+//! | [`recoveries`], [`mod@hours`] | campaigns without a file |
 
+pub mod draw;
+pub mod fly;
 pub mod hours;
+pub mod manifest;
+pub mod outcome;
 pub mod recoveries;
+pub mod rows;
+pub mod step;
+pub mod store;
+pub mod summary;
 
 use crate::flight::Flight;
+use arrow_schema::ArrowError;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use rayon::prelude::*;
 use scenario::Scenario;
+use std::fmt;
+
+/// Why a campaign ended before its end.
+#[derive(Debug)]
+pub enum CampaignError {
+    /// Input that cannot be used.
+    Input(String),
+    /// Output that cannot be written.
+    Output(String),
+    /// The law or the certificate refused the scenario.
+    Parameter(ParameterError),
+    /// The flights do not fit their columns.
+    Rows(ArrowError),
+    /// Somebody sent this signal. What was finished is kept.
+    Interrupted(u8),
+}
+
+impl fmt::Display for CampaignError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(what) | Self::Output(what) => f.write_str(what),
+            Self::Parameter(error) => write!(f, "{error}"),
+            Self::Rows(error) => write!(f, "{error}"),
+            Self::Interrupted(signal) => {
+                write!(
+                    f,
+                    "interrupted by signal {signal}; what was finished is kept, and the same command goes on from there"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for CampaignError {}
 
 /// Flies the flights 0 to `count` - 1 on all cores: each in its `circumstances`, and of each what `gather` makes of it, in the
 /// order of their numbers. With `certified` the law and the allocation are those that boards fly, certified once for all

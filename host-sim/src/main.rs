@@ -2,8 +2,11 @@
 
 mod arguments;
 
-use arguments::{Arguments, Command, HilArguments, SitlArguments, TuneArguments};
+use arguments::{Arguments, CampaignArguments, Command, HilArguments, MergeArguments, SitlArguments, TuneArguments};
 use clap::Parser;
+use host_sim::campaign::draw::circumstances;
+use host_sim::campaign::summary::Summary;
+use host_sim::campaign::{self, CampaignError};
 use host_sim::certify::certify;
 use host_sim::claims;
 use host_sim::fly::{FlyError, fly};
@@ -40,6 +43,8 @@ fn main() -> ExitCode {
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Certify { file }) => run_certify(file.as_deref()),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
+            Some(Command::Campaign(arguments)) => run_campaign(&arguments),
+            Some(Command::Merge(arguments)) => run_merge(&arguments),
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
@@ -115,7 +120,12 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
         eprintln!("{named}{size}");
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
-    let outcome = match fly(&scenario, &text, &directory, mcap, &watch()?) {
+    fly_into(&scenario, &text, &directory, mcap)
+}
+
+/// Flies one flight of a scenario from a file with this `text`, and says what came of it.
+fn fly_into(scenario: &Scenario, text: &str, directory: &Path, mcap: bool) -> Result<ExitCode, String> {
+    let outcome = match fly(scenario, text, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
             eprintln!("error: {}: {error}", scenario.name);
@@ -135,6 +145,39 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
         directory.display()
     ))?;
     Ok(status(holds, None))
+}
+
+fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
+    let (scenario, text) = arguments.scenario()?;
+    let orders = arguments.orders(&scenario)?;
+    if let Some(number) = arguments.replay {
+        let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
+        thrown.name = format!("{}-{number}", scenario.name);
+        return fly_into(&thrown, &text, &arguments.directory(&thrown), false);
+    }
+    let (directory, interrupt) = (arguments.directory(&scenario), watch()?);
+    show_campaign(campaign::fly::campaign(&scenario, &text, &orders, &directory, &interrupt), &directory)
+}
+
+fn run_merge(arguments: &MergeArguments) -> Result<ExitCode, String> {
+    show_campaign(campaign::fly::merge(&arguments.shards, &arguments.out), &arguments.out)
+}
+
+fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Result<ExitCode, String> {
+    match flown {
+        Ok(summary) => {
+            print_text(&format!(
+                "{summary}\nevery flight is a row of {}\n",
+                directory.join("campaign.arrow").display()
+            ))?;
+            Ok(status(summary.holds, None))
+        }
+        Err(CampaignError::Interrupted(signal)) => {
+            eprintln!("error: {}: {}", directory.display(), CampaignError::Interrupted(signal));
+            Ok(status(false, Some(signal)))
+        }
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// What the log of a flight will take, if that is a lot.

@@ -15,7 +15,7 @@
 //! | [`flash`] | where parameters are kept |
 //! | `record` | the session as MCAP |
 //!
-//! Control, IMU, both halves of the link, status and parameters are the library's tasks that boards run; here they share
+//! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here they share
 //! a thread and a simulated clock, which is let go no further than the desk's. The configuration is certified as at a board's boot, and a
 //! scenario that could not be built for a board is refused ([`scenario::board`]).
 
@@ -32,16 +32,20 @@ pub mod world;
 use crate::interrupt::Interrupt;
 use crate::recording::session::Moment;
 use clock::SimClock;
+use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
 use controller_core::flight::Mode;
+use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use faults::{Fault, Faults, Part};
 use firmware::control::Control;
-use firmware::hardware::Clock;
+use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
 use firmware::parameters::storage::Storage;
+use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT};
 use firmware::shared::Shared;
-use firmware::{boot, imu, link, status};
+use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
@@ -50,7 +54,7 @@ use pace::Pace;
 use port::{Port, Ports};
 use record::Record;
 use scenario::{Scenario, board};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::future::Future;
 use std::path::PathBuf;
@@ -134,6 +138,21 @@ pub struct Sitl {
     up: Line,
     faults: Faults,
     texts: Rc<RefCell<Vec<(u64, String)>>>,
+    flash: DeskFlash,
+    configuration: Configuration,
+    loops: &'static JudgedLoops,
+    identity: u32,
+    /// Set by the firmware: start it anew.
+    restart: Rc<Cell<bool>>,
+}
+
+/// What starts the firmware anew, once its tasks have come to rest.
+struct Desk(Rc<Cell<bool>>);
+
+impl Restart for Desk {
+    fn restart(&mut self) {
+        self.0.set(true);
+    }
 }
 
 impl Sitl {
@@ -149,23 +168,50 @@ impl Sitl {
         let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
         let flash = DeskFlash::open(session.parameters.clone())?;
 
+        let identity = board::identity(scenario);
+        let loops = match identity {
+            // Judged already, when the firmware's library was built.
+            firmware::configuration::IDENTITY => &firmware::configuration::LOOPS,
+            _ => Box::leak(Box::new(board::judged(scenario))),
+        };
+        let mut sitl = Self {
+            pool: LocalPool::new(),
+            clock,
+            world,
+            shared: Box::leak(Box::new(Shared::new())),
+            port,
+            up,
+            faults,
+            texts: Rc::default(),
+            flash,
+            configuration: scenario.configuration.clone(),
+            loops,
+            identity,
+            restart: Rc::default(),
+        };
+        sitl.start().map_err(|error| in_file(error.to_string()))?;
+        Ok((sitl, warning))
+    }
+
+    /// Starts the firmware: with nothing in memory, on what is in flash. The vehicle's clock goes on.
+    fn start(&mut self) -> Result<(), ParameterError> {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
-        let mut parameters = Storage::load(flash, shared);
+        let mut parameters = Storage::load(self.flash.clone(), shared);
         shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice())));
         let place = Box::leak(Box::new(boot::Place::new()));
-        let (pilot, outputs) = boot::start_with(place, &shared.parameters, scenario.configuration.clone())
-            .map_err(|error| in_file(error.to_string()))?;
+        let built = Built { configuration: self.configuration.clone(), loops: self.loops, identity: self.identity };
+        let (pilot, outputs) = boot::start_with(place, shared, built)?;
 
         let pool = LocalPool::new();
         let spawner = pool.spawner();
-        let texts = Rc::<RefCell<Vec<_>>>::default();
+        let (clock, world) = (&self.clock, &self.world);
         let voice = Voice {
             clock: clock.clone(),
-            faults: faults.clone(),
-            port: Rc::clone(&port),
+            faults: self.faults.clone(),
+            port: Rc::clone(&self.port),
             world: world.clone(),
-            texts: Rc::clone(&texts),
+            texts: Rc::clone(&self.texts),
             parser: Parser::new(),
         };
         let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
@@ -175,7 +221,7 @@ impl Sitl {
         );
         let (mut sensor, time) = (world.clone(), clock.clone());
         spawn(&spawner, async move { imu::run(shared, &time, &mut sensor).await });
-        let (ear, time) = (up.clone(), clock.clone());
+        let (ear, time) = (self.up.clone(), clock.clone());
         spawn(&spawner, async move { link::receive::receive(ear, &time, shared).await });
         let time = clock.clone();
         spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared).await });
@@ -183,8 +229,11 @@ impl Sitl {
         spawn(&spawner, async move { status::run(light, battery, &time, shared).await });
         let time = clock.clone();
         spawn(&spawner, async move { parameters.keep(&time, shared).await });
+        let (mut desk, time) = (Desk(Rc::clone(&self.restart)), clock.clone());
+        spawn(&spawner, async move { restart::run(shared, &time, &mut desk).await });
         spawn(&spawner, world.clone().run());
-        Ok((Self { pool, clock, world, shared, port, up, faults, texts }, warning))
+        (self.pool, self.shared) = (pool, shared);
+        Ok(())
     }
 
     /// Takes what clients have sent, and lets time pass until `end`, us.
@@ -196,6 +245,10 @@ impl Sitl {
             }
         });
         self.clock.run(&mut self.pool, end);
+        if self.restart.take() {
+            // What is refused is refused at the first start: the vehicle has as many rotors as then.
+            let _ = self.start();
+        }
     }
 
     /// What there is to be seen of it.

@@ -147,6 +147,43 @@ fn parameters_outlast_a_session_and_count_at_the_next_boot() {
 }
 
 #[test]
+fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
+    use firmware::parameters::table::Name;
+    use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
+    let mut flown = Flown::boot(STUDY, &[], None);
+    flown.pass(5.0);
+    let set = |flown: &mut Flown, name: &str, param_value: f32| {
+        let param_type = MavParamType::MAV_PARAM_TYPE_REAL32;
+        let ids = (1, 1);
+        flown.send(&PARAM_SET_DATA {
+            param_value,
+            target_system: ids.0,
+            target_component: ids.1,
+            param_id: name.into(),
+            param_type,
+        });
+        flown.pass(0.2);
+    };
+    set(&mut flown, "GAIN_ATT_P", 130.0);
+    assert!(flown.said("GAIN_ATT_P: refused") && flown.said("R rotor 1 greatest: needs 2."), "{:?}", flown.sitl.texts);
+    set(&mut flown, "GAIN_ATT_P", 80.0);
+    assert!(flown.said("GAIN_ATT_P: may be flown, from the next boot on"), "{:?}", flown.sitl.texts);
+    let before: *const _ = flown.sitl.shared;
+    flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    flown.pass(6.0);
+    assert_ne!(before, std::ptr::from_ref(flown.sitl.shared), "{:?}", flown.sitl.texts);
+    assert_eq!(flown.sitl.shared.parameters.get(Name::GainAttitude), 80.0);
+    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
+    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    assert!(flown.said("Restart: only disarmed"), "{:?}", flown.sitl.texts);
+    flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+    flown.pass(14.8);
+    assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
+    assert!((flown.sitl.world.state().position.z - 1.5).abs() < 0.05);
+}
+
+#[test]
 fn what_no_board_could_fly_is_refused_by_name() {
     let session = Session {
         ports: Ports::default(),

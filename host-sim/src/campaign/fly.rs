@@ -1,0 +1,183 @@
+//! The `campaign` and `merge` commands: flights by the chunk on all cores, and shards put together.
+//!
+//! Which flights there are, and what each is, comes from the manifest; which core flies a chunk, and when, changes nothing. Chunks that
+//! are already there are not flown again.
+
+use super::CampaignError;
+use super::draw::circumstances;
+use super::manifest::Manifest;
+use super::outcome::Outcome;
+use super::rows::{Row, batch};
+use super::store::{SUMMARY, Store};
+use super::summary::Summary;
+use crate::flight::Flight;
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use arrow_array::RecordBatch;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::certified::Certified;
+use rayon::prelude::*;
+use scenario::Scenario;
+use scenario::verdict::Verdict;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What is to be flown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orders {
+    /// Flights of the whole campaign.
+    pub flights: u64,
+    /// Seed of all draws.
+    pub seed: u64,
+    /// Which part of it, from 1, and of how many.
+    pub shard: (u64, u64),
+}
+
+/// Flies `scenario`, with the plant step that it has, read from `text`, into `directory`, or what is missing there.
+///
+/// # Errors
+/// [`CampaignError`]; chunks that were finished stay.
+pub fn campaign(
+    scenario: &Scenario,
+    text: &str,
+    orders: &Orders,
+    directory: &Path,
+    interrupt: &Interrupt,
+) -> Result<Summary, CampaignError> {
+    if scenario.reality.ground.is_some() {
+        let problem = "a campaign throws its vehicles into the air anywhere: leave that section out".to_owned();
+        return Err(CampaignError::Input(format!("{}: ground: {problem}", scenario.name)));
+    }
+    let Orders { flights, seed, shard } = *orders;
+    let verdict = Verdict::of(scenario).map_err(CampaignError::Parameter)?;
+    let store = Store::open(directory, &Manifest::new(scenario, text, flights, seed, shard), text)?;
+    let flown = match store.result() {
+        Some(flown) => flown,
+        None => {
+            let chunks = Chunks::new(scenario, &verdict, &store, interrupt);
+            chunks.fly()?
+        }
+    };
+    finish(scenario, &verdict, &store, &flown)
+}
+
+/// Puts shards together, in any order, into `directory`: the same bytes as the campaign that was never split.
+///
+/// # Errors
+/// [`CampaignError`]: shards that are missing, not complete, or of different campaigns.
+pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, CampaignError> {
+    let mut stores = shards.iter().map(|shard| Store::complete(shard.as_ref())).collect::<Result<Vec<_>, _>>()?;
+    stores.sort_by_key(|(store, _)| store.manifest().shard);
+    let Some((first, _)) = stores.first() else {
+        return Err(CampaignError::Input("merge: expects the directories of all shards".to_owned()));
+    };
+    let (manifest, text) = (first.manifest().clone(), first.scenario()?);
+    let parts = manifest.shard.1;
+    for (part, (store, _)) in (1..).zip(&stores) {
+        let expected = Manifest { shard: (part, parts), ..manifest.clone() };
+        if let Some(difference) = expected.difference(store.manifest()) {
+            return Err(CampaignError::Input(format!(
+                "merge: expects each of the {parts} shards of one campaign once: not the same {difference}"
+            )));
+        }
+    }
+    if stores.len() as u64 != parts {
+        let problem = format!("merge: expects all {parts} shards of the campaign, found {}", stores.len());
+        return Err(CampaignError::Input(problem));
+    }
+    let scenario = Scenario::parse(&text, "scenario.toml").map_err(|error| CampaignError::Input(error.to_string()))?;
+    let verdict = Verdict::of(&scenario).map_err(CampaignError::Parameter)?;
+    let whole = Manifest { shard: (1, 1), ..manifest };
+    let mut numbered: Vec<(u64, RecordBatch)> = stores
+        .into_iter()
+        .flat_map(|(store, flown)| store.manifest().chunks().into_iter().zip(flown).collect::<Vec<_>>())
+        .collect();
+    numbered.sort_by_key(|(chunk, _)| *chunk);
+    let flown: Vec<RecordBatch> = numbered.into_iter().map(|(_, batch)| batch).collect();
+    let store = Store::open(directory, &whole, &text)?;
+    finish(&scenario, &verdict, &store, &flown)
+}
+
+/// Writes what was flown and what it showed.
+fn finish(
+    scenario: &Scenario,
+    verdict: &Verdict,
+    store: &Store,
+    flown: &[RecordBatch],
+) -> Result<Summary, CampaignError> {
+    let summary = Summary::of(scenario, verdict, store.manifest(), flown);
+    store.finish(flown)?;
+    store.write(SUMMARY, &summary.to_string())?;
+    Ok(summary)
+}
+
+/// Chunks to fly.
+struct Chunks<'a> {
+    scenario: &'a Scenario,
+    certificate: &'a Certificate,
+    certified: Option<&'a Certified>,
+    store: &'a Store,
+    interrupt: &'a Interrupt,
+    done: AtomicU64,
+    progress: Mutex<Progress>,
+}
+
+impl<'a> Chunks<'a> {
+    fn new(scenario: &'a Scenario, verdict: &'a Verdict, store: &'a Store, interrupt: &'a Interrupt) -> Self {
+        Self {
+            scenario,
+            certificate: verdict.certificate(),
+            certified: verdict.certified(),
+            store,
+            interrupt,
+            done: AtomicU64::new(0),
+            progress: Mutex::new(Progress::new("flying", store.manifest().own_flights())),
+        }
+    }
+
+    /// All of them, in the order of their numbers.
+    fn fly(&self) -> Result<Vec<RecordBatch>, CampaignError> {
+        let chunks = self.store.manifest().chunks();
+        // By single chunks: a thread that is done takes the next, and one that ends early leaves nobody waiting.
+        chunks.into_par_iter().with_max_len(1).map(|chunk| self.fly_chunk(chunk)).collect()
+    }
+
+    fn fly_chunk(&self, chunk: u64) -> Result<RecordBatch, CampaignError> {
+        let numbers = self.store.manifest().flights_of(chunk);
+        if let Some(flown) = self.store.part(chunk) {
+            self.show(numbers.end - numbers.start);
+            return Ok(flown);
+        }
+        let rows = numbers.map(|number| self.fly_one(number)).collect::<Result<Vec<Row>, _>>()?;
+        let flown = batch(&rows, self.store.manifest().rotors as usize).map_err(CampaignError::Rows)?;
+        self.store.keep(chunk, &flown)?;
+        Ok(flown)
+    }
+
+    fn fly_one(&self, number: u64) -> Result<Row, CampaignError> {
+        if let Some(signal) = self.interrupt.signal() {
+            return Err(CampaignError::Interrupted(signal));
+        }
+        let thrown = circumstances(self.scenario, &self.scenario.campaign.ranges, self.store.manifest().seed, number);
+        let flight = match self.certified {
+            Some(certified) => Flight::certified(&thrown, certified),
+            None => Flight::uncertified(&thrown),
+        };
+        let outcome = Outcome::of(&thrown, flight.map_err(CampaignError::Parameter)?, self.certificate);
+        self.show(1);
+        Ok(Row::new(number, &thrown, outcome))
+    }
+
+    /// So many more are done.
+    fn show(&self, more: u64) {
+        let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
+        // Whoever cannot draw at once leaves it to the next.
+        if let Ok(mut progress) = self.progress.try_lock() {
+            progress.show(done);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

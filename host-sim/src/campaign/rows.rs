@@ -1,0 +1,146 @@
+//! A campaign's flights as columns, in Apache Arrow's file format: one record batch for each chunk of flights, nothing compressed.
+//!
+//! Arrow and not Parquet, for two reasons. The bytes of a file depend on its rows alone: nothing is compressed, no encoder chooses, and no
+//! library writes its version into it. And readers map it as it lies: pyarrow, polars, pandas, R and DuckDB open it.
+//!
+//! | column | unit | |
+//! |---|---|---|
+//! | `number` | | of the flight |
+//! | `hover` | | whether it was to hover at the origin; otherwise to fly the file's reference |
+//! | `start_px` … `start_wz` | m, m/s, -, rad/s | position, velocity, attitude (scalar first), body rates |
+//! | `wind_x`, `wind_y` | m/s | steady wind |
+//! | `gust_x`, `gust_y` | m/s | its step, zero for none |
+//! | `height_lost`, `rise`, `settled`, `final_error` | m, m, s, m | [`Outcome`]; `settled` is null where it was away at the end |
+//! | `share_thrust`, `share_torque_x` …, `share_rotor_1` … | | greatest part of each certified bound |
+//! | `clipped`, `beyond`, `ticks` | ticks | |
+//! | `verdict` | | `holds`, `away` or `beyond` |
+
+use super::outcome::Outcome;
+use arrow_array::builder::Float64Builder;
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_schema::{ArrowError, DataType, Field, Schema};
+use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::body::BodyState;
+use scenario::reference::ReferenceKind;
+use std::sync::Arc;
+
+/// One flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Its number.
+    pub number: u64,
+    /// Whether it was to hover at the origin.
+    pub hover: bool,
+    /// Where it started.
+    pub start: BodyState,
+    /// Steady wind and gust, m/s, world.
+    pub wind: [Vector3<f64>; 2],
+    /// What it showed.
+    pub outcome: Outcome,
+}
+
+impl Row {
+    /// Flight `number`, in the circumstances of `thrown`.
+    #[must_use]
+    pub fn new(number: u64, thrown: &Scenario, outcome: Outcome) -> Self {
+        let wind = thrown.reality.wind.unwrap_or_default();
+        Self {
+            number,
+            hover: matches!(thrown.reference, ReferenceKind::Hover { .. }),
+            start: thrown.initial,
+            wind: [wind.steady, wind.gust.map_or_else(Vector3::zeros, |gust| gust.velocity)],
+            outcome,
+        }
+    }
+}
+
+impl Outcome {
+    /// In a word.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        match (self.beyond > 0, self.tracks()) {
+            (true, _) => BEYOND,
+            (false, true) => HOLDS,
+            (false, false) => AWAY,
+        }
+    }
+}
+
+/// Recovered, tracked, and asked for nothing beyond a bound.
+pub const HOLDS: &str = "holds";
+/// Was not near its reference at the end.
+pub const AWAY: &str = "away";
+/// Asked for more than is proven.
+pub const BEYOND: &str = "beyond";
+
+const START: [&str; 13] = [
+    "start_px", "start_py", "start_pz", "start_vx", "start_vy", "start_vz", "start_qw", "start_qx", "start_qy",
+    "start_qz", "start_wx", "start_wy", "start_wz",
+];
+const WIND: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
+const FIGURES: [&str; 3] = ["height_lost", "rise", "final_error"];
+const SHARES: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
+
+/// The columns of a vehicle with so many rotors.
+#[must_use]
+pub fn schema(rotors: usize) -> Schema {
+    let number = |name: &str| Field::new(name, DataType::Float64, false);
+    let count = |name: &str| Field::new(name, DataType::UInt64, false);
+    let mut fields = vec![count("number"), Field::new("hover", DataType::Boolean, false)];
+    fields.extend(START.iter().chain(&WIND).chain(&FIGURES).map(|name| number(name)));
+    fields.push(Field::new("settled", DataType::Float64, true));
+    fields.extend(SHARES.iter().map(|name| number(name)));
+    fields.extend((1..=rotors).map(|rotor| number(&share_of_rotor(rotor))));
+    fields.extend(["clipped", "beyond", "ticks"].map(count));
+    fields.push(Field::new("verdict", DataType::Utf8, false));
+    Schema::new(fields)
+}
+
+/// The column of a rotor's share, numbered from 1.
+#[must_use]
+pub fn share_of_rotor(rotor: usize) -> String {
+    format!("share_rotor_{rotor}")
+}
+
+/// The rows as a record batch.
+///
+/// # Errors
+/// As Arrow's: none for rows of a vehicle with so many rotors.
+pub fn batch(rows: &[Row], rotors: usize) -> Result<RecordBatch, ArrowError> {
+    let numbers =
+        |value: &dyn Fn(&Row) -> f64| -> ArrayRef { Arc::new(Float64Array::from_iter_values(rows.iter().map(value))) };
+    let counts =
+        |value: fn(&Row) -> u64| -> ArrayRef { Arc::new(UInt64Array::from_iter_values(rows.iter().map(value))) };
+    let mut columns = vec![counts(|row| row.number)];
+    columns.push(Arc::new(BooleanArray::from_iter(rows.iter().map(|row| Some(row.hover)))));
+    columns.extend((0..START.len()).map(|index| numbers(&|row| start(&row.start)[index])));
+    columns.extend((0..WIND.len()).map(|index| numbers(&|row| row.wind[index / 2][index % 2])));
+    columns.push(numbers(&|row| row.outcome.height_lost));
+    columns.push(numbers(&|row| row.outcome.rise));
+    columns.push(numbers(&|row| row.outcome.final_error));
+    columns.push(settled(rows));
+    columns.push(numbers(&|row| row.outcome.shares.thrust));
+    columns.extend((0..3).map(|axis| numbers(&|row| row.outcome.shares.torque[axis])));
+    columns.extend((0..rotors).map(|rotor| numbers(&|row| row.outcome.shares.rotors[rotor])));
+    columns.extend([
+        counts(|row| row.outcome.clipped),
+        counts(|row| row.outcome.beyond),
+        counts(|row| row.outcome.ticks),
+    ]);
+    columns.push(Arc::new(StringArray::from_iter_values(rows.iter().map(|row| row.outcome.verdict()))));
+    RecordBatch::try_new(Arc::new(schema(rotors)), columns)
+}
+
+fn settled(rows: &[Row]) -> ArrayRef {
+    let mut column = Float64Builder::with_capacity(rows.len());
+    for row in rows {
+        column.append_option(row.outcome.settled);
+    }
+    Arc::new(column.finish())
+}
+
+fn start(state: &BodyState) -> [f64; 13] {
+    let BodyState { position: p, velocity: v, attitude: q, angular_velocity: w } = state;
+    [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z]
+}

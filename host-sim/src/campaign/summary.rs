@@ -1,0 +1,185 @@
+//! What a campaign showed: how many flights recover and track, quantiles, bounds, and the worst flights by number.
+
+use super::manifest::Manifest;
+use super::outcome::NEAR;
+use super::quantile;
+use super::rows::{BEYOND, HOLDS, share_of_rotor};
+use crate::table::{aligned, short};
+use arrow_array::RecordBatch;
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float64Type, UInt64Type};
+use scenario::Scenario;
+use scenario::verdict::Verdict;
+use std::fmt;
+
+/// How many of the worst are listed.
+const LISTED: usize = 5;
+
+/// What a campaign showed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    title: String,
+    /// Flights.
+    pub flights: u64,
+    /// Flights that recovered and tracked.
+    pub tracking: u64,
+    /// Flights with a command beyond a certified bound.
+    pub beyond: u64,
+    /// Flights with a command that a rotor could not follow.
+    pub clipped: u64,
+    /// Why the scenario may not fly, if so.
+    pub refusal: Option<String>,
+    /// Whether every flight tracks within all bounds, and the scenario may fly.
+    pub holds: bool,
+    quantiles: String,
+    worst: Vec<(&'static str, String)>,
+}
+
+/// One figure of every flight.
+struct Figure {
+    what: String,
+    unit: &'static str,
+    values: Vec<f64>,
+}
+
+impl Summary {
+    /// Of what was `flown` of `scenario`, whose verdict is `verdict`.
+    #[must_use]
+    pub fn of(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
+        let numbers = counts(flown, "number");
+        let verdicts: Vec<&str> = flown
+            .iter()
+            .filter_map(|batch| batch.column_by_name("verdict"))
+            .flat_map(|column| column.as_string::<i32>().iter().flatten())
+            .collect();
+        let figure =
+            |what: &str, unit, column: &str| Figure { what: what.to_owned(), unit, values: floats(flown, column) };
+        let mut figures = vec![
+            figure("height lost", "m", "height_lost"),
+            figure("rise above start and reference", "m", "rise"),
+            figure(&format!("within {NEAR} m for good after"), "s", "settled"),
+            figure("error at the end", "m", "final_error"),
+            figure("share of the thrust's bound", "", "share_thrust"),
+        ];
+        figures.extend(
+            ["x", "y", "z"].map(|axis| {
+                figure(&format!("share of the bound on torque {axis}"), "", &format!("share_torque_{axis}"))
+            }),
+        );
+        let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+        figures.extend(
+            (1..=rotors).map(|rotor| figure(&format!("share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor))),
+        );
+        let settled = floats(flown, "settled");
+        let greatest_share = (0..numbers.len()).map(|flight| {
+            figures[4..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
+        });
+        let greatest_share: Vec<f64> = greatest_share.collect();
+        let listed = |what, values: &[f64], unit| (what, worst(&numbers, values, unit));
+        let failing: Vec<String> = numbers
+            .iter()
+            .zip(&verdicts)
+            .filter(|(_, verdict)| **verdict != HOLDS)
+            .map(|(number, verdict)| format!("{number} ({verdict})"))
+            .take(4 * LISTED)
+            .collect();
+        let mut worst = vec![
+            listed("slowest", &settled, "s"),
+            listed("deepest", &figures[0].values, "m"),
+            listed("nearest to a bound", &greatest_share, ""),
+        ];
+        if !failing.is_empty() {
+            worst.insert(0, ("failing", failing.join(", ")));
+        }
+        let (part, parts) = manifest.shard;
+        let shard = if parts > 1 { format!(", shard {part} of {parts}") } else { String::new() };
+        let refusal = verdict.refusal().map(|refusal| refusal.to_string());
+        let beyond = verdicts.iter().filter(|verdict| **verdict == BEYOND).count() as u64;
+        Self {
+            title: format!(
+                "{}: {} flights of {} s from seed {}, plant step {} ms{shard}",
+                manifest.name,
+                numbers.len(),
+                scenario.campaign.ranges.duration,
+                manifest.seed,
+                short(1e3 * manifest.plant_step)
+            ),
+            flights: numbers.len() as u64,
+            tracking: settled.iter().filter(|settled| settled.is_finite()).count() as u64,
+            beyond,
+            clipped: counts(flown, "clipped").iter().filter(|ticks| **ticks > 0).count() as u64,
+            holds: refusal.is_none() && verdicts.iter().all(|verdict| *verdict == HOLDS),
+            refusal,
+            quantiles: table(&numbers, &figures),
+            worst,
+        }
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}\n", self.title)?;
+        if let Some(refusal) = &self.refusal {
+            writeln!(f, "NOT certified: {refusal}\n")?;
+        }
+        writeln!(
+            f,
+            "{} of {} recover and track; {} went beyond a certified bound; {} asked a rotor for more than it has\n",
+            self.tracking, self.flights, self.beyond, self.clipped
+        )?;
+        writeln!(f, "{}", self.quantiles)?;
+        for (what, flights) in &self.worst {
+            writeln!(f, "{what}: {flights}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A row for each figure: median, 99 %, 99.9 %, greatest and whose that is.
+fn table(numbers: &[u64], figures: &[Figure]) -> String {
+    let head = ["figure", "unit", "median", "99 %", "99.9 %", "greatest", "flight"].map(str::to_owned).to_vec();
+    let row = |Figure { what, unit, values }: &Figure| {
+        let parts = [0.5, 0.99, 0.999, 1.0].map(|part| quantile(values, part));
+        let greatest = parts[3].and_then(|greatest| values.iter().position(|value| *value == greatest));
+        let flight = greatest.and_then(|place| numbers.get(place)).map_or(String::new(), u64::to_string);
+        let mut cells = vec![what.clone(), (*unit).to_owned()];
+        cells.extend(parts.map(|value| value.map_or(String::new(), seen)));
+        cells.push(flight);
+        cells
+    };
+    aligned(&std::iter::once(head).chain(figures.iter().map(row)).collect::<Vec<_>>())
+}
+
+/// A figure, or that there is none.
+fn seen(value: f64) -> String {
+    if value.is_finite() { short(value) } else { "never".to_owned() }
+}
+
+/// The flights with the greatest values, greatest first.
+fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
+    let mut places: Vec<(u64, f64)> = numbers.iter().copied().zip(values.iter().copied()).collect();
+    places.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    let space = if unit.is_empty() { "" } else { " " };
+    let listed: Vec<String> = places
+        .iter()
+        .take(LISTED)
+        .map(|(number, value)| match value.is_finite() {
+            true => format!("{number} ({}{space}{unit})", short(*value)),
+            false => format!("{number} (never)"),
+        })
+        .collect();
+    listed.join(", ")
+}
+
+/// A column of whole numbers.
+fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
+    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
+    columns.flat_map(|column| column.as_primitive::<UInt64Type>().values().to_vec()).collect()
+}
+
+/// A column of numbers; infinite where there is none.
+fn floats(flown: &[RecordBatch], column: &str) -> Vec<f64> {
+    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
+    let value = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+    columns.flat_map(|column| column.as_primitive::<Float64Type>().iter().map(value).collect::<Vec<_>>()).collect()
+}

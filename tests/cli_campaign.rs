@@ -1,0 +1,168 @@
+//! `campaign` and `merge` as a user meets them: statuses, messages, what a flight flown again shows, and that neither a signal nor a
+//! kill loses what was finished.
+
+use crate::support::binary;
+use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
+const COMPLETE: [&str; 4] = ["campaign.arrow", "campaign.json", "scenario.toml", "summary.txt"];
+
+/// A directory of this suite, with a campaign of the Hummingbird in it.
+fn directory(test: &str, campaign: &str) -> PathBuf {
+    let directory = binary::directory("cli_campaign", test);
+    fs::write(directory.join("h.toml"), format!("{HUMMINGBIRD}\n[campaign]\n{campaign}")).unwrap();
+    directory
+}
+
+/// Not thrown at all: near where it is to be, at rest, level.
+const GENTLE: &str = "duration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
+
+#[test]
+fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
+    let directory = directory("statuses", GENTLE);
+    let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--out", "out"]);
+    let text = stdout(&flown);
+    assert_eq!((status(&flown), stderr(&flown)), (0, String::new()), "{text}");
+    assert!(text.starts_with("hummingbird: 20 flights of 2 s from seed 0, plant step 5 ms\n"), "{text}");
+    assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 asked"), "{text}");
+    assert!(text.contains("slowest: ") && !text.contains("failing: "), "{text}");
+    assert_eq!(files(&directory.join("out")), COMPLETE);
+    assert!(text.starts_with(&fs::read_to_string(directory.join("out/summary.txt")).unwrap()));
+
+    // Thrown, and out of time.
+    let thrown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--draws", "thrown.toml"]);
+    assert_eq!(status(&thrown), 2, "{}", stdout(&thrown));
+    fs::write(directory.join("plain.toml"), HUMMINGBIRD).unwrap();
+    fs::write(directory.join("thrown.toml"), "[campaign]\nduration = 0.5\n").unwrap();
+    let thrown = host_sim(&directory, &["campaign", "plain.toml", "--flights", "20", "--draws", "thrown.toml"]);
+    let text = stdout(&thrown);
+    assert!(status(&thrown) == 1 && text.contains("failing: 0 (away), 1 (away)"), "{text}{}", stderr(&thrown));
+    assert_eq!(files(&directory.join("campaigns/hummingbird")), COMPLETE);
+
+    let lagging = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "lag =", "lag = 1.0");
+    fs::write(directory.join("lagging.toml"), lagging).unwrap();
+    let flown = host_sim(&directory, &["campaign", "lagging.toml", "--flights", "2", "--out", "lagging"]);
+    assert!(status(&flown) == 1 && stdout(&flown).contains("NOT certified: sampled loop"), "{}", stdout(&flown));
+}
+
+#[test]
+fn a_flight_flown_again_is_the_flight_of_the_campaign() {
+    let directory = directory("replay", "duration = 0.5\nseed = 4\n");
+    assert_eq!(status(&host_sim(&directory, &["campaign", "h.toml", "--flights", "8", "--out", "out"])), 1);
+    let flown = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
+    let rows = arrow_ipc::reader::FileReader::try_new(flown, None).unwrap().next().unwrap().unwrap();
+    let again = host_sim(&directory, &["campaign", "h.toml", "--replay", "6"]);
+    assert!(stdout(&again).starts_with("hummingbird-6: 0.5 s flown"), "{}", stdout(&again));
+    let log = fs::read_to_string(directory.join("flights/hummingbird-6/log.csv")).unwrap();
+    let names: Vec<&str> = log.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| {
+        let place = names.iter().position(|found| *found == name).unwrap();
+        log.lines().skip(1).map(|row| row.split(',').nth(place).unwrap().parse().unwrap()).collect::<Vec<f64>>()
+    };
+    let row = |name: &str| {
+        use arrow_array::cast::AsArray;
+        rows.column_by_name(name).unwrap().as_primitive::<arrow_array::types::Float64Type>().value(6)
+    };
+    for (name, logged) in [("start_px", "px"), ("start_qw", "qw"), ("start_wz", "wz"), ("wind_x", "wind_x")] {
+        assert_eq!(row(name), column(logged)[0], "{name}");
+    }
+    let heights = column("pz");
+    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(row("height_lost"), (heights[0] - lowest).max(0.0));
+    let error = ["x", "y", "z"].map(|axis| {
+        let (is, wanted) = (column(&format!("p{axis}")), column(&format!("pd{axis}")));
+        // What was asked for is logged in single precision.
+        is[49] - f64::from(wanted[49] as f32)
+    });
+    assert!((row("final_error") - error.iter().map(|e| e * e).sum::<f64>().sqrt()).abs() < 1e-12);
+}
+
+fn spawn(directory: &Path, out: &str) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    command.args(["campaign", "h.toml", "--out", out]).current_dir(directory);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits until a chunk is finished.
+fn some_chunk(out: &Path) -> Vec<String> {
+    let started = Instant::now();
+    loop {
+        let parts = out.join("parts");
+        let done: Vec<String> = if parts.exists() {
+            files(&parts).into_iter().filter(|name| !name.starts_with('.')).collect()
+        } else {
+            Vec::new()
+        };
+        if !done.is_empty() {
+            return done;
+        }
+        assert!(started.elapsed() < Duration::from_secs(60), "waited in vain");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn neither_a_signal_nor_a_kill_loses_what_was_finished() {
+    let directory = directory("interrupted", "duration = 4\nflights = 400\n");
+    let (broken, whole) = (directory.join("broken"), directory.join("whole"));
+    let mut killed = spawn(&directory, "broken");
+    some_chunk(&broken);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let kept = some_chunk(&broken);
+    assert!(!broken.join("campaign.arrow").exists() && kept.len() < 8, "{kept:?}: it was over before it was killed");
+    let times = |names: &[String]| {
+        names
+            .iter()
+            .map(|name| broken.join("parts").join(name).metadata().unwrap().modified().unwrap())
+            .collect::<Vec<_>>()
+    };
+    let before = times(&kept);
+
+    let interrupted = spawn(&directory, "broken");
+    std::thread::sleep(Duration::from_millis(100));
+    let sent = Command::new("sh").args(["-c", &format!("kill -INT {}", interrupted.id())]).status().unwrap();
+    let output = interrupted.wait_with_output().unwrap();
+    let message = stderr(&output);
+    assert!(sent.success() && status(&output) == 130 && message.lines().count() == 1, "{message}");
+    assert!(message.contains("interrupted by signal 2; what was finished is kept"), "{message}");
+    assert_eq!(times(&kept), before, "what was finished was flown again");
+
+    spawn(&directory, "broken").wait_with_output().unwrap();
+    spawn(&directory, "whole").wait_with_output().unwrap();
+    assert_eq!(files(&broken), COMPLETE);
+    for name in COMPLETE {
+        assert_eq!(fs::read(broken.join(name)).unwrap(), fs::read(whole.join(name)).unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
+    let directory = directory("refusals", "duration = 0.5\n");
+    fs::write(directory.join("ground.toml"), format!("{PAPER}\n[ground]\nheight = 0\n")).unwrap();
+    fs::write(directory.join("more.toml"), "[campaign]\nwind = 1\n[truth]\nmass = 1\n").unwrap();
+    fs::write(directory.join("paper.toml"), PAPER).unwrap();
+    for (arguments, expected) in [
+        (&["h.toml", "--shard", "0/2"][..], "must be I/N with I from 1 to N"),
+        (&["h.toml", "--shard", "3/2"], "must be I/N with I from 1 to N"),
+        (&["h.toml", "--flights", "0"], "--flights: must be from 1 to 100000000, found 0"),
+        (&["h.toml", "--plant-step", "0.003"], "--plant-step: must be the control period, 0.01 s, over a whole number"),
+        (&["h.toml", "--plant-step", "nan"], "--plant-step: must be the control period"),
+        (&["none.toml"], "none.toml: cannot be read: "),
+        (&["ground.toml"], "ground: a campaign throws its vehicles into the air anywhere"),
+        (&["paper.toml", "--draws", "more.toml"], "more.toml: must hold a [campaign] section and nothing else"),
+        (&["h.toml", "--draws", "none.toml"], "none.toml: cannot be read: "),
+    ] {
+        let output = host_sim(&directory, &[&["campaign"], arguments, &["--out", "out"]].concat());
+        let message = stderr(&output);
+        assert!(status(&output) == 2 && message.contains(expected), "{arguments:?}: {message}");
+        assert!(!directory.join("out").exists(), "{arguments:?}");
+    }
+    let output = host_sim(&directory, &["merge", "none", "--out", "out"]);
+    assert_eq!((status(&output), stderr(&output).lines().count()), (2, 1));
+    assert!(stderr(&output).contains("none: holds no campaign: there is no campaign.json"), "{}", stderr(&output));
+}
