@@ -34,7 +34,10 @@ fn without_arguments_it_flies_the_paper() {
     assert_eq!(stderr(&output), "", "nothing on stderr, no progress bar into a pipe");
 
     let flight = directory.join("flights/paper");
-    assert_eq!(files(&flight), ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "log.csv", "report.md"]);
+    assert_eq!(
+        files(&flight),
+        ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "log.csv", "report.html", "report.md"]
+    );
     let log = std::fs::read_to_string(flight.join("log.csv")).unwrap();
     let mut lines = log.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();

@@ -53,7 +53,7 @@ fn a_report_that_standard_output_does_not_take_exits_with_2() {
         assert_not_written(&into_full(&directory, arguments), "standard output");
     }
     // What was flown and found is there nevertheless, whole.
-    assert_eq!(files(&directory.join("out")).len(), 6);
+    assert_eq!(files(&directory.join("out")).len(), 7);
     assert!(directory.join("tuned.toml").exists());
 }
 
@@ -101,7 +101,7 @@ fn files_that_a_full_disk_does_not_take_exit_with_2_and_leave_nothing_half_writt
     std::fs::write(directory.join("brief.toml"), brief()).unwrap();
     drop(full());
     std::fs::create_dir(directory.join("out")).unwrap();
-    for name in ["log.csv", "fig1.svg", "report.md"] {
+    for name in ["log.csv", "fig1.svg", "report.md", "report.html"] {
         let place = directory.join("out").join(name);
         std::os::unix::fs::symlink(FULL, &place).unwrap();
         let output = host_sim(&directory, &["fly", "brief.toml", "--out", "out"]);

@@ -28,7 +28,7 @@ mod bench;
 mod chain;
 mod estimate;
 #[cfg(test)]
-mod example;
+pub(crate) mod example;
 mod exchange;
 mod fence;
 mod lasting;

@@ -35,6 +35,18 @@ impl Heading {
         Ok(Self { direction: direction / length, rate, acceleration })
     }
 
+    /// From a direction that another heading gave, taken bit for bit: whoever stores headings as numbers gets the same one back.
+    ///
+    /// # Errors
+    /// As [`Self::new`]'s, and [`Reason::NotOnCircle`] already if |direction| differs from one by more than its own rounding.
+    pub fn restored(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Result<Self, ParameterError> {
+        let heading = Self::new(direction, rate, acceleration)?;
+        let apart = direction - heading.direction;
+        let rounding = 2.0 * f32::EPSILON;
+        require(apart.x.abs().max(apart.y.abs()) <= rounding, "heading.direction", Reason::NotOnCircle)?;
+        Ok(Self { direction, rate, acceleration })
+    }
+
     /// From the paper's nu_d with its first and second derivative.
     ///
     /// # Errors
@@ -110,6 +122,16 @@ mod tests {
             Heading::from_derivatives(heading.direction(), heading.first_derivative(), heading.second_derivative());
         let again = again.unwrap();
         assert!((again.rate() - 1.5).abs() < 1e-6 && (again.acceleration() + 0.7).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_heading_is_restored_bit_for_bit_from_its_numbers() {
+        let phases = (0..10_000_u64).map(|number| number.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        for heading in phases.map(|phase| Heading::from_phase(phase, 0.3, -0.2)) {
+            assert_eq!(Heading::restored(heading.direction(), heading.rate(), heading.acceleration()), Ok(heading));
+        }
+        let off = Heading::restored(Vector2::new(1.0 + 1e-6, 0.0), 0.0, 0.0);
+        assert_eq!(off.unwrap_err().reason, Reason::NotOnCircle);
     }
 
     #[test]

@@ -82,6 +82,7 @@ pub mod projection;
 pub mod reference;
 pub mod rotation;
 pub mod state;
+pub mod tuning;
 pub mod vehicle;
 
 /// What most users need in scope.

@@ -1,5 +1,8 @@
 //! From a scenario to Rust source: the vehicle, gains, rotors and reference bounds that the firmware flies.
 //!
+//! With it goes which factors on its gains have sampled loops with margin, judged here because no board can, and a number by which parameters
+//! that were tuned on one configuration know that they are on another.
+//!
 //! The numbers are written with all their digits and read back bit for bit. Nothing that is worked out from them is carried over:
 //! the board works out the rotors' inverse and the certificate again at boot.
 
@@ -37,9 +40,17 @@ fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let bounds = configuration.bounds();
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
+    let loops = board::judged(scenario);
+    let (across, vertical) = loops.bits();
     format!(
         "/// The scenario's name.
 pub const NAME: &str = {name:?};
+
+/// A number of this configuration, below 2^24: see `scenario::board::identity`.
+pub const IDENTITY: u32 = {identity};
+
+/// Which factors on its gains have sampled loops with margin.
+pub static LOOPS: JudgedLoops = JudgedLoops::from_bits({across:?}, {vertical:?});
 
 fn built() -> Result<Configuration, ParameterError> {{
     let vehicle = VehicleParameters {{ mass: {mass:?}, inertia: {inertia}, gravity: {gravity:?} }};
@@ -52,6 +63,7 @@ fn built() -> Result<Configuration, ParameterError> {{
 {law}}}
 ",
         name = scenario.name,
+        identity = board::identity(scenario),
         mass = vehicle.mass,
         inertia = vector(&vehicle.inertia),
         gravity = vehicle.gravity,

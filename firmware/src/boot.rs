@@ -1,15 +1,19 @@
 //! From the embedded scenario to a pilot: the certificate worked out again on the machine that will fly, and logged.
 //!
+//! What was stored of parameters that the certificate depends on is part of it: see [`crate::parameters::tuned`]. If the vehicle cannot fly with
+//! them, each that was set is named.
+//!
 //! It takes two seconds or more on a Cortex-M4F (350 million instructions: double precision is software there), and more of the
 //! stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration boots as well: it answers,
 //! tests motors, and never arms, and says which inequality fails.
 
 use crate::configuration;
 use crate::outputs::Outputs;
-use crate::parameters::Parameters;
 use crate::parameters::table::Name;
+use crate::parameters::tuned::Built;
+use crate::parameters::{Parameters, flight};
+use crate::shared::{Event, Severity, Shared};
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::estimator::{Estimator, Settings};
 use controller_core::flight::{FlightSettings, Memory, Pilot};
@@ -19,6 +23,7 @@ use static_cell::{ConstStaticCell, StaticCell};
 
 /// Where a pilot lies, its estimator, and what its governor and mixer work with.
 pub struct Place {
+    built: StaticCell<Built>,
     certification: StaticCell<Result<Certified, Refused>>,
     pilot: StaticCell<Pilot<'static>>,
     estimator: StaticCell<Estimator>,
@@ -30,6 +35,7 @@ impl Place {
     #[allow(clippy::new_without_default)] // it is made where it stays
     pub const fn new() -> Self {
         Self {
+            built: StaticCell::new(),
             certification: StaticCell::new(),
             pilot: StaticCell::new(),
             estimator: StaticCell::new(),
@@ -38,17 +44,18 @@ impl Place {
     }
 }
 
-/// Certifies the embedded configuration, logs its numbers, and makes a pilot of it, certified or grounded, in the place
-/// that is meant for it; with it comes what turns its thrusts into motor commands.
+/// Certifies the embedded configuration with the stored parameters, logs its numbers, and makes a pilot of it, certified or grounded, in the
+/// place that is meant for it; with it comes what turns its thrusts into motor commands.
 ///
 /// # Errors
 /// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
 #[inline(never)]
 pub fn start<M: RawMutex>(
     place: &'static Place,
-    parameters: &Parameters<M>,
+    shared: &Shared<M>,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
-    start_with(place, parameters, configuration::embedded()?)
+    let configuration = configuration::embedded()?;
+    start_with(place, shared, Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY })
 }
 
 /// The same of another configuration than the embedded one, on a machine that reads scenario files.
@@ -58,27 +65,28 @@ pub fn start<M: RawMutex>(
 #[inline]
 pub fn start_with<M: RawMutex>(
     place: &'static Place,
-    parameters: &Parameters<M>,
-    configuration: Configuration,
+    shared: &Shared<M>,
+    built: Built,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+    let parameters = &shared.parameters;
+    let built: &'static Built = place.built.init_with(|| built);
+    if parameters.boot(built) {
+        shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));
+    }
+    let certification = certify(place, built, parameters);
+    log(certification);
+    if certification.is_err() {
+        for name in parameters.set_by_hand() {
+            let words = format_args!("{} {}: cannot be flown", name.row().name, parameters.get(name));
+            shared.announce(Event::new(Severity::Critical, words));
+        }
+    }
+    // What is grounded answers and tests motors as built.
+    let configuration = certification.as_ref().map_or(&built.configuration, Certified::configuration);
     let curve = parameters.get(Name::ThrustCurve);
     let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
-    let limits = GovernorLimits {
-        horizontal_speed: parameters.get(Name::HorizontalSpeed),
-        vertical_speed: parameters.get(Name::VerticalSpeed),
-        ..GovernorLimits::default()
-    };
-    let settings = FlightSettings {
-        take_off_height: parameters.get(Name::TakeOffHeight),
-        landing_speed: parameters.get(Name::LandingSpeed),
-        ground_station_patience: parameters.get(Name::GroundStationPatience),
-        fence_radius: parameters.get(Name::FenceRadius),
-        fence_height: parameters.get(Name::FenceHeight),
-        tracking_error_max: parameters.get(Name::TrackingErrorMax),
-    };
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
-    let certification = certify(place, configuration);
-    log(certification);
+    let (limits, settings) = (flight::limits(parameters), flight::settings(parameters));
     Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
 }
 
@@ -86,8 +94,16 @@ pub fn start_with<M: RawMutex>(
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]
-fn certify(place: &'static Place, configuration: Configuration) -> &'static Result<Certified, Refused> {
-    place.certification.init_with(|| Certified::new(configuration))
+fn certify<M: RawMutex>(
+    place: &'static Place,
+    built: &Built,
+    parameters: &Parameters<M>,
+) -> &'static Result<Certified, Refused> {
+    let certified = || match built.tuned(|name| parameters.raw(name)) {
+        Ok(configuration) => Certified::new(configuration),
+        Err(error) => Err(Refused::Undefined(error)),
+    };
+    place.certification.init_with(certified)
 }
 
 #[inline(never)]

@@ -5,6 +5,7 @@ use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::reference::ReferenceBounds;
+use controller_core::tuning::judged::JudgedLoops;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 

@@ -13,6 +13,7 @@
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
+use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
@@ -99,6 +100,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let poses: Vec<_, POSES> = waiting(&self.shared.poses);
         increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests.take();
+        self.pilot.choose(&flight::settings(&self.shared.parameters));
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
@@ -130,7 +132,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
             killed: self.shared.killed.get().is_some_and(|killed| killed.value),
-            is_busy: self.shared.saving.is_raised(),
+            is_busy: self.shared.is_busy(),
             is_clock_doubtful: self.shared.clock_doubtful.is_raised(),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),

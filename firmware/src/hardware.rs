@@ -130,6 +130,12 @@ pub trait Watchdog {
     fn feed(&mut self);
 }
 
+/// What starts the whole firmware anew.
+pub trait Restart {
+    /// Starts it anew. On a board this does not return.
+    fn restart(&mut self);
+}
+
 /// The battery's voltage, where a board can measure it.
 pub trait Battery {
     /// Volts; none where there is nothing to measure with.
@@ -168,4 +174,32 @@ pub trait Flash {
     /// # Errors
     /// [`Fault`] if the flash says that it failed.
     fn erase(&mut self, sector: usize) -> Result<(), Fault>;
+}
+
+/// Bytes of a sector of a memory card.
+pub const SECTOR: usize = 512;
+
+/// A slot for a memory card. Each call blocks until the card is done, for seconds where a card is at odds with itself: only a task that
+/// nothing waits for may hold it.
+pub trait Card {
+    /// Powers up the card that is in the slot now, and learns its size.
+    ///
+    /// # Errors
+    /// [`Fault`] if there is none, or none that answers as a card does.
+    fn start(&mut self) -> Result<(), Fault>;
+
+    /// How many sectors it has.
+    fn sectors(&self) -> u32;
+
+    /// Reads a sector.
+    ///
+    /// # Errors
+    /// [`Fault`] if the card does not answer, or says that it failed.
+    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> Result<(), Fault>;
+
+    /// Writes a sector. It is on the card for good once this returns.
+    ///
+    /// # Errors
+    /// [`Fault`] if the card does not take it: the sector is as it was, as it should be, or part of both.
+    fn write(&mut self, sector: u32, data: &[u8; SECTOR]) -> Result<(), Fault>;
 }

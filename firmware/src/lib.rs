@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`bmi088`], [`bmi270`] | the boards' inertial measurement units, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
+//! | [`card`] | every flight as a file on a memory card |
 //! | [`configuration`] | the scenario this build embeds |
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
@@ -17,13 +18,14 @@
 //! | [`mounting`] | how a sensor sits in the vehicle |
 //! | [`outputs`] | thrusts to motor commands |
 //! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
-//! | [`parameters`] | the few numbers that may be set from the ground, kept in flash |
+//! | [`parameters`] | the numbers that may be set from the ground, certified where that matters, kept in flash |
 //! | [`radio`] | a transmitter in somebody's hands: arming, kill switch, sticks |
 //! | [`recorder`] | the last seconds of the last flight, in memory that outlives a reset |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`repeat`] | motor commands sent again while they are young |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
+//! | [`restart`] | the restart that a command asked for |
 //! | [`shared`] | what the tasks tell each other, every value with its time |
 //! | [`status`] | a light, the battery, the log |
 //!
@@ -39,6 +41,7 @@ pub mod bmi270;
 #[cfg(target_os = "none")]
 pub mod boards;
 pub mod boot;
+pub mod card;
 pub mod configuration;
 pub mod control;
 pub mod deadline;
@@ -59,5 +62,6 @@ pub mod redundant;
 mod registers;
 pub mod repeat;
 pub mod replay;
+pub mod restart;
 pub mod shared;
 pub mod status;

@@ -1,21 +1,26 @@
-//! Parameters: the few numbers that may be set from the ground, and where they are kept.
+//! Parameters: the numbers that may be set from the ground, and where they are kept.
 //!
-//! Nothing the certificate depends on is here: vehicle, gains, rotors and reference bounds are built in and certified at
-//! boot. A parameter can make the vehicle slower or quieter, never less safe, and changes only while disarmed.
+//! They change only while disarmed. What the certificate depends on is certified when it is set, and refused if that fails; it
+//! counts from the next boot, which certifies it again.
 //!
-//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`] is what the rows of the
-//! inertial sensors mean together.
+//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], [`flight`] and [`tuned`] are what
+//! rows mean together: the inertial sensors', those of the flight rules, and those of the configuration.
 
 pub mod calibration;
+pub mod flight;
 pub mod journal;
 pub mod storage;
 pub mod table;
+pub mod tuned;
 
+use core::cell::Cell;
 use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
+use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use table::{Name, PARAMETERS, Row};
+use tuned::{Built, Unfit};
 
 /// One value for each row of the table.
 type Values = [f32; PARAMETERS.len()];
@@ -37,19 +42,35 @@ pub struct Parameters<M: RawMutex> {
     values: [AtomicU32; PARAMETERS.len()],
     /// Something changed since it was last saved.
     changed: Signal<M, ()>,
+    /// What the rows of the configuration change; none before boot has said so.
+    built: Mutex<M, Cell<Option<&'static Built>>>,
 }
 
 /// Why a value was not taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct OutOfRange(
-    /// Which parameter.
-    pub Name,
-);
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NotTaken {
+    /// The table does not allow it for this parameter.
+    OutOfRange(Name),
+    /// This parameter is only told.
+    OnlyTold(Name),
+    /// Nobody has said yet what was built, which this parameter changes.
+    NothingBuilt(Name),
+    /// The vehicle could not fly with it.
+    Unfit(Name, Unfit),
+}
 
-impl fmt::Display for OutOfRange {
+impl fmt::Display for NotTaken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Row { name, least, most, unit, .. } = self.0.row();
-        write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")
+        match self {
+            Self::OutOfRange(parameter) => {
+                let Row { name, least, most, unit, step, .. } = parameter.row();
+                write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")?;
+                if *step > 1.0 { write!(f, " by {step:.0}") } else { Ok(()) }
+            }
+            Self::OnlyTold(parameter) => write!(f, "{}: is only told", parameter.row().name),
+            Self::NothingBuilt(parameter) => write!(f, "{}: not yet", parameter.row().name),
+            Self::Unfit(parameter, _) => write!(f, "{}: refused, cannot be flown", parameter.row().name),
+        }
     }
 }
 
@@ -63,7 +84,29 @@ impl<M: RawMutex> Parameters<M> {
             values[index] = AtomicU32::new(DEFAULTS[index].to_bits());
             index += 1;
         }
-        Self { values, changed: Signal::new() }
+        Self { values, changed: Signal::new(), built: Mutex::new(Cell::new(None)) }
+    }
+
+    /// Boots: the rows of the configuration change what was `built`. Values that were tuned on another one are dropped; whether
+    /// there were any.
+    pub fn boot(&self, built: &'static Built) -> bool {
+        self.built.lock(|cell| cell.set(Some(built)));
+        let dropped = self.raw(Name::TunedOn) != built.identity as f32 && self.set_by_hand().next().is_some();
+        if dropped {
+            Name::tuned().for_each(|name| self.put(name, f32::NAN));
+            self.changed.signal(());
+        }
+        dropped
+    }
+
+    /// What was built, once it is known.
+    fn built(&self) -> Option<&'static Built> {
+        self.built.lock(Cell::get)
+    }
+
+    /// The rows of the configuration that are not as built.
+    pub fn set_by_hand(&self) -> impl Iterator<Item = Name> {
+        Name::tuned().filter(|name| !self.raw(*name).is_nan())
     }
 
     /// The present values, in the table's order.
@@ -71,29 +114,60 @@ impl<M: RawMutex> Parameters<M> {
         self.values.each_ref().map(|value| f32::from_bits(value.load(Ordering::Relaxed)))
     }
 
-    /// The present value.
+    /// The present value; what was built, where that is a row of the configuration that nobody set.
     #[must_use]
     pub fn get(&self, name: Name) -> f32 {
+        let value = self.raw(name);
+        if value.is_nan() { self.built().and_then(|built| built.value(name)).unwrap_or(value) } else { value }
+    }
+
+    /// The present value as it is kept: no number for one that is as built.
+    #[must_use]
+    pub fn raw(&self, name: Name) -> f32 {
         f32::from_bits(self.values[name as usize].load(Ordering::Relaxed))
     }
 
-    /// Changes a value, to be saved when that is possible.
+    /// Changes a value, to be saved when that is possible. One of the configuration is certified first, which takes long, with all
+    /// others as they are; it counts from the next boot.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a value outside the table's range, not finite, or not whole where it has to be.
-    pub fn set(&self, name: Name, value: f32) -> Result<(), OutOfRange> {
-        self.restore(name, value)?;
+    /// [`NotTaken`] for a value outside the table's range, not finite, between its steps, or with which the vehicle could not fly.
+    pub fn set(&self, name: Name, value: f32) -> Result<(), NotTaken> {
+        if name == Name::TunedOn {
+            return Err(NotTaken::OnlyTold(name));
+        }
+        if !name.row().allows(value) {
+            return Err(NotTaken::OutOfRange(name));
+        }
+        let value = if name.is_tuned() { self.judged(name, value)? } else { value };
+        self.put(name, value);
         self.changed.signal(());
         Ok(())
     }
 
-    /// As [`Self::set`], for a value that comes from storage and needs no saving.
-    fn restore(&self, name: Name, value: f32) -> Result<(), OutOfRange> {
-        if !name.row().allows(value) {
-            return Err(OutOfRange(name));
+    /// What is kept for a value of the configuration, if the vehicle could fly with it.
+    fn judged(&self, name: Name, value: f32) -> Result<f32, NotTaken> {
+        let built = self.built().ok_or(NotTaken::NothingBuilt(name))?;
+        let value = if built.value(name) == Some(value) { f32::NAN } else { value };
+        built
+            .judge(|other| if other == name { value } else { self.raw(other) })
+            .map_err(|unfit| NotTaken::Unfit(name, unfit))?;
+        self.put(Name::TunedOn, built.identity as f32);
+        Ok(value)
+    }
+
+    /// As [`Self::set`], for a value that comes from storage and needs no saving. Boot judges it.
+    fn restore(&self, name: Name, value: f32) -> Result<(), NotTaken> {
+        let is_as_built = name.is_tuned() && value.is_nan();
+        if !is_as_built && !name.row().allows(value) {
+            return Err(NotTaken::OutOfRange(name));
         }
-        self.values[name as usize].store(value.to_bits(), Ordering::Relaxed);
+        self.put(name, value);
         Ok(())
+    }
+
+    fn put(&self, name: Name, value: f32) {
+        self.values[name as usize].store(value.to_bits(), Ordering::Relaxed);
     }
 }
 

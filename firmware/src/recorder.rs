@@ -10,8 +10,9 @@
 //! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is served
 //!   while one is made.
 //!
-//! A loss of power loses it: it is no substitute for a log on a card.
+//! A loss of power loses it. Where a board has a memory card, [`crate::card`] follows along ([`follow`]) and writes every record to it.
 
+pub mod follow;
 pub mod ring;
 pub mod tick;
 pub mod ulog;

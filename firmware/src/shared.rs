@@ -21,12 +21,19 @@
 //! | link | [`Shared::replies`] | link, its other half | until sent |
 //! | board | [`Shared::clock_doubtful`] | control | until reboot |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
+//! | link | [`Shared::judging`] | control | while it lasts |
+//! | link | [`Shared::restarting`] | control, restart | until the restart |
+//! | restart | [`Shared::can_restart`] | link | for ever |
 //! | control | [`Shared::recorder`] | link | until the next flight |
+//! | control | [`Shared::recorder`] | card | as long as the ring holds it |
+//! | any | [`Shared::announce`] | card, while it is ready | until logged |
+//! | card | [`Shared::card`] | link, status | [`CARD_SILENCE`] |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
 //! control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
 
+mod card;
 mod event;
 mod flag;
 mod latest;
@@ -34,6 +41,7 @@ mod queue;
 mod reply;
 mod report;
 
+pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
@@ -88,6 +96,12 @@ pub struct Shared<M: RawMutex> {
     pub requests: Queue<M, Asked, REQUESTS>,
     /// Raised while parameters are written to flash: nothing begins to turn.
     pub saving: Flag,
+    /// Raised while a changed configuration is certified: nothing begins to turn.
+    pub judging: Flag,
+    /// Raised by a command to restart: nothing begins to turn any more.
+    pub restarting: Flag,
+    /// Raised where somebody can restart the vehicle.
+    pub can_restart: Flag,
     /// Raised at boot where the clock's crystal does not run: nobody arms.
     pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
@@ -120,6 +134,8 @@ pub struct Shared<M: RawMutex> {
     pub parameters: Parameters<M>,
     /// The last seconds of the last flight: control writes, the link reads.
     pub recorder: Recorder<M>,
+    /// The memory card, where the board has one.
+    pub card: CardStatus<M>,
     /// Events that found one of the queues full.
     lost: AtomicU32,
     lost_increments: AtomicU32,
@@ -138,6 +154,9 @@ impl<M: RawMutex> Shared<M> {
             setpoint: Latest::new(),
             requests: Queue::new(),
             saving: Flag::new(),
+            judging: Flag::new(),
+            restarting: Flag::new(),
+            can_restart: Flag::new(),
             clock_doubtful: Flag::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
@@ -154,6 +173,7 @@ impl<M: RawMutex> Shared<M> {
             outgoing: Signal::new(),
             parameters: Parameters::new(),
             recorder: Recorder::new(),
+            card: CardStatus::new(),
             lost: AtomicU32::new(0),
             lost_increments: AtomicU32::new(0),
         }
@@ -207,10 +227,11 @@ impl<M: RawMutex> Shared<M> {
         self.outgoing.signal(());
     }
 
-    /// Tells people: the ground station and the log. Where a queue is full the event is dropped and counted: what came first is
+    /// Tells people: the ground station, the log and the card. Where a queue is full the event is dropped and counted: what came first is
     /// the cause, what follows is mostly its consequence.
     pub fn announce(&self, event: Event) {
-        if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() {
+        let is_logged = self.card.state() != CardState::Ready || self.card.events.put(event.clone()).is_ok();
+        if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
         self.outgoing.signal(());
@@ -220,6 +241,12 @@ impl<M: RawMutex> Shared<M> {
     #[must_use]
     pub fn lost_events(&self) -> u32 {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Whether somebody has something to do during which nothing may begin to turn.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        [&self.saving, &self.judging, &self.restarting].iter().any(|flag| flag.is_raised())
     }
 
     /// Whether the last report says that the law drives the motors. Until there is a report, nothing does.

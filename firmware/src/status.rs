@@ -64,6 +64,7 @@ pub async fn run<M: RawMutex>(
     shared: &Shared<M>,
 ) -> ! {
     let (mut reading, mut summary, mut warning) = (0, 0, 0);
+    let mut is_card_silent = false;
     loop {
         let now = clock.now();
         let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
@@ -72,6 +73,11 @@ pub async fn run<M: RawMutex>(
             reading = now.saturating_add(BATTERY_INTERVAL);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
+        let is_silent = shared.card.is_silent(now);
+        if is_silent && !is_card_silent {
+            shared.announce(Event::new(Severity::Warning, "Card does not answer: flights are not logged"));
+        }
+        is_card_silent = is_silent;
         while let Some(event) = shared.log.take() {
             log::event(&event);
         }

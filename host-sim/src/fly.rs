@@ -9,7 +9,9 @@ use crate::plots;
 use crate::plots::canvas::PlotError;
 use crate::plots::record::Record;
 use crate::progress::Progress;
-use crate::recording::Recording;
+use crate::recording::{Recording, flight};
+use crate::report::flight as report_page;
+use crate::report::recorder::Recorder as PageRecorder;
 use crate::whole_file::WholeFile;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
@@ -77,8 +79,8 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
 }
 
-/// Flies `scenario` and writes log.csv, four figures and report.md into `directory`; and flight.mcap, if it is given the scenario's
-/// `text` to attach.
+/// Flies `scenario`, which was read from `text`, and writes log.csv, report.html, four figures and report.md into `directory`; and
+/// flight.mcap if it is asked for.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
 /// older flight in the same directory is touched.
@@ -87,8 +89,9 @@ pub struct Outcome {
 /// [`FlyError`]; then no file is left behind.
 pub fn fly(
     scenario: &Scenario,
+    text: &str,
     directory: &Path,
-    text: Option<&str>,
+    mcap: bool,
     interrupt: &Interrupt,
 ) -> Result<Outcome, FlyError> {
     let verdict = Verdict::of(scenario)?;
@@ -98,11 +101,13 @@ pub fn fly(
     }?;
     std::fs::create_dir_all(directory).map_err(failed(directory))?;
     let mut log = Output::create(directory, "log.csv")?;
-    let mut recording = text.map(|text| Recorder::create(directory, scenario, text)).transpose()?;
-    let (flown, record) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
+    let mut recording = mcap.then(|| Recorder::create(directory, scenario, text)).transpose()?;
+    let (flown, record, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
 
     let outcome =
         Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) };
+    let Outcome { certification, claims } = &outcome;
+    let over = report_page::Flight { scenario, text, verdict: &verdict, certification, claims, flown: &flown };
     let samples = record.samples();
     let texts = [
         ("fig1.svg", plots::figure_1(scenario, &samples)?),
@@ -110,6 +115,7 @@ pub fn fly(
         ("first-seconds.svg", plots::first_seconds(scenario, &samples)?),
         ("flight.svg", plots::path::picture(&samples)?),
         ("report.md", report(scenario, &outcome)),
+        ("report.html", report_page::page(&over, page).html()),
     ];
     let mut outputs = vec![log];
     outputs.extend(recording.map(Recorder::finish).transpose()?);
@@ -133,11 +139,11 @@ fn log_flight(
     log: &mut Output,
     mut recording: Option<&mut Recorder>,
     interrupt: &Interrupt,
-) -> Result<(Flown, Record), FlyError> {
+) -> Result<(Flown, Record, PageRecorder), FlyError> {
     let ticks = scenario.timing.ticks;
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let estimates = scenario.configuration.paper().is_none();
-    let (mut flown, mut record) = (Flown::new(scenario), Record::new(ticks));
+    let (mut flown, mut record, mut page) = (Flown::new(scenario), Record::new(ticks), report_page::recorder(scenario));
     let mut progress = Progress::new("flying", ticks);
     let reality = log::reality_header(&scenario.reality);
     log.write(|file| writeln!(file, "{}{reality}", log::header(rotors, estimates)))?;
@@ -150,11 +156,12 @@ fn log_flight(
         }
         flown.observe(&tick);
         record.observe(&tick);
+        page.observe(&tick);
         if done % TICKS_PER_SHOW == 0 {
             progress.show(done);
         }
     }
-    Ok((flown, record))
+    Ok((flown, record, page))
 }
 
 fn interrupted(interrupt: &Interrupt) -> Result<(), FlyError> {
@@ -187,10 +194,7 @@ struct Recorder {
 impl Recorder {
     fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
         let Output { file, path } = Output::create(directory, "flight.mcap")?;
-        let rotors = scenario.configuration.rotors();
-        let places: Vec<[f64; 3]> =
-            rotors.into_iter().flat_map(|rotors| rotors.iter()).map(|rotor| rotor.position.cast().into()).collect();
-        let recording = Recording::begin(file, &scenario.name, text, &places).map_err(failed(&path))?;
+        let recording = Recording::begin(file, scenario, text, flight::TOPICS).map_err(failed(&path))?;
         Ok(Self { recording, path })
     }
 

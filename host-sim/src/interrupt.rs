@@ -22,6 +22,11 @@ impl Interrupt {
         Ok(interrupt)
     }
 
+    /// Asks for it as a signal would.
+    pub fn ask(&self) {
+        self.0.store(SIGINT as usize, Ordering::Relaxed);
+    }
+
     /// The signal that came, if one did: the exit status is 128 more, as shells have it.
     #[must_use]
     pub fn signal(&self) -> Option<u8> {

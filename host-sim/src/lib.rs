@@ -15,6 +15,7 @@
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
+//! | [`report`] | report.html: a page of tables, plots, replays and distributions |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
@@ -38,6 +39,7 @@ pub mod plots;
 pub mod progress;
 pub mod reality;
 pub mod recording;
+pub mod report;
 pub mod sensors;
 pub mod sitl;
 pub mod table;

@@ -85,9 +85,11 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
     file.map_or_else(Scenario::paper, Scenario::load).map_err(|error| error.to_string())
 }
 
-/// What a scenario was read from.
+/// What a scenario is read from, once: a pipe cannot be read twice.
 fn text_of(file: Option<&Path>) -> Result<String, String> {
-    let read = |file: &Path| std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()));
+    let read = |file: &Path| {
+        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+    };
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }
 
@@ -105,7 +107,9 @@ fn status(holds: bool, signal: Option<u8>) -> ExitCode {
 }
 
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
-    let scenario = load(file)?;
+    let text = text_of(file)?;
+    let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
+    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
     if let Some(size) = large(&scenario) {
         let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
         if !large_log {
@@ -116,13 +120,12 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
         eprintln!("{named}{size}");
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
-    let text = mcap.then(|| text_of(file)).transpose()?;
-    fly_into(&scenario, &directory, text.as_deref())
+    fly_into(&scenario, &text, &directory, mcap)
 }
 
-/// Flies one flight and says what came of it.
-fn fly_into(scenario: &Scenario, directory: &Path, text: Option<&str>) -> Result<ExitCode, String> {
-    let outcome = match fly(scenario, directory, text, &watch()?) {
+/// Flies one flight of a scenario from a file with this `text`, and says what came of it.
+fn fly_into(scenario: &Scenario, text: &str, directory: &Path, mcap: bool) -> Result<ExitCode, String> {
+    let outcome = match fly(scenario, text, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
             eprintln!("error: {}: {error}", scenario.name);
@@ -150,7 +153,7 @@ fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
     if let Some(number) = arguments.replay {
         let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{}-{number}", scenario.name);
-        return fly_into(&thrown, &arguments.directory(&thrown), None);
+        return fly_into(&thrown, &text, &arguments.directory(&thrown), false);
     }
     let (directory, interrupt) = (arguments.directory(&scenario), watch()?);
     show_campaign(campaign::fly::campaign(&scenario, &text, &orders, &directory, &interrupt), &directory)
@@ -219,12 +222,12 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
 }
 
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
-    let session = arguments.session()?;
-    let scenario = match &arguments.file {
-        Some(file) => Scenario::load(file),
-        None => Scenario::parse(STUDY, "vehicles/study.toml (built in)"),
+    let (text, name) = match &arguments.file {
+        Some(file) => (text_of(Some(file))?, file.display().to_string()),
+        None => (STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned()),
     };
-    let scenario = scenario.map_err(|error| error.to_string())?;
+    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+    let session = arguments.session(text)?;
     // Whoever has stopped to read is none the less a pilot.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
     match sitl::run(&scenario, &session, &watch()?, show) {

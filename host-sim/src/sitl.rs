@@ -13,8 +13,9 @@
 //! | [`pace`] | the vehicle's time against everybody else's |
 //! | [`faults`] | what is to fail, and when |
 //! | [`flash`] | where parameters are kept |
+//! | `record` | the session as MCAP |
 //!
-//! Control, IMU, both halves of the link, status and parameters are the library's tasks that boards run; here they share
+//! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here they share
 //! a thread and a simulated clock, which is let go no further than the desk's. The configuration is certified as at a board's boot, and a
 //! scenario that could not be built for a board is refused ([`scenario::board`]).
 
@@ -24,29 +25,36 @@ pub mod flash;
 pub mod line;
 pub mod pace;
 pub mod port;
+mod record;
 mod voice;
 pub mod world;
 
 use crate::interrupt::Interrupt;
+use crate::recording::session::Moment;
 use clock::SimClock;
+use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
 use controller_core::flight::Mode;
+use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use faults::{Fault, Faults, Part};
 use firmware::control::Control;
-use firmware::hardware::Clock;
+use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
 use firmware::parameters::storage::Storage;
+use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT};
 use firmware::shared::Shared;
-use firmware::{boot, imu, link, status};
+use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
 use line::Line;
 use pace::Pace;
 use port::{Port, Ports};
+use record::Record;
 use scenario::{Scenario, board};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::future::Future;
 use std::path::PathBuf;
@@ -74,12 +82,14 @@ pub struct Session {
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,
+    /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
+    pub recording: Option<(PathBuf, String)>,
 }
 
 /// Why a session could not be run, or not to its end.
 #[derive(Debug)]
 pub enum SitlError {
-    /// The scenario, a file or a port cannot be used: why, in a line.
+    /// The scenario, a file or a port cannot be used, or a file not be written: why, in a line.
     Input(String),
     /// The vehicle's motion is not finite any more, at this time, s.
     Diverged(f64),
@@ -128,6 +138,21 @@ pub struct Sitl {
     up: Line,
     faults: Faults,
     texts: Rc<RefCell<Vec<(u64, String)>>>,
+    flash: DeskFlash,
+    configuration: Configuration,
+    loops: &'static JudgedLoops,
+    identity: u32,
+    /// Set by the firmware: start it anew.
+    restart: Rc<Cell<bool>>,
+}
+
+/// What starts the firmware anew, once its tasks have come to rest.
+struct Desk(Rc<Cell<bool>>);
+
+impl Restart for Desk {
+    fn restart(&mut self) {
+        self.0.set(true);
+    }
 }
 
 impl Sitl {
@@ -143,23 +168,50 @@ impl Sitl {
         let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
         let flash = DeskFlash::open(session.parameters.clone())?;
 
+        let identity = board::identity(scenario);
+        let loops = match identity {
+            // Judged already, when the firmware's library was built.
+            firmware::configuration::IDENTITY => &firmware::configuration::LOOPS,
+            _ => Box::leak(Box::new(board::judged(scenario))),
+        };
+        let mut sitl = Self {
+            pool: LocalPool::new(),
+            clock,
+            world,
+            shared: Box::leak(Box::new(Shared::new())),
+            port,
+            up,
+            faults,
+            texts: Rc::default(),
+            flash,
+            configuration: scenario.configuration.clone(),
+            loops,
+            identity,
+            restart: Rc::default(),
+        };
+        sitl.start().map_err(|error| in_file(error.to_string()))?;
+        Ok((sitl, warning))
+    }
+
+    /// Starts the firmware: with nothing in memory, on what is in flash. The vehicle's clock goes on.
+    fn start(&mut self) -> Result<(), ParameterError> {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
-        let mut parameters = Storage::load(flash, shared);
+        let mut parameters = Storage::load(self.flash.clone(), shared);
         shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice())));
         let place = Box::leak(Box::new(boot::Place::new()));
-        let (pilot, outputs) = boot::start_with(place, &shared.parameters, scenario.configuration.clone())
-            .map_err(|error| in_file(error.to_string()))?;
+        let built = Built { configuration: self.configuration.clone(), loops: self.loops, identity: self.identity };
+        let (pilot, outputs) = boot::start_with(place, shared, built)?;
 
         let pool = LocalPool::new();
         let spawner = pool.spawner();
-        let texts = Rc::<RefCell<Vec<_>>>::default();
+        let (clock, world) = (&self.clock, &self.world);
         let voice = Voice {
             clock: clock.clone(),
-            faults: faults.clone(),
-            port: Rc::clone(&port),
+            faults: self.faults.clone(),
+            port: Rc::clone(&self.port),
             world: world.clone(),
-            texts: Rc::clone(&texts),
+            texts: Rc::clone(&self.texts),
             parser: Parser::new(),
         };
         let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
@@ -169,7 +221,7 @@ impl Sitl {
         );
         let (mut sensor, time) = (world.clone(), clock.clone());
         spawn(&spawner, async move { imu::run(shared, &time, &mut sensor).await });
-        let (ear, time) = (up.clone(), clock.clone());
+        let (ear, time) = (self.up.clone(), clock.clone());
         spawn(&spawner, async move { link::receive::receive(ear, &time, shared).await });
         let time = clock.clone();
         spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared).await });
@@ -177,8 +229,11 @@ impl Sitl {
         spawn(&spawner, async move { status::run(light, battery, &time, shared).await });
         let time = clock.clone();
         spawn(&spawner, async move { parameters.keep(&time, shared).await });
+        let (mut desk, time) = (Desk(Rc::clone(&self.restart)), clock.clone());
+        spawn(&spawner, async move { restart::run(shared, &time, &mut desk).await });
         spawn(&spawner, world.clone().run());
-        Ok((Self { pool, clock, world, shared, port, up, faults, texts }, warning))
+        (self.pool, self.shared) = (pool, shared);
+        Ok(())
     }
 
     /// Takes what clients have sent, and lets time pass until `end`, us.
@@ -190,6 +245,21 @@ impl Sitl {
             }
         });
         self.clock.run(&mut self.pool, end);
+        if self.restart.take() {
+            // What is refused is refused at the first start: the vehicle has as many rotors as then.
+            let _ = self.start();
+        }
+    }
+
+    /// What there is to be seen of it.
+    fn moment(&self) -> Moment {
+        Moment {
+            now: self.clock.now(),
+            truth: self.world.state(),
+            rotors: self.world.thrusts(),
+            report: self.shared.report.get().map(|report| report.value),
+            voltage: self.shared.voltage.get().map(|voltage| voltage.value),
+        }
     }
 
     /// One line: time, mode, position, battery.
@@ -232,6 +302,8 @@ pub fn run(
     mut tell: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
     let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
+    let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
+    let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
     tell(&format!(
@@ -241,26 +313,34 @@ pub fn run(
     let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
     let mut pace = Pace::new(session.speed);
     let mut shown = Instant::now();
-    loop {
+    let ended = loop {
         let now = sitl.clock.now();
         if let Some(signal) = interrupt.signal() {
-            return Ok(sitl.summary(Some(signal)));
+            break Ok(sitl.summary(Some(signal)));
         }
         if end.is_some_and(|end| now >= end) {
-            return Ok(sitl.summary(None));
+            break Ok(sitl.summary(None));
         }
-        let next = pace.next(now).min(end.unwrap_or(u64::MAX));
+        let due = record.as_ref().map_or(u64::MAX, Record::due);
+        let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
         pace.wait(next);
         sitl.pass(next);
-        sitl.world.check().map_err(|_| SitlError::Diverged(next as f64 * 1e-6))?;
+        if sitl.world.check().is_err() {
+            break Err(SitlError::Diverged(next as f64 * 1e-6));
+        }
         for (time, text) in sitl.texts.take() {
             tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+            record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
+        record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
         if shown.elapsed() >= STATUS {
             shown += STATUS;
             tell(&sitl.status());
         }
-    }
+    };
+    // Also of a session that ended badly: what led to it is in there.
+    record.map_or(Ok(()), Record::finish).map_err(SitlError::Input)?;
+    ended
 }
 
 #[cfg(test)]

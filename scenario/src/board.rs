@@ -1,9 +1,16 @@
 //! What the firmware can fly of all scenarios: 100 Hz, four rotors, and sampled loops with margin.
 //!
+//! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice of factors is judged here.
+//!
 //! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built for a board.
 
 use crate::file::Scenario;
+use crate::sampled_loop::{Axis, LoopModel};
+use crate::stability::LoopMargin;
 use crate::verdict::Verdict;
+use controller_core::certificate::configuration::LawParameters;
+use controller_core::tuning::Factors;
+use controller_core::tuning::judged::JudgedLoops;
 
 /// The rate of the firmware's control task, Hz.
 pub const RATE: f64 = 100.0;
@@ -34,4 +41,99 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
         return Err(format!("{name}: {lack}; what cannot be flown is not built"));
     }
     Ok(verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
+}
+
+/// The loops that only the attitude's factors change, and those that these and the position's across change; under the paper's law, whose
+/// gains are those of every axis, the vertical one is among them.
+const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
+const ACROSS: [Axis; 2] = [Axis::LateralX, Axis::LateralY];
+
+/// Which factors on the gains of `scenario` leave its sampled loops stable and with their margin.
+#[must_use]
+pub fn judged(scenario: &Scenario) -> JudgedLoops {
+    let law = scenario.configuration.law();
+    let vertical = [Axis::Vertical];
+    let with_vertical = matches!(law, LawParameters::Paper(_));
+    // The choices come sorted by the attitude's factors: its loops are judged once for all that have the same.
+    let mut attitude = None;
+    let across = |factors: &Factors| {
+        let key = (factors.attitude, factors.rate);
+        let (_, holds) = *attitude
+            .take_if(|(last, _)| *last == key)
+            .get_or_insert_with(|| (key, has_margins(scenario, factors, &ATTITUDE)));
+        attitude = Some((key, holds));
+        holds
+            && has_margins(scenario, factors, &ACROSS)
+            && (!with_vertical || has_margins(scenario, factors, &vertical))
+    };
+    JudgedLoops::judge(across, |factors| has_margins(scenario, factors, &vertical))
+}
+
+/// Whether these loops have their margin under `factors`. Gains that the law is undefined for have none.
+fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
+    let configuration = &scenario.configuration;
+    let Ok(law) = factors.law(configuration.law(), configuration.vehicle()) else { return false };
+    let loops = LoopModel::new(configuration.vehicle(), &law, scenario.loop_timing());
+    loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
+}
+
+/// A number that tells one scenario's configuration from another's, in [0, 2^24): what was tuned on one is not the other's.
+#[must_use]
+pub fn identity(scenario: &Scenario) -> u32 {
+    // FNV-1a, 32 bits, over everything that the configuration and its loops are made of.
+    let text = format!("{:?} {:?}", scenario.configuration, scenario.loop_timing());
+    let hash = text.bytes().fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+    (hash >> 24) ^ (hash & 0x00FF_FFFF)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::STUDY;
+    use controller_core::tuning::Percent;
+
+    #[test]
+    fn the_bits_say_what_the_analysis_says_of_each_choice() {
+        // So slow that some choices of factors have no margin.
+        let study = Scenario::parse(&STUDY.replace("lag = 0.030 ", "lag = 0.045 "), "study").unwrap();
+        let judged = judged(&study);
+        let held = |factors: &Factors| {
+            let configuration = &study.configuration;
+            let law = factors.law(configuration.law(), configuration.vehicle()).unwrap();
+            let loops = LoopModel::new(configuration.vehicle(), &law, study.loop_timing()).unwrap();
+            LoopMargin::LEAST.first_lacking(&loops.reports()).is_none()
+        };
+        let (mut good, mut bad) = (0, 0);
+        for (index, attitude) in Percent::all().enumerate() {
+            for (other, rate) in Percent::all().enumerate() {
+                // Not in step with the loops above, so that every factor meets every other.
+                let pick = |step: usize| Percent::all().nth((index * step + 3 * other) % Percent::COUNT).unwrap();
+                let factors = Factors {
+                    attitude,
+                    rate,
+                    position_across: pick(2),
+                    velocity_across: pick(4),
+                    position_vertical: pick(5),
+                    velocity_vertical: pick(6),
+                };
+                assert_eq!(judged.hold(&factors), held(&factors), "{factors:?}");
+                *if judged.hold(&factors) { &mut good } else { &mut bad } += 1;
+            }
+        }
+        println!("{good} choices hold, {bad} do not");
+        assert!(good > 0 && bad > 0);
+    }
+
+    #[test]
+    fn another_lag_or_gain_is_another_configuration() {
+        let identity_of = |text: &str| identity(&Scenario::parse(text, "a test").unwrap());
+        let study = identity_of(STUDY);
+        assert_eq!(study, identity_of(&STUDY.replace("name = \"study\"", "name = \"mine\"")));
+        for (line, other) in
+            [("lag = 0.030 ", "lag = 0.031 "), ("mass = 0.460 ", "mass = 0.461 "), ("k_t = 0.25", "k_t = 0.26")]
+        {
+            assert_ne!(study, identity_of(&STUDY.replace(line, other)), "{line}");
+        }
+        assert!(study < 1 << 24);
+    }
 }

@@ -151,10 +151,15 @@ impl Scenario {
     /// # Errors
     /// If the timing is outside the model's range; no file that was read leads there.
     pub fn loops(&self) -> Result<LoopModel, ParameterError> {
+        LoopModel::new(self.configuration.vehicle(), self.configuration.law(), self.loop_timing())
+    }
+
+    /// When commands are computed and how they reach the vehicle, for its sampled loops.
+    #[must_use]
+    pub fn loop_timing(&self) -> sampled_loop::Timing {
         let period = self.timing.period();
         let delay_samples = (self.delay() + self.input_delay()) / period;
-        let timing = sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples };
-        LoopModel::new(self.configuration.vehicle(), self.configuration.law(), timing)
+        sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples }
     }
 
     /// Whether `other` is the same flight, whatever its name.

@@ -41,7 +41,7 @@ impl Flight {
     pub fn boot_with(parameters: &[(Name, f32)]) -> Self {
         Self::with(|shared| {
             parameters.iter().for_each(|&(name, value)| shared.parameters.set(name, value).unwrap());
-            boot::start(Box::leak(Box::new(boot::Place::new())), &shared.parameters).unwrap()
+            boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap()
         })
     }
 

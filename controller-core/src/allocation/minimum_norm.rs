@@ -48,8 +48,6 @@ impl Actuator {
 pub struct Delivered {
     /// Thrust of each rotor, N, within its range.
     pub thrusts: Thrusts,
-    /// B times the thrusts: the wrench they deliver, body frame.
-    pub achieved: Wrench,
     /// Whether a thrust of B+ w was outside its rotor's range. Never in a certified flight.
     pub clipped: bool,
 }
@@ -84,24 +82,24 @@ impl MinimumNorm {
             check_vectors(&[(&thrust, STATE_RANGE, "wrench.thrust"), (&wrench.torque, STATE_RANGE, "wrench.torque")])?;
         }
         let asked = components(wrench);
-        let (mut thrusts, mut sum, mut clipped) = (Thrusts::new(), Vector4::zeros(), false);
-        // Rotor by rotor, what `preferred`, `clip` and `sum` do in three passes.
+        let (mut thrusts, mut clipped) = (Thrusts::new(), false);
+        // Rotor by rotor, what `preferred` and `clip` do in two passes.
         for actuator in &self.actuators {
             let wanted = actuator.share.dot(&asked);
             let thrust = actuator.clip(wanted);
             // Also true for a NaN.
             clipped |= thrust != wanted;
-            sum += actuator.column * thrust;
             // There is room for as many as there are.
             let _ = thrusts.push(thrust);
         }
-        Ok(Delivered { thrusts, achieved: of_components(&sum), clipped })
+        Ok(Delivered { thrusts, clipped })
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
     #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
-        of_components(&self.sum(thrusts))
+        let sum = self.sum(thrusts);
+        Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
     }
 
     /// The rotors, in their order.
@@ -137,9 +135,4 @@ impl MinimumNorm {
 /// (T, tau) as one vector.
 pub(super) fn components(wrench: &Wrench) -> Vector4<f32> {
     Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z)
-}
-
-/// One vector as (T, tau).
-fn of_components(sum: &Vector4<f32>) -> Wrench {
-    Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }
 }

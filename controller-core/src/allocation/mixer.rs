@@ -18,7 +18,7 @@
 //!
 //! **Never worse than clipping, in roll and pitch.** Clipping each rotor of B+ w gives thrusts within their ranges, hence
 //! a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding, which
-//! [`Allocation::achieved`] shows: it is worked out from the thrusts.
+//! [`Mixer::wrench`] shows.
 //!
 //! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its scenario says
 //! never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
@@ -45,8 +45,6 @@ const TRIPLES_AFTER_FIRST: usize = 35;
 pub struct Allocation {
     /// Thrust of each rotor, N, within its range.
     pub thrusts: Thrusts,
-    /// B times the thrusts: the wrench they deliver, body frame.
-    pub achieved: Wrench,
     /// Roll or pitch torque was reduced: the rotors cannot deliver that pair at any thrust and yaw.
     pub roll_pitch_limited: bool,
     /// Thrust was changed to what roll and pitch leave.
@@ -135,17 +133,16 @@ impl Mixer {
     /// # Errors
     /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never are.
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
-        let Delivered { thrusts, achieved, clipped } = self.minimum_norm.allocate(wrench)?;
+        let Delivered { thrusts, clipped } = self.minimum_norm.allocate(wrench)?;
         if !clipped {
             let (roll_pitch_limited, thrust_limited, yaw_limited) = (false, false, false);
-            return Ok(Allocation { thrusts, achieved, roll_pitch_limited, thrust_limited, yaw_limited });
+            return Ok(Allocation { thrusts, roll_pitch_limited, thrust_limited, yaw_limited });
         }
         cold_path();
         let asked = components(wrench);
         let given = self.attainable(&asked);
         let thrusts = self.deliver(&given);
         Ok(Allocation {
-            achieved: self.wrench(&thrusts),
             thrusts,
             roll_pitch_limited: asked.y != given.y || asked.z != given.z,
             thrust_limited: asked.x != given.x,
@@ -153,7 +150,7 @@ impl Mixer {
         })
     }
 
-    /// The wrench that thrusts, N, in the rotors' order, act on the body with.
+    /// B times the thrusts, N, in the rotors' order: the wrench they act on the body with.
     #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         self.minimum_norm.wrench(thrusts)

@@ -56,8 +56,6 @@ pub struct Flown {
     pub reference: Reference,
     /// The wrench the law asked for.
     pub wrench: Wrench,
-    /// The wrench the rotors are asked for: the same but for rounding, as is proven.
-    pub achieved: Wrench,
     /// p~, m, world.
     pub position_error: Vector3<f32>,
     /// theta~, the modified Rodrigues parameters of the attitude error.
@@ -297,15 +295,8 @@ impl<'m> Chain<'m> {
         }
         self.refusals = 0;
         self.thrusts = Some(self.spool.advance(allocation.thrusts));
-        let flown = Flown {
-            state: *state,
-            reference: self.reference,
-            wrench,
-            achieved: allocation.achieved.scaled(scale),
-            position_error,
-            mrp,
-            thrust_scale: scale,
-        };
+        let flown =
+            Flown { state: *state, reference: self.reference, wrench, position_error, mrp, thrust_scale: scale };
         self.flown = Some(flown);
         Ok(flown)
     }

@@ -8,7 +8,7 @@ use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-pub(super) fn certified() -> Certified {
+pub(crate) fn certified() -> Certified {
     let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
     let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap();
     let torque_max = Vector3::new(1.0, 1.0, 0.2);

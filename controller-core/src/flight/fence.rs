@@ -25,6 +25,11 @@ impl Fence {
         Self { home: Vector3::zeros(), radius: settings.fence_radius, height: settings.fence_height }
     }
 
+    /// As wide and as high as other settings say, about the same place.
+    pub fn choose(&mut self, settings: &FlightSettings) {
+        *self = Self { home: self.home, ..Self::new(settings) };
+    }
+
     /// Puts it about `home`, m, world.
     pub fn place(&mut self, home: &Vector3<f32>) {
         self.home = *home;

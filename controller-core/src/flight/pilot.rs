@@ -76,6 +76,14 @@ impl<'m> Pilot<'m> {
         }
     }
 
+    /// Other settings from now on, while the law drives nothing; an armed vehicle keeps those that it was armed with.
+    pub fn choose(&mut self, settings: &FlightSettings) {
+        if !self.mode.is_armed() {
+            self.settings = settings.within_range();
+            self.fence.choose(&self.settings);
+        }
+    }
+
     /// The mode after the last tick.
     #[must_use]
     pub fn mode(&self) -> Mode {

@@ -69,7 +69,7 @@ pub enum Refusal {
     Stopped,
     /// The kill switch is on.
     Killed,
-    /// Flash is being written, which may stall the processor.
+    /// Flash is being written, which may stall the processor; or a changed configuration is certified; or a restart is under way.
     Busy,
     /// The clock's crystal does not run.
     ClockDoubtful,
@@ -128,7 +128,7 @@ impl fmt::Display for Refusal {
             Self::AlreadyArmed => "Refused: armed already",
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",
-            Self::Busy => "Refused: parameters are being saved",
+            Self::Busy => "Refused: parameters in work, or a restart",
             Self::ClockDoubtful => "Refused: the clock's crystal does not run",
             Self::BatteryLow => "Refused: the battery is low",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",

@@ -33,7 +33,7 @@ mod target {
         mps2::init(core);
         defmt::info!("{} emulated", firmware::configuration::NAME);
         static PLACE: boot::Place = boot::Place::new();
-        let Ok((pilot, outputs)) = boot::start(&PLACE, &SHARED.parameters) else {
+        let Ok((pilot, outputs)) = boot::start(&PLACE, &SHARED) else {
             exit::fail("the embedded scenario has not four rotors")
         };
         SHARED.hil.raise();

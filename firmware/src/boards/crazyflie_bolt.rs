@@ -17,7 +17,7 @@ use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
-use crate::hardware::Battery;
+use crate::hardware::{Battery, Card, Fault, SECTOR};
 use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
@@ -64,6 +64,9 @@ pub type BoardWatchdog = ChipWatchdog<IWDG>;
 /// The battery.
 pub type BoardBattery = NoBattery;
 
+/// There is no slot for a memory card.
+pub type BoardCard = NoCard;
+
 /// What it is called.
 pub const NAME: &str = "Crazyflie Bolt 1.1";
 
@@ -71,13 +74,15 @@ pub const NAME: &str = "Crazyflie Bolt 1.1";
 pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::UART4;
 /// See [`CONTROL_INTERRUPT`].
 pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
+/// And the services.
+pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::CAN1_TX;
 
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
 /// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
     let restart = restart::cause();
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
@@ -128,6 +133,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         simulator_receiver,
         simulator_transmitter,
         radio: None,
+        card: None,
         storage: ParameterFlash::new(p.FLASH, pac::IWDG),
         has_crystal,
         restart,
@@ -156,6 +162,27 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
     config
 }
 
+/// The slot that there is not.
+pub enum NoCard {}
+
+impl Card for NoCard {
+    fn start(&mut self) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn sectors(&self) -> u32 {
+        match *self {}
+    }
+
+    fn read(&mut self, _: u32, _: &mut [u8; SECTOR]) -> Result<(), Fault> {
+        match *self {}
+    }
+
+    fn write(&mut self, _: u32, _: &[u8; SECTOR]) -> Result<(), Fault> {
+        match *self {}
+    }
+}
+
 /// The radio's own processor measures the battery, and this firmware does not talk to it.
 pub struct NoBattery;
 
@@ -182,4 +209,10 @@ unsafe fn UART4() {
 unsafe fn UART5() {
     // SAFETY: this is its handler.
     unsafe { executors::on_sensor_interrupt() }
+}
+
+#[interrupt]
+unsafe fn CAN1_TX() {
+    // SAFETY: this is its handler.
+    unsafe { executors::on_services_interrupt() }
 }

@@ -1,4 +1,5 @@
-//! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link.
+//! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link,
+//! SDMMC1 for the log.
 //!
 //! Clocks: a crystal of 8 MHz, times 100, halved: 400 MHz for the core, half for the buses, a quarter for their
 //! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would need
@@ -6,6 +7,7 @@
 //! would stand between the core and the DMA buffers.
 
 use super::stm32::board::Board;
+use super::stm32::card::CardSlot;
 use super::stm32::clock::SystemClock;
 use super::stm32::crystal;
 use super::stm32::executors;
@@ -26,10 +28,11 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, TIM1, USART1, USART2,
-    USART6,
+    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, SDMMC1, TIM1, USART1,
+    USART2, USART6,
 };
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
+use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
@@ -49,6 +52,7 @@ bind_interrupts!(
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        SDMMC1 => sdmmc::InterruptHandler<SDMMC1>;
         USART1 => usart::InterruptHandler<USART1>;
         USART2 => usart::BufferedInterruptHandler<USART2>;
         USART6 => usart::BufferedInterruptHandler<USART6>;
@@ -76,6 +80,9 @@ pub type BoardWatchdog = ChipWatchdog<IWDG1>;
 /// The battery.
 pub type BoardBattery = DividedBattery;
 
+/// The slot for a memory card.
+pub type BoardCard = CardSlot;
+
 /// What it is called.
 pub const NAME: &str = "MicoAir H743 V2";
 
@@ -83,13 +90,15 @@ pub const NAME: &str = "MicoAir H743 V2";
 pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::SAI1;
 /// See [`CONTROL_INTERRUPT`].
 pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
+/// And the services.
+pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::SAI3;
 
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
 /// The second time, and where a clock makes no 921,600 or 420,000 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
     let restart = restart::cause();
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
@@ -127,6 +136,10 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
     let uart = BufferedUart::new(p.USART6, p.PC7, p.PC6, to, from, Interrupts, link::radio_config());
     let (radio, _) = link::simulator_halves(uart.expect("USART6's clock makes no 420,000 baud"));
 
+    let (clock, command) = (p.PC12, p.PD2);
+    let card = sdmmc::Config::default();
+    let card = Sdmmc::new_4bit(p.SDMMC1, Interrupts, clock, command, p.PC8, p.PC9, p.PC10, p.PC11, card);
+
     Board {
         imu,
         motors,
@@ -138,6 +151,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery> {
         simulator_receiver,
         simulator_transmitter,
         radio: Some(radio),
+        card: Some(CardSlot::new(card)),
         storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
         has_crystal,
         restart,
@@ -157,7 +171,7 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         mul: PllMul::MUL100,
         fracn: None,
         divp: Some(PllDiv::DIV2), // core: 400 MHz
-        divq: Some(PllDiv::DIV8), // SPI2 and SPI3: 100 MHz
+        divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
         divr: None,
     });
     rcc.sys = rcc::Sysclk::PLL1_P;
@@ -215,4 +229,10 @@ unsafe fn SAI1() {
 unsafe fn SAI2() {
     // SAFETY: this is its handler.
     unsafe { executors::on_sensor_interrupt() }
+}
+
+#[interrupt]
+unsafe fn SAI3() {
+    // SAFETY: this is its handler.
+    unsafe { executors::on_services_interrupt() }
 }

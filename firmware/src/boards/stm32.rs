@@ -1,6 +1,8 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
 pub mod board;
+#[cfg(feature = "micoair-h743")]
+pub mod card;
 pub mod clock;
 pub mod crystal;
 pub mod executors;

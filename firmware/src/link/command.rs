@@ -9,6 +9,7 @@
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 311 CONFIGURE_ACTUATOR | asks the flight rules to let one motor (parameter 5, 1 to 4) beep (1), or turn as it is wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
+//! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning. Anything else is not done here |
 //! | 192 DO_REPOSITION | by COMMAND_INT: asks to fly to a latitude, longitude and altitude and to hold there |
 //! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
 //! | any other | is answered as unsupported |
@@ -53,6 +54,10 @@ pub enum Action {
     ForceDisarm,
     /// Take sensors from a simulator from now on, and say so.
     EnterHil,
+    /// Restart the vehicle.
+    Restart,
+    /// Say this, and that the command is not supported.
+    Unsupported(&'static str),
     /// Calibrate, or end a calibration; the IMU task answers.
     Calibrate(Option<Procedure>),
     /// Only answer.
@@ -111,6 +116,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
+        MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN => restart(call),
         MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
             0.0 => Action::TellModes,
             index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Tell(Reply::Mode(index as u8)),
@@ -196,6 +202,18 @@ fn configure_actuator(call: &Call) -> Action {
 /// The index of a motor that is counted from 1.
 fn motor(number: f32) -> Option<usize> {
     (0..MOTORS).find(|&rotor| number == (rotor + 1) as f32)
+}
+
+/// A restart of the autopilot, and of nothing else.
+fn restart(call: &Call) -> Action {
+    let [autopilot, companion, component, ..] = call.parameters;
+    match autopilot {
+        _ if companion != 0.0 || component != 0.0 => Action::Unsupported("Restart: there is only the autopilot"),
+        0.0 => Action::Answer(MavResult::MAV_RESULT_ACCEPTED),
+        1.0 => Action::Restart,
+        3.0 => Action::Unsupported("Restart: not into a bootloader"),
+        _ => Action::Unsupported("Restart: parameter 1 is 1, nothing else"),
+    }
 }
 
 /// One calibration at a time, of what there is. Magnetometer, barometer, radio and temperature are not.

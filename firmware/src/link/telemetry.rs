@@ -30,6 +30,8 @@ pub struct View {
     pub traffic: Traffic,
     /// Whether a simulator has sensors and motors.
     pub simulated: bool,
+    /// Whether flights are logged, if there is a card.
+    pub is_logged: Option<bool>,
     /// Where the local frame is on the globe.
     pub origin: Origin,
 }
@@ -61,7 +63,9 @@ impl View {
             Kind::Heartbeat => {
                 writer.write(system, &vehicle::heartbeat(report.map(|report| report.mode), self.simulated));
             }
-            Kind::SystemStatus => writer.write(system, &vehicle::status(self.voltage, report, self.traffic)),
+            Kind::SystemStatus => {
+                writer.write(system, &vehicle::status(self.voltage, report, self.traffic, self.is_logged))
+            }
             Kind::BatteryStatus => writer.write(system, &vehicle::battery(self.voltage)),
             Kind::SystemTime => writer.write(system, &motion::system_time(self.now)),
             Kind::TimeSync => writer.write(system, &time_sync::question(self.now)),

@@ -131,6 +131,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             voltage: voltage.map(|voltage| voltage.value),
             traffic: shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value),
             simulated: shared.hil.is_raised(),
+            is_logged: shared.card.health(now),
             origin: shared.origin.get().map_or_else(Origin::default, |origin| origin.value),
         };
         let system = self.system();

@@ -4,7 +4,7 @@
 //! two numbers, and no rounding can make them anything but a rotation.
 
 use super::table::{Name, PARAMETERS};
-use super::{OutOfRange, Parameters};
+use super::{NotTaken, Parameters};
 use crate::hardware::Unit;
 use controller_core::imu::Calibration;
 use controller_core::imu::standstill::Rest;
@@ -41,8 +41,8 @@ pub fn load<M: RawMutex>(parameters: &Parameters<M>, unit: Unit) -> Calibration 
 /// Keeps what corrects the samples of `unit`.
 ///
 /// # Errors
-/// [`OutOfRange`] names the first row that the table does not allow; those before it are changed.
-pub fn store<M: RawMutex>(parameters: &Parameters<M>, unit: Unit, calibration: &Calibration) -> Result<(), OutOfRange> {
+/// [`NotTaken`] names the first row that the table does not allow; those before it are changed.
+pub fn store<M: RawMutex>(parameters: &Parameters<M>, unit: Unit, calibration: &Calibration) -> Result<(), NotTaken> {
     let Calibration { gyro_bias, offset, scale, level } = calibration;
     // L takes up to e3, so its last row is up.
     let (x, y, z) = (level.m31, level.m32, level.m33);

@@ -67,14 +67,16 @@ impl<F: Flash> Storage<F> {
     /// Writes the values if one differs from what was saved.
     fn save<M: RawMutex>(&mut self, shared: &Shared<M>) {
         let values = shared.parameters.all();
-        if values == self.saved {
+        // By their bits: what is as built is no number, and no number is equal to itself.
+        let differ = |value: &f32, saved: &f32| value.to_bits() != saved.to_bits();
+        if !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved)) {
             return;
         }
         // Twice and no more: one place may be bad, and a flash that fails would be worn out by more. The next change is
         // another chance.
         let written = (0..2).any(|_| self.journal.append(&values).is_ok());
         for (row, (value, saved)) in PARAMETERS.iter().zip(values.iter().zip(&self.saved)) {
-            if !written && value != saved {
+            if !written && differ(value, saved) {
                 let words = format_args!("{}: set, but could not be saved", row.name);
                 shared.announce(Event::new(Severity::Warning, words));
             }

@@ -114,6 +114,12 @@ impl<'m> Ring<'m> {
         self.slots.get((self.next + length - back) % length)?.first_chunk()
     }
 
+    /// The flight's number, and the number that the next record gets. Records count on from flight to flight.
+    #[must_use]
+    pub fn position(&self) -> (u16, u32) {
+        (self.label.flight, self.label.number.wrapping_add(1))
+    }
+
     /// Forgets every record: after a reset, too.
     pub fn erase(&mut self) {
         self.slots.as_flattened_mut().fill(0);

@@ -49,7 +49,7 @@ impl Information {
 }
 
 /// The head of a message of this kind and length.
-const fn head(kind: u8, length: usize) -> [u8; 3] {
+pub const fn head(kind: u8, length: usize) -> [u8; 3] {
     let [low, high] = (length as u16).to_le_bytes();
     [low, high, kind]
 }
@@ -65,7 +65,7 @@ const SUBSCRIPTION: [u8; 6] = {
 const NAME: &str = "tick";
 
 /// What stands before each record.
-const DATA: [u8; 5] = {
+pub const DATA: [u8; 5] = {
     let [low, high, kind] = head(b'D', 2 + tick::SIZE);
     [low, high, kind, 0, 0]
 };
@@ -74,10 +74,10 @@ const DATA: [u8; 5] = {
 const RECORD: usize = DATA.len() + tick::SIZE;
 
 /// Bytes of the time of a record, which is what it begins with.
-const TIME: usize = 8;
+pub const TIME: usize = 8;
 
 /// The parts of the file before its data, where the first record was of `time`.
-fn beginning(time: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub fn beginning(time: &[u8]) -> impl Iterator<Item = &[u8]> {
     let information = INFORMATION
         .iter()
         .flat_map(|information| [&information.head[..], information.key.as_bytes(), information.text.as_bytes()]);

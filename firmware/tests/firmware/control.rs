@@ -39,7 +39,7 @@ impl Watchdog for Fed<'_> {
 fn ticks(delay: u64) -> (Vec<u64>, Vec<u64>, u32) {
     let (clock, shared) = (Simulated::default(), Local::new());
     let place = Box::leak(Box::new(boot::Place::new()));
-    let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
+    let (pilot, outputs) = boot::start(place, &shared).unwrap();
     let (written, fed) = (RefCell::default(), RefCell::default());
     let mut motors = Busy { clock: &clock, delay: (3, delay), written: &written };
     let mut watchdog = Fed(&clock, &fed);

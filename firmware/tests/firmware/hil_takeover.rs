@@ -85,7 +85,7 @@ impl Watchdog for Bench {
 }
 
 /// What the IMU of a vehicle at rest did in the 5 ms before `now`, us.
-fn increment(now: u64) -> Increment {
+pub fn increment(now: u64) -> Increment {
     Increment {
         start: now - 5_000,
         end: now,
@@ -100,7 +100,7 @@ fn increment(now: u64) -> Increment {
 fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, Vec<String>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());
     let place = Box::leak(Box::new(boot::Place::new()));
-    let (pilot, outputs) = boot::start(place, &shared.parameters).unwrap();
+    let (pilot, outputs) = boot::start(place, &shared).unwrap();
     let mut pins = Pins::default();
     let mut motors = SelectedMotors { pins: &mut pins, hil: &hil, wanted: &shared.hil, clock: Simulated::default() };
     let still = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() * 9.81 };

@@ -92,8 +92,9 @@ fn the_estimators_health_is_told() {
 
 #[test]
 fn sensors_are_healthy_only_while_they_are() {
-    let bits =
-        |report: Option<&Report>| vehicle::status(None, report, Traffic::default()).onboard_control_sensors_health;
+    let bits = |report: Option<&Report>| {
+        vehicle::status(None, report, Traffic::default(), None).onboard_control_sensors_health
+    };
     let poses = Sensor::MAV_SYS_STATUS_SENSOR_VISION_POSITION | Sensor::MAV_SYS_STATUS_SENSOR_GPS;
     let imu = Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO | Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL;
     let well = report();

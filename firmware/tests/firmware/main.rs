@@ -2,6 +2,8 @@
 
 #![expect(deprecated, reason = "PING's fields are, and clients still send it")]
 
+mod card;
+mod card_cuts;
 mod control;
 mod embedded;
 mod hil_answers;
@@ -24,5 +26,7 @@ mod parameters;
 mod radio;
 mod recorder;
 mod repeat;
+mod restart;
 mod status;
 mod support;
+mod tuned;

@@ -26,6 +26,9 @@ pub struct SitlArguments {
     /// Keep parameters in this file from one session to the next
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
+    /// Record the session for Foxglove, 100 moments a second of the vehicle's time, 1.7 KB each at most; the file shows up at the end
+    #[arg(long, value_name = "FILE.mcap")]
+    mcap: Option<PathBuf>,
     #[command(flatten)]
     ports: PortArguments,
 }
@@ -108,11 +111,11 @@ impl PortArguments {
 }
 
 impl SitlArguments {
-    /// The session.
+    /// The session with a scenario whose file has this `text`.
     ///
     /// # Errors
     /// Names the argument that is no speed, no time, or no set of ports.
-    pub fn session(&self) -> Result<sitl::Session, String> {
+    pub fn session(&self, text: String) -> Result<sitl::Session, String> {
         let speed = speed(self.speed)?;
         if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
             return Err(format!("--duration: must not be negative, found {duration}"));
@@ -123,6 +126,7 @@ impl SitlArguments {
             duration: self.duration,
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
+            recording: self.mcap.clone().map(|path| (path, text)),
         })
     }
 }

@@ -98,7 +98,7 @@ impl Record {
 }
 
 /// `angle` plus the whole turns that bring it closest to `before`, rad.
-fn nearest_turn(angle: f64, before: f64) -> f64 {
+pub(crate) fn nearest_turn(angle: f64, before: f64) -> f64 {
     angle + TAU * ((before - angle) / TAU).round()
 }
 

@@ -95,3 +95,19 @@ pub const ESTIMATES: Schema = Schema {
         r#","thrust_scale":{"type":"number"}}}"#
     ),
 };
+
+/// What the firmware is doing: mode in words, V, s, a factor, a count; what is not known is null.
+pub const STATE: Schema = Schema {
+    name: "host_sim.State",
+    text: r#"{"type":"object","properties":{"mode":{"type":"string"},"ready":{"type":"boolean"},"airborne":{"type":"boolean"},"battery":{"type":["number","null"]},"pose_age":{"type":["number","null"]},"thrust_scale":{"type":["number","null"]},"missed_ticks":{"type":"integer"}}}"#,
+};
+
+/// A text with its time.
+pub const LOG: Schema = Schema {
+    name: "foxglove.Log",
+    text: concat!(
+        r#"{"type":"object","properties":{"timestamp":"#,
+        parts!(time),
+        r#","level":{"type":"integer"},"message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},"line":{"type":"integer"}}}"#
+    ),
+};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::flight::Flight;
+use crate::flight::{Flight, Tick};
 use scenario::Scenario;
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ fn recorded() -> (Vec<u8>, Vec<Tick>) {
     let text = include_str!("../../../vehicles/hummingbird.toml");
     let scenario = Scenario::parse(text, "hummingbird.toml").unwrap();
     let mut flight = Flight::uncertified(&scenario).unwrap();
-    let mut recording = Recording::begin(Vec::new(), "hummingbird", text, &[[0.1, 0.1, 0.0]; 4]).unwrap();
+    let mut recording = Recording::begin(Vec::new(), &scenario, text, flight::TOPICS).unwrap();
     let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
     ticks.iter().for_each(|tick| recording.take(tick).unwrap());
     (recording.finish().unwrap(), ticks)

@@ -4,8 +4,10 @@
 
 use crate::whole_file::WholeFile;
 use firmware::hardware::{Fault, Flash, Record};
+use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::rc::Rc;
 
 /// Records in a sector.
 const RECORDS: usize = 16;
@@ -13,10 +15,10 @@ const RECORDS: usize = 16;
 const BYTES: usize = size_of::<Record>();
 const BLANK: Record = [u32::MAX; _];
 
-/// Two sectors.
-#[derive(Debug)]
+/// Two sectors; clones are the same flash, which outlasts a restart.
+#[derive(Debug, Clone)]
 pub struct DeskFlash {
-    records: Vec<Record>,
+    records: Rc<RefCell<Vec<Record>>>,
     file: Option<PathBuf>,
 }
 
@@ -26,21 +28,21 @@ impl DeskFlash {
     /// # Errors
     /// In words, if the file cannot be read or is something else.
     pub fn open(file: Option<PathBuf>) -> Result<Self, String> {
-        let mut flash = Self { records: vec![BLANK; 2 * RECORDS], file };
+        let flash = Self { records: Rc::new(RefCell::new(vec![BLANK; 2 * RECORDS])), file };
         let Some(path) = &flash.file else { return Ok(flash) };
         let image = match std::fs::read(path) {
             Ok(image) => image,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(flash),
             Err(error) => return Err(format!("--parameters {}: cannot be read: {error}", path.display())),
         };
-        if image.len() != flash.records.len() * BYTES {
-            let wanted = flash.records.len() * BYTES;
+        let wanted = 2 * RECORDS * BYTES;
+        if image.len() != wanted {
             return Err(format!(
                 "--parameters {}: is no file of parameters: it has not {wanted} bytes",
                 path.display()
             ));
         }
-        for (record, bytes) in flash.records.iter_mut().zip(image.chunks_exact(BYTES)) {
+        for (record, bytes) in flash.records.borrow_mut().iter_mut().zip(image.chunks_exact(BYTES)) {
             for (word, bytes) in record.iter_mut().zip(bytes.as_chunks().0) {
                 *word = u32::from_le_bytes(*bytes);
             }
@@ -50,7 +52,7 @@ impl DeskFlash {
 
     fn store(&self) -> Result<(), Fault> {
         let Some(path) = &self.file else { return Ok(()) };
-        let image: Vec<u8> = self.records.iter().flatten().flat_map(|word| word.to_le_bytes()).collect();
+        let image: Vec<u8> = self.records.borrow().iter().flatten().flat_map(|word| word.to_le_bytes()).collect();
         let write = || {
             let mut file = WholeFile::create(path)?;
             file.write_all(&image)?;
@@ -64,16 +66,16 @@ impl Flash for DeskFlash {
     const RECORDS: usize = RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
-        self.records.get(place).copied().ok_or(Fault)
+        self.records.borrow().get(place).copied().ok_or(Fault)
     }
 
     fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault> {
-        *self.records.get_mut(place).ok_or(Fault)? = *record;
+        *self.records.borrow_mut().get_mut(place).ok_or(Fault)? = *record;
         self.store()
     }
 
     fn erase(&mut self, sector: usize) -> Result<(), Fault> {
-        self.records.chunks_mut(RECORDS).nth(sector).ok_or(Fault)?.fill(BLANK);
+        self.records.borrow_mut().chunks_mut(RECORDS).nth(sector).ok_or(Fault)?.fill(BLANK);
         self.store()
     }
 }

@@ -21,7 +21,7 @@ impl Flown {
         let ports = Ports { offboard: port(&client), ground: port(&ground), local: port(&free) };
         drop(free);
         let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-        let session = Session { ports, speed: 1.0, duration: None, faults, parameters };
+        let session = Session { ports, speed: 1.0, duration: None, faults, parameters, recording: None };
         let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
         assert_eq!(warning, None);
         Self { sitl, client, local: ports.local, sequence: 0 }
@@ -147,12 +147,101 @@ fn parameters_outlast_a_session_and_count_at_the_next_boot() {
 }
 
 #[test]
+fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
+    use firmware::parameters::table::Name;
+    use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
+    let mut flown = Flown::boot(STUDY, &[], None);
+    flown.pass(5.0);
+    let set = |flown: &mut Flown, name: &str, param_value: f32| {
+        let param_type = MavParamType::MAV_PARAM_TYPE_REAL32;
+        let ids = (1, 1);
+        flown.send(&PARAM_SET_DATA {
+            param_value,
+            target_system: ids.0,
+            target_component: ids.1,
+            param_id: name.into(),
+            param_type,
+        });
+        flown.pass(0.2);
+    };
+    set(&mut flown, "GAIN_ATT_P", 130.0);
+    assert!(flown.said("GAIN_ATT_P: refused") && flown.said("R rotor 1 greatest: needs 2."), "{:?}", flown.sitl.texts);
+    set(&mut flown, "GAIN_ATT_P", 80.0);
+    assert!(flown.said("GAIN_ATT_P: may be flown, from the next boot on"), "{:?}", flown.sitl.texts);
+    let before: *const _ = flown.sitl.shared;
+    flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    flown.pass(6.0);
+    assert_ne!(before, std::ptr::from_ref(flown.sitl.shared), "{:?}", flown.sitl.texts);
+    assert_eq!(flown.sitl.shared.parameters.get(Name::GainAttitude), 80.0);
+    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
+    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    assert!(flown.said("Restart: only disarmed"), "{:?}", flown.sitl.texts);
+    flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+    flown.pass(14.8);
+    assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
+    assert!((flown.sitl.world.state().position.z - 1.5).abs() < 0.05);
+}
+
+#[test]
 fn what_no_board_could_fly_is_refused_by_name() {
-    let session = Session { ports: Ports::default(), speed: 1.0, duration: None, faults: Vec::new(), parameters: None };
+    let session = Session {
+        ports: Ports::default(),
+        speed: 1.0,
+        duration: None,
+        faults: Vec::new(),
+        parameters: None,
+        recording: None,
+    };
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();
     assert!(refused(scenario::PAPER).starts_with("paper: rotors: missing"));
     let slow = STUDY.replace("lag = 0.030 ", "lag = 1.0 ");
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
     assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
+}
+
+#[test]
+fn a_recording_has_the_flight_tick_by_tick_and_every_word() {
+    let path = std::env::temp_dir().join(format!("host-sim-session-{}.mcap", std::process::id()));
+    let mut flown = Flown::boot(STUDY, &[], None);
+    let mut record = Record::create(&path, &Scenario::parse(STUDY, "a test").unwrap(), STUDY).unwrap();
+    assert!(!path.exists(), "it shows up when it is finished");
+    let (mut ticks, mut words) = (0, 0);
+    let mut watch = |flown: &mut Flown, seconds: u32| {
+        for _ in 0..seconds * 100 {
+            flown.pass(0.01);
+            record.look(&flown.sitl.moment()).unwrap();
+            let said = flown.sitl.texts.take();
+            said.iter().for_each(|(time, text)| record.said(*time, text).unwrap());
+            (ticks, words) = (ticks + 1, words + said.len());
+        }
+    };
+    watch(&mut flown, 5);
+    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+    watch(&mut flown, 12);
+    let height = flown.sitl.world.state().position.z;
+    record.finish().unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let mut last = std::collections::HashMap::new();
+    let mut counts = std::collections::HashMap::<String, usize>::new();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        *counts.entry(message.channel.topic.clone()).or_default() += 1;
+        let value = serde_json::from_slice::<serde_json::Value>(&message.data).unwrap();
+        let schema = &message.channel.schema.as_ref().unwrap().data;
+        let described = serde_json::from_slice::<serde_json::Value>(schema).unwrap();
+        let known = |field| described["properties"].get(field).is_some();
+        assert!(value.as_object().unwrap().keys().all(known), "{}", message.channel.topic);
+        last.insert(message.channel.topic.clone(), value);
+    }
+    assert_eq!((counts["/vehicle"], counts["/state"], counts["/log"]), (ticks, ticks, words));
+    assert_eq!(last["/vehicle"]["pose"]["position"]["z"].as_f64(), Some(height));
+    assert_eq!(last["/state"]["mode"], Mode::Holding.text());
+    // The law flies from the arming on, and knows where it is to be.
+    assert!(counts["/law"] > 1_000 && counts["/law"] == counts["/reference"], "{counts:?}");
+    assert!((last["/reference"]["pose"]["position"]["z"].as_f64().unwrap() - height).abs() < 0.05);
+    assert!((last["/told"]["pose"]["position"]["z"].as_f64().unwrap() - height).abs() < 0.05);
 }

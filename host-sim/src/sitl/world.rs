@@ -116,6 +116,12 @@ impl World {
         *self.0.body.borrow().vehicle.state()
     }
 
+    /// What its rotors really give, N.
+    #[must_use]
+    pub fn thrusts(&self) -> Vec<f64> {
+        self.0.body.borrow().vehicle.thrusts()
+    }
+
     /// Whether its motion is still made of numbers.
     ///
     /// # Errors

@@ -142,7 +142,7 @@ impl Flight<'_> {
                     let asked = wrench.scaled(1.0 / self.law.thrust_scale());
                     let (instructions, allocated) = self.counter.short(|| allocate(mixer, &asked));
                     allocation.add(instructions);
-                    allocated.ok()?.achieved
+                    mixer.wrench(&allocated.ok()?.thrusts)
                 }
             };
             body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);

@@ -6,7 +6,7 @@ use super::restart::Cause;
 use super::storage::ParameterFlash;
 
 /// Everything on the board, each part ready for the task that will own it.
-pub struct Board<Imu, Motors, Watchdog, Battery> {
+pub struct Board<Imu, Motors, Watchdog, Battery, Card> {
     /// The inertial sensors, each powered up at its first sample.
     pub imu: Imu,
     /// The motors, silent.
@@ -27,6 +27,8 @@ pub struct Board<Imu, Motors, Watchdog, Battery> {
     pub simulator_transmitter: SimulatorTransmitter,
     /// Bytes from a radio's receiver, where the board has a line for it.
     pub radio: Option<RadioReceiver>,
+    /// The slot for a memory card, where the board has one.
+    pub card: Option<Card>,
     /// Where parameters live.
     pub storage: ParameterFlash,
     /// Whether its clock is the crystal's; else it is the chip's own, exact to a hundredth or so.

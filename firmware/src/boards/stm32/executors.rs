@@ -1,4 +1,5 @@
-//! Two executors in interrupts that the board has no other use for, control above the sensor, both below the drivers' own.
+//! Three executors in interrupts that the board has no other use for, control above the sensor and that above the services, all below the
+//! drivers' own. The thread is left to the memory card, which may keep it for minutes.
 
 use embassy_executor::InterruptExecutor;
 
@@ -7,6 +8,9 @@ pub static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
 /// The sensor interrupts all but control.
 pub static SENSOR: InterruptExecutor = InterruptExecutor::new();
+
+/// Everything else but the card.
+pub static SERVICES: InterruptExecutor = InterruptExecutor::new();
 
 /// What the handler of control's interrupt does.
 ///
@@ -24,4 +28,13 @@ pub unsafe fn on_control_interrupt() {
 pub unsafe fn on_sensor_interrupt() {
     // SAFETY: as above.
     unsafe { SENSOR.on_interrupt() }
+}
+
+/// What the handler of the services' interrupt does.
+///
+/// # Safety
+/// For that handler only.
+pub unsafe fn on_services_interrupt() {
+    // SAFETY: as above.
+    unsafe { SERVICES.on_interrupt() }
 }

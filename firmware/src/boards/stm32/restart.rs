@@ -1,4 +1,6 @@
-//! Why the chip started: the first thing to read after something went wrong.
+//! Why the chip started, the first thing to read after something went wrong; and starting it anew.
+
+use crate::hardware::Restart;
 
 /// What made the chip start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, defmt::Format)]
@@ -13,6 +15,16 @@ pub enum Cause {
     Watchdog,
     /// None of these.
     Unknown,
+}
+
+/// The chip, which can start itself anew.
+pub struct Chip;
+
+impl Restart for Chip {
+    /// The motors have been told to stop, a hundred times a second, since the vehicle was disarmed.
+    fn restart(&mut self) {
+        cortex_m::peripheral::SCB::sys_reset();
+    }
 }
 
 /// Reads the flags and clears them, so that the next start tells its own.

@@ -1,15 +1,17 @@
 //! What every STM32 board runs: its tasks by priority.
 //!
-//! Control and the sensor have executors of their own, in interrupts; everything else shares the thread.
+//! Control and the sensor have executors of their own, in interrupts; everything else shares a third, but for the memory card, which has
+//! the thread to itself.
 
 use super::clock::SystemClock;
-use super::executors::{CONTROL, SENSOR};
+use super::executors::{CONTROL, SENSOR, SERVICES};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::Cause;
+use super::restart::{Cause, Chip};
 use super::storage::ParameterFlash;
 use crate::boards::chosen::{
-    self, BoardBattery, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
+    self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
+    SERVICES_INTERRUPT,
 };
 use crate::boards::recorder;
 use crate::control::Control;
@@ -19,7 +21,7 @@ use crate::parameters::storage::Storage;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
-use crate::{boot, imu, link, radio, status};
+use crate::{boot, card, imu, link, radio, restart, status};
 use controller_core::flight::Pilot;
 use embassy_executor::Executor;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -47,7 +49,7 @@ pub fn run() -> ! {
         shared.recorder.attach(Ring::recover(memory));
     }
     static PLACE: boot::Place = boot::Place::new();
-    let (pilot, outputs) = boot::start(&PLACE, &shared.parameters).unwrap();
+    let (pilot, outputs) = boot::start(&PLACE, shared).unwrap();
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
@@ -61,17 +63,24 @@ pub fn run() -> ! {
     let spawner = SENSOR.start(SENSOR_INTERRUPT);
     spawner.spawn(sample(shared, board.imu).unwrap());
 
+    SERVICES_INTERRUPT.set_priority(Priority::P8);
+    let spawner = SERVICES.start(SERVICES_INTERRUPT);
+    spawner.spawn(receive(shared, board.receiver).unwrap());
+    spawner.spawn(transmit(shared, board.transmitter).unwrap());
+    spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
+    spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
+    if let Some(radio) = board.radio {
+        spawner.spawn(listen(shared, radio).unwrap());
+    }
+    spawner.spawn(show(shared, board.light, board.battery).unwrap());
+    spawner.spawn(keep(shared, parameters).unwrap());
+    spawner.spawn(restart_when_asked(shared).unwrap());
+
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
-        spawner.spawn(receive(shared, board.receiver).unwrap());
-        spawner.spawn(transmit(shared, board.transmitter).unwrap());
-        spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
-        spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
-        if let Some(radio) = board.radio {
-            spawner.spawn(listen(shared, radio).unwrap());
+        if let Some(card) = board.card {
+            spawner.spawn(log_flights(shared, card).unwrap());
         }
-        spawner.spawn(show(shared, board.light, board.battery).unwrap());
-        spawner.spawn(keep(shared, parameters).unwrap());
     })
 }
 
@@ -132,4 +141,14 @@ async fn show(shared: &'static Shared, light: Lamp, battery: BoardBattery) {
 #[embassy_executor::task]
 async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
     storage.keep(&SystemClock, shared).await;
+}
+
+#[embassy_executor::task]
+async fn restart_when_asked(shared: &'static Shared) {
+    restart::run(shared, &SystemClock, &mut Chip).await;
+}
+
+#[embassy_executor::task]
+async fn log_flights(shared: &'static Shared, slot: BoardCard) {
+    card::run(slot, card::PREPARED, &SystemClock, shared).await;
 }

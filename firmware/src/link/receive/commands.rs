@@ -78,6 +78,11 @@ impl<M: RawMutex> Receiver<'_, M> {
             }
             Action::ForceDisarm => self.shared.request_disarm(),
             Action::EnterHil => self.shared.hil.raise(),
+            Action::Restart => return Some(self.restart()),
+            Action::Unsupported(words) => {
+                self.shared.announce(Event::new(Severity::Warning, words));
+                return Some(MavResult::MAV_RESULT_UNSUPPORTED);
+            }
             Action::Calibrate(procedure) => return self.calibrate(procedure).err(),
             Action::Answer(result) => return Some(result),
             Action::Tell(reply) => self.shared.reply(reply),
@@ -85,6 +90,26 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }
+
+    /// Has the vehicle restarted, once this answer is out.
+    fn restart(&mut self) -> MavResult {
+        let shared = self.shared;
+        // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+        shared.restarting.raise();
+        let (refused, result) = if !shared.can_restart.is_raised() {
+            ("Restart: nobody here can do that", MavResult::MAV_RESULT_UNSUPPORTED)
+        } else if shared.is_turning() {
+            ("Restart: only disarmed, and no motor turning", MavResult::MAV_RESULT_DENIED)
+        } else if shared.saving.is_raised() {
+            ("Restart: parameters are being saved", MavResult::MAV_RESULT_TEMPORARILY_REJECTED)
+        } else {
+            return MavResult::MAV_RESULT_ACCEPTED;
+        };
+        shared.restarting.lower();
+        shared.announce(Event::new(Severity::Warning, refused));
+        result
+    }
+
     /// Hands it to the IMU task, which answers.
     pub(super) fn calibrate(&mut self, procedure: Option<Procedure>) -> Result<(), MavResult> {
         let refused = if self.shared.is_armed() {

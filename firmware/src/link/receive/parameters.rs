@@ -1,7 +1,8 @@
-//! Parameters in: read, listed, set while disarmed.
+//! Parameters in: read, listed, set while disarmed. Setting one of the configuration certifies it, here, while nobody may arm.
 
 use super::Receiver;
 use crate::link::frame::Frame;
+use crate::parameters::NotTaken;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Reply, Severity};
 use core::fmt::Display;
@@ -47,12 +48,30 @@ impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn set(&mut self, name: Name, value: f32, kind: MavParamType) {
         let shared = self.shared;
         let warn = |words: &dyn Display| shared.announce(Event::new(Severity::Warning, words));
+        if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
+            return warn(&format_args!("{}: is a REAL32", name.row().name));
+        }
+        // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+        shared.judging.raise();
         if shared.is_armed() {
             warn(&"Parameters change only while disarmed");
-        } else if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
-            warn(&format_args!("{}: is a REAL32", name.row().name));
-        } else if let Err(error) = shared.parameters.set(name, value) {
-            warn(&error);
+        } else if name.is_tuned() && shared.is_turning() {
+            warn(&format_args!("{}: not while a motor turns", name.row().name));
+        } else {
+            match shared.parameters.set(name, value) {
+                Ok(()) if name.is_tuned() => {
+                    let words = format_args!("{}: may be flown, from the next boot on", name.row().name);
+                    shared.announce(Event::new(Severity::Information, words));
+                }
+                Ok(()) => {}
+                Err(error) => {
+                    warn(&error);
+                    if let NotTaken::Unfit(_, unfit) = error {
+                        warn(&unfit);
+                    }
+                }
+            }
         }
+        shared.judging.lower();
     }
 }

@@ -108,13 +108,18 @@ pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
     }
 }
 
-/// Which sensors there are, whether they work, the battery (V, if known), how much of its period the longest tick took, and what
-/// the line lost.
+/// Which sensors there are, whether they work, the battery (V, if known), how much of its period the longest tick took, what
+/// the line lost, and whether flights are logged, if there is a card.
 ///
 /// Clients know sensors that this vehicle has not, and wait for them. What a magnetometer is there for, a heading, and what GPS is
 /// there for, a place, comes from the poses here; so both bits say, like that of a vision system, whether poses are believed.
 #[must_use]
-pub fn status(voltage: Option<f32>, report: Option<&Report>, traffic: Traffic) -> SYS_STATUS_DATA {
+pub fn status(
+    voltage: Option<f32>,
+    report: Option<&Report>,
+    traffic: Traffic,
+    is_logged: Option<bool>,
+) -> SYS_STATUS_DATA {
     use MavSysStatusSensor as Sensor;
     let longest = report.map_or(0, |report| u64::from(report.timing.worst_duration));
     let inertial = Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO | Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL;
@@ -129,7 +134,9 @@ pub fn status(voltage: Option<f32>, report: Option<&Report>, traffic: Traffic) -
         | Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS;
     let mut present = inertial | poses | control | Sensor::MAV_SYS_STATUS_AHRS | Sensor::MAV_SYS_STATUS_PREARM_CHECK;
     present.set(Sensor::MAV_SYS_STATUS_SENSOR_BATTERY, voltage.is_some());
+    present.set(Sensor::MAV_SYS_STATUS_LOGGING, is_logged.is_some());
     let mut health = Sensor::empty();
+    health.set(Sensor::MAV_SYS_STATUS_LOGGING, is_logged == Some(true));
     health.set(Sensor::MAV_SYS_STATUS_SENSOR_BATTERY, voltage.is_some());
     if let Some(report) = report {
         let Health { faults, pose_age, .. } = report.health;

@@ -1,0 +1,211 @@
+//! Every flight as a file on a memory card: each tick, and everything that people are told.
+//!
+//! ```text
+//! control -> recorder's ring --+-> sectors of whole ULog messages -> LOG00012.ULG
+//! events  -> a queue of its own +
+//! ring as a reset left it ---------------------------------------> REC00013.ULG
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`sector`] | messages in a sector, whole or torn |
+//! | [`log`] | a flight's file, made before the flight |
+//! | [`copy`] | the recording that a reset left, as a file |
+//! | [`volume`] | numbered files in a FAT file system |
+//! | [`geometry`] | whether a card's file system can be used |
+//!
+//! - Control writes to the recorder's ring, as without a card, and never waits. This task follows along; it may fall behind by as much
+//!   as the ring holds. What is overwritten before it was read is counted, noted in the file and told.
+//! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority of all.
+//!   A card that is missing, full, removed, worn out or formatted for something else is told in words, tried again every
+//!   [`RETRY`], and keeps nobody from arming.
+//! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file that was
+//!   there before: [`log`] and [`volume`] say why.
+
+pub mod copy;
+pub mod geometry;
+pub mod log;
+pub mod sector;
+pub mod volume;
+
+use crate::hardware::{Card, Clock};
+use crate::recorder::follow::{Followed, Follower};
+use crate::shared::{CardState, Event, Severity, Shared};
+use core::convert::Infallible;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use heapless::Deque;
+use log::Log;
+use volume::{Trouble, Volume};
+
+/// Time between looks for records, us.
+pub const PACE: u64 = 10_000;
+
+/// Time between attempts to use a card that cannot be used, us.
+pub const RETRY: u64 = 3_000_000;
+
+/// What is made ready before a flight, bytes: 8 minutes.
+pub const PREPARED: u32 = 8 << 20;
+
+/// Records that are taken at one look, at most: what fell behind is caught up with in several.
+const AT_ONCE: usize = 200;
+
+/// Events that are kept for the beginning of the next flight.
+const KEPT: usize = 16;
+
+/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED`], if there is nothing against it.
+pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    let mut logger = Logger {
+        prepared,
+        clock,
+        shared,
+        follower: shared.recorder.follower(),
+        events: Deque::new(),
+        is_copied: false,
+        missed: 0,
+        told: None,
+    };
+    loop {
+        let Err(trouble) = logger.use_card(&mut card).await;
+        shared.card.set(if trouble == Trouble::Absent { CardState::Absent } else { CardState::Failed }, clock.now());
+        logger.tell(trouble);
+        clock.until(clock.now().saturating_add(RETRY)).await;
+    }
+}
+
+/// Whether a flight goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Flight {
+    /// None is recorded.
+    None,
+    /// More will come.
+    Recording,
+    /// All of it is in the file.
+    Ended,
+}
+
+struct Logger<'a, K, M: RawMutex> {
+    prepared: u32,
+    clock: &'a K,
+    shared: &'a Shared<M>,
+    follower: Follower,
+    /// What people were told, and when, us; the newest.
+    events: Deque<(u64, Event), KEPT>,
+    /// Whether the recording that the start found has been copied, as far as it could be.
+    is_copied: bool,
+    /// Records that this flight's file lacks.
+    missed: u32,
+    /// The trouble that was told last.
+    told: Option<Trouble>,
+}
+
+impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
+    /// Logs on this card until it makes trouble.
+    async fn use_card<C: Card>(&mut self, card: &mut C) -> Result<Infallible, Trouble> {
+        let shared = self.shared;
+        card.start().map_err(|_| Trouble::Absent)?;
+        let volume = Volume::open(card)?;
+        if !core::mem::replace(&mut self.is_copied, true) {
+            // Tried once: a card that has no room for it would get an empty file at each attempt.
+            if let Some(number) = copy::copy(&volume, &shared.recorder)? {
+                shared.announce(Event::new(Severity::Information, format_args!("Last recording: REC{number:05}.ULG")));
+            }
+        }
+        loop {
+            let mut log = Log::prepare(&volume)?;
+            let number = log.number();
+            shared.card.set(CardState::Ready, self.clock.now());
+            if self.told.take().is_some() || !log.has_begun() {
+                shared.announce(Event::new(Severity::Information, format_args!("Card: next log {number:05}")));
+            }
+            if let Err(trouble) = self.fill(&volume, &mut log).await {
+                // What is not on the card goes into the next file.
+                self.follower.go_back(log.pending());
+                return Err(trouble);
+            }
+            let ticks = log.finish(&volume)?;
+            let missed = core::mem::take(&mut self.missed);
+            let severity = if missed > 0 { Severity::Warning } else { Severity::Information };
+            let words = format_args!("Log {number:05}: {ticks} ticks, {missed} missed");
+            shared.announce(Event::new(severity, words));
+        }
+    }
+
+    /// Fills a file with a flight, as much of it as a file holds; makes it longer until the flight begins.
+    async fn fill<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<(), Trouble> {
+        let mut may_grow = true;
+        loop {
+            self.shared.card.set(CardState::Ready, self.clock.now());
+            match self.write(volume, log)? {
+                Flight::Ended => return Ok(()),
+                Flight::Recording if log.is_full() => return Ok(()),
+                Flight::None if may_grow && log.size() < self.prepared => match log.grow(volume) {
+                    Ok(()) => {}
+                    // It is as long as it can be, and will do for a shorter flight.
+                    Err(Trouble::Full) => {
+                        may_grow = false;
+                        self.tell(Trouble::Full);
+                    }
+                    Err(trouble) => return Err(trouble),
+                },
+                Flight::None | Flight::Recording => {}
+            }
+            self.clock.until(self.clock.now().saturating_add(PACE)).await;
+        }
+    }
+
+    /// Writes what there is to be written.
+    fn write<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<Flight, Trouble> {
+        self.keep_events();
+        for _ in 0..AT_ONCE {
+            match self.shared.recorder.follow(&mut self.follower) {
+                Followed::Record { is_first: true, .. } if log.has_begun() => {
+                    // The next flight, whose first record is for the next file.
+                    self.follower.go_back(1);
+                    return Ok(Flight::Ended);
+                }
+                Followed::Record { record, missed, .. } => {
+                    if missed > 0 {
+                        self.missed = self.missed.saturating_add(missed);
+                        log.gap(volume, missed)?;
+                    }
+                    log.record(volume, &record).inspect_err(|_| self.follower.go_back(1))?;
+                }
+                Followed::Nothing { is_recording } => {
+                    if log.has_begun() {
+                        while let Some((time, event)) = self.events.pop_front() {
+                            log.event(volume, time, &event)?;
+                        }
+                    }
+                    return Ok(match (is_recording, log.has_begun()) {
+                        (true, _) => Flight::Recording,
+                        (false, true) => Flight::Ended,
+                        (false, false) => Flight::None,
+                    });
+                }
+            }
+            if log.is_full() {
+                break;
+            }
+        }
+        Ok(Flight::Recording)
+    }
+
+    /// Takes what people were told; the oldest makes room.
+    fn keep_events(&mut self) {
+        while let Some(event) = self.shared.card.events.take() {
+            if self.events.is_full() {
+                let _ = self.events.pop_front();
+            }
+            let _ = self.events.push_back((self.clock.now(), event));
+        }
+    }
+
+    /// Says what is wrong, once.
+    fn tell(&mut self, trouble: Trouble) {
+        if self.told != Some(trouble) {
+            self.told = Some(trouble);
+            let severity = if trouble == Trouble::Absent { Severity::Information } else { Severity::Warning };
+            self.shared.announce(Event::new(severity, trouble));
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Where a card's file system has its parts, and whether it is one that can be written to.
+//!
+//! The file system's library believes what a card says of itself. What would lead it astray (sizes of zero, tables beyond the card's
+//! end) is found here, before it looks. A card has a partition table, and in its first partition FAT16 or FAT32 in sectors of 512 bytes.
+
+use crate::hardware::SECTOR;
+use core::ops::Range;
+
+/// The last bytes of the table and of a file system's first sector.
+const SIGNATURE: u16 = 0xAA55;
+
+/// Where the first partition is described.
+const PARTITION: usize = 446;
+
+/// Kinds of partition that hold FAT16 or FAT32.
+const KINDS: [u8; 5] = [0x04, 0x06, 0x0B, 0x0C, 0x0E];
+
+/// Bytes of a directory's entry.
+const ENTRY: u32 = 32;
+
+/// Clusters from which on it is FAT32.
+const FAT32: u32 = 65_525;
+
+/// The parts of a file system, in sectors of the card.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Geometry {
+    /// The tables of clusters.
+    pub tables: Range<u32>,
+    /// What files consist of; on FAT32 directories, too.
+    pub data: Range<u32>,
+}
+
+/// A sector's bytes as numbers.
+struct Numbers<'a>(&'a [u8; SECTOR]);
+
+impl Numbers<'_> {
+    fn byte(&self, at: usize) -> u8 {
+        self.0.get(at).copied().unwrap_or(0)
+    }
+
+    fn short(&self, at: usize) -> u16 {
+        u16::from_le_bytes([self.byte(at), self.byte(at + 1)])
+    }
+
+    fn long(&self, at: usize) -> u32 {
+        u32::from(self.short(at)) | u32::from(self.short(at + 2)) << 16
+    }
+}
+
+/// The first sector of the first partition, if the card's first sector describes one of a known kind.
+#[must_use]
+pub fn partition(table: &[u8; SECTOR]) -> Option<u32> {
+    let table = Numbers(table);
+    let is_known = KINDS.contains(&table.byte(PARTITION + 4)) && table.byte(PARTITION) & 0x7F == 0;
+    (table.short(SECTOR - 2) == SIGNATURE && is_known).then(|| table.long(PARTITION + 8)).filter(|&start| start > 0)
+}
+
+impl Geometry {
+    /// Reads the first sector of a file system that begins at sector `start` of a card of `sectors`. None if it is not one that can be used.
+    #[must_use]
+    pub fn of(first: &[u8; SECTOR], start: u32, sectors: u32) -> Option<Self> {
+        let first = Numbers(first);
+        let nonzero = |short: u16, long: u32| if short > 0 { u32::from(short) } else { long };
+        let cluster = u32::from(first.byte(13));
+        let (reserved, tables) = (u32::from(first.short(14)), u32::from(first.byte(16)));
+        let table = nonzero(first.short(22), first.long(36));
+        let total = nonzero(first.short(19), first.long(32));
+        let root = (u32::from(first.short(17)) * ENTRY).div_ceil(SECTOR as u32);
+        let data = table.checked_mul(tables)?.checked_add(reserved)?.checked_add(root)?;
+        let end = start.checked_add(total).filter(|&end| end <= sectors)?;
+        let clusters = total.checked_sub(data)?.checked_div(cluster)?;
+        let is_sound = first.short(SECTOR - 2) == SIGNATURE
+            && first.short(11) == SECTOR as u16
+            && cluster.is_power_of_two()
+            && reserved > 0
+            && (1..=2).contains(&tables)
+            // A table has room for every cluster, in 16 bits or 32.
+            && clusters + 2 <= table.saturating_mul(SECTOR as u32 / if clusters < FAT32 { 2 } else { 4 })
+            && (clusters < FAT32 || (2..clusters + 2).contains(&first.long(44)) && u32::from(first.short(48)) < reserved);
+        is_sound.then(|| Self { tables: start + reserved..start + data - root, data: start + data..end })
+    }
+}

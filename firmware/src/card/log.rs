@@ -1,0 +1,244 @@
+//! A flight's file: its beginning, then [sectors](super::sector) in order, then blank ones to its end.
+//!
+//! The file is made as long as a flight before the flight begins, so that in flight nothing is written but the sector that is due, over a
+//! blank one: neither a table nor the directory changes, and what power cuts short is that sector and no other. A longer flight
+//! lengthens its file by [`CHUNK`] at a time; one that reaches [`SIZE_MAX`] goes on in the next file.
+//!
+//! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in one byte: no cut
+//! leaves a length that mixes two.
+
+use super::sector::{BLANK, Content, HEAD_SECTORS, ROOM, Sector, beginning};
+use super::volume::{File, Kind, Trouble, Volume};
+use crate::hardware::{Card, SECTOR};
+use crate::recorder::{tick, ulog};
+use crate::shared::{Event, Severity, Text};
+use controller_core::flight::PERIOD;
+
+/// What a file grows by, bytes: 3.8 s of flight.
+pub const CHUNK: u32 = 64 << 10;
+
+/// The longest file, bytes: 16 minutes.
+pub const SIZE_MAX: u32 = 0x00FF_0000;
+
+/// Room for what is written between two looks at [`Log::is_full`], bytes: a record, every event that waits, and the sector that
+/// had begun.
+const RESERVE: u32 = 8 * STEP;
+
+/// Bytes before the first record's sector.
+const BEGINNING: u32 = (HEAD_SECTORS * SECTOR) as u32;
+
+/// Bytes of a sector, as offsets in a file count.
+const STEP: u32 = SECTOR as u32;
+
+const _: () = assert!(ulog::DATA.len() + tick::SIZE <= ROOM);
+
+/// A file that is being filled.
+pub struct Log {
+    file: File,
+    number: u32,
+    size: u32,
+    /// Where the next sector goes.
+    next: u32,
+    sector: Sector,
+    /// Records in the sector.
+    pending: u32,
+    /// Records in the file.
+    written: u32,
+}
+
+impl Log {
+    /// Takes the newest file if nothing was logged in it, and else makes a new one. The newest loses its last sector if that is torn.
+    ///
+    /// # Errors
+    /// If there is no room for it, or the card fails.
+    pub fn prepare<C: Card>(volume: &Volume<'_, C>) -> Result<Self, Trouble> {
+        // A file that was cut short while it got its first length may be at odds with the tables: it is left alone.
+        let newest = volume.newest(&[Kind::Log])?;
+        if let Some(entry) = newest.filter(|entry| entry.size.is_multiple_of(STEP) && entry.is_sound) {
+            let file = volume.open_file(entry.kind, entry.number)?;
+            let mut end = end(volume, file, entry.size)?;
+            if end > BEGINNING && read(volume, file, end - STEP)? == Content::Torn {
+                end -= STEP;
+                volume.overwrite(file, end, &BLANK)?;
+            }
+            if end <= BEGINNING {
+                return Self::new(file, entry.number, entry.size).begun(volume);
+            }
+            volume.close(file)?;
+        }
+        let (file, number) = volume.create(Kind::Log)?;
+        Self::new(file, number, 0).begun(volume)
+    }
+
+    /// With a first chunk.
+    fn begun<C: Card>(mut self, volume: &Volume<'_, C>) -> Result<Self, Trouble> {
+        if self.size < CHUNK {
+            self.grow(volume)?;
+        }
+        Ok(self)
+    }
+
+    const fn new(file: File, number: u32, size: u32) -> Self {
+        Self { file, number, size, next: BEGINNING, sector: Sector::new(), pending: 0, written: 0 }
+    }
+
+    /// Its number.
+    #[must_use]
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Whether there is a record in it.
+    #[must_use]
+    pub fn has_begun(&self) -> bool {
+        self.written + self.pending > 0
+    }
+
+    /// Records that are on the card.
+    #[must_use]
+    pub fn written(&self) -> u32 {
+        self.written
+    }
+
+    /// Records that are not on the card yet.
+    #[must_use]
+    pub fn pending(&self) -> u32 {
+        self.pending
+    }
+
+    /// Bytes that it has, used or not.
+    #[must_use]
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// Whether it is to be finished: it may not become longer, and has room for no more than what is still to be written.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.next >= SIZE_MAX - RESERVE
+    }
+
+    /// Makes it longer, up to the next multiple of [`CHUNK`].
+    ///
+    /// # Errors
+    /// [`Trouble::Full`] if there is no room. What there was room for is noted as well: nothing else can have it.
+    pub fn grow<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
+        let end = (self.size / CHUNK + 1) * CHUNK;
+        let beginning = beginning(0);
+        for place in self.size / STEP..end / STEP {
+            let sector = beginning.get(place as usize).unwrap_or(&BLANK);
+            if let Err(trouble) = volume.append(self.file, sector) {
+                if trouble == Trouble::Full {
+                    volume.note(self.file)?;
+                }
+                return Err(trouble);
+            }
+        }
+        volume.note(self.file)?;
+        self.size = end;
+        Ok(())
+    }
+
+    /// Adds a record.
+    ///
+    /// # Errors
+    /// If a sector cannot be written.
+    pub fn record<C: Card>(&mut self, volume: &Volume<'_, C>, record: &[u8; tick::SIZE]) -> Result<(), Trouble> {
+        if !self.has_begun() {
+            let time = record.first_chunk().map_or(0, |time| u64::from_le_bytes(*time));
+            // But for the time it is what is there already, so a cut does no harm.
+            for (offset, sector) in (0..).step_by(SECTOR).zip(beginning(time)) {
+                volume.overwrite(self.file, offset, &sector)?;
+            }
+        }
+        self.put(volume, &[&ulog::DATA, record])?;
+        self.pending += 1;
+        Ok(())
+    }
+
+    /// Adds what somebody was told at `time`, us.
+    ///
+    /// # Errors
+    /// If a sector cannot be written.
+    pub fn event<C: Card>(&mut self, volume: &Volume<'_, C>, time: u64, event: &Event) -> Result<(), Trouble> {
+        let text = Text::new(event);
+        // As syslog numbers them, in ASCII.
+        let level = match event.severity() {
+            Severity::Information => b'6',
+            Severity::Warning => b'4',
+            Severity::Critical => b'2',
+        };
+        let words = text.as_str().as_bytes();
+        let head = ulog::head(b'L', 1 + size_of_val(&time) + words.len());
+        self.put(volume, &[&head, &[level], &time.to_le_bytes(), words])
+    }
+
+    /// Notes that so many records are missing here.
+    ///
+    /// # Errors
+    /// If a sector cannot be written.
+    pub fn gap<C: Card>(&mut self, volume: &Volume<'_, C>, missed: u32) -> Result<(), Trouble> {
+        let milliseconds = u64::from(missed) * (PERIOD / 1_000);
+        let duration = u16::try_from(milliseconds).unwrap_or(u16::MAX);
+        self.put(volume, &[&ulog::head(b'O', size_of_val(&duration)), &duration.to_le_bytes()])
+    }
+
+    /// Writes what is still in the sector: the next message goes to the one behind it.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn flush<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
+        if self.sector.is_empty() {
+            return Ok(());
+        }
+        if self.next >= self.size {
+            self.grow(volume)?;
+        }
+        volume.overwrite(self.file, self.next, &self.sector.finish())?;
+        self.next += STEP;
+        self.written += core::mem::take(&mut self.pending);
+        Ok(())
+    }
+
+    /// Writes what is left and closes the file.
+    ///
+    /// # Errors
+    /// If the card fails.
+    pub fn finish<C: Card>(mut self, volume: &Volume<'_, C>) -> Result<u32, Trouble> {
+        self.flush(volume)?;
+        volume.close(self.file)?;
+        Ok(self.written)
+    }
+
+    fn put<C: Card>(&mut self, volume: &Volume<'_, C>, parts: &[&[u8]]) -> Result<(), Trouble> {
+        if !self.sector.put(parts) {
+            self.flush(volume)?;
+            // Every message fits an empty sector.
+            let _ = self.sector.put(parts);
+        }
+        Ok(())
+    }
+}
+
+/// What a sector of a file holds.
+fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Content, Trouble> {
+    let mut sector = [0; SECTOR];
+    let _ = volume.read(file, offset, &mut sector)?;
+    Ok(Content::of(&sector))
+}
+
+/// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of what is in question can be left out at a time.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn end<C: Card>(volume: &Volume<'_, C>, file: File, size: u32) -> Result<u32, Trouble> {
+    let (mut used, mut blank) = (HEAD_SECTORS as u32, size / STEP);
+    while used < blank {
+        let middle = used + (blank - used) / 2;
+        match read(volume, file, middle * STEP)? {
+            Content::Blank => blank = middle,
+            Content::Whole | Content::Torn => used = middle + 1,
+        }
+    }
+    Ok(blank * STEP)
+}

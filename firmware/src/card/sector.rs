@@ -1,0 +1,136 @@
+//! Sectors of a log file: each holds whole ULog messages and can be read without the others.
+//!
+//! ```text
+//! sector = messages | filler to its end, the last two bytes of which are a checksum of all that stands before them
+//! blank  = filler from its beginning to its end
+//! filler = message of a kind that ULog does not know, so that readers skip it, all its bytes set
+//! ```
+//!
+//! A sector that power cut short while it was written keeps blank bytes at one end: its checksum is wrong, and where a reader takes them for
+//! numbers they are NaN, which stands for what is not known.
+
+use crate::hardware::SECTOR;
+use crate::recorder::ulog;
+use mavlink::calculate_crc;
+
+/// The kind of a message that readers skip.
+const FILLER: u8 = b'Z';
+
+/// Bytes of a message's head.
+const HEAD: usize = 3;
+
+/// Bytes of the checksum.
+const CHECKSUM: usize = 2;
+
+/// What the checksum begins with.
+const SEED: u8 = FILLER;
+
+/// Bytes of messages that a sector has room for.
+pub const ROOM: usize = SECTOR - HEAD - CHECKSUM;
+
+/// A sector without messages.
+pub const BLANK: [u8; SECTOR] = {
+    let mut bytes = [0xFF; SECTOR];
+    [bytes[0], bytes[1], bytes[2]] = ulog::head(FILLER, SECTOR - HEAD);
+    bytes
+};
+
+/// What a sector holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// No messages.
+    Blank,
+    /// Messages.
+    Whole,
+    /// A part of what should have been written, or something else altogether.
+    Torn,
+}
+
+impl Content {
+    /// What is in these bytes.
+    #[must_use]
+    pub fn of(bytes: &[u8; SECTOR]) -> Self {
+        if *bytes == BLANK {
+            return Self::Blank;
+        }
+        let is_whole = bytes
+            .split_last_chunk::<CHECKSUM>()
+            .is_some_and(|(covered, checksum)| calculate_crc(covered, SEED) == u16::from_le_bytes(*checksum));
+        if is_whole { Self::Whole } else { Self::Torn }
+    }
+}
+
+/// A sector that fills up.
+#[derive(Debug, Clone)]
+pub struct Sector {
+    bytes: [u8; SECTOR],
+    used: usize,
+}
+
+impl Sector {
+    /// Nothing in it yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { bytes: BLANK, used: 0 }
+    }
+
+    /// Whether there is nothing in it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.used == 0
+    }
+
+    /// Adds a message that consists of these parts, or leaves the sector as it is if there is no room; whether there was.
+    #[must_use]
+    pub fn put(&mut self, parts: &[&[u8]]) -> bool {
+        let length: usize = parts.iter().map(|part| part.len()).sum();
+        if self.used + length > ROOM {
+            return false;
+        }
+        let to = self.bytes.iter_mut().skip(self.used);
+        to.zip(parts.iter().copied().flatten()).for_each(|(to, from)| *to = *from);
+        self.used += length;
+        true
+    }
+
+    /// The sector as it is written, and a new one in its place.
+    #[must_use]
+    pub fn finish(&mut self) -> [u8; SECTOR] {
+        let Self { mut bytes, used } = core::mem::take(self);
+        let filler = ulog::head(FILLER, SECTOR - used - HEAD);
+        let mut filling = bytes.iter_mut().skip(used);
+        filling.by_ref().zip(filler).for_each(|(to, from)| *to = from);
+        filling.for_each(|to| *to = 0xFF);
+        if let Some((covered, checksum)) = bytes.split_last_chunk_mut::<CHECKSUM>() {
+            *checksum = calculate_crc(covered, SEED).to_le_bytes();
+        }
+        bytes
+    }
+}
+
+impl Default for Sector {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Sectors that a file begins with.
+pub const HEAD_SECTORS: usize = 2;
+
+/// The beginning of a file whose first record is of `time`, with filler to the end of its last sector.
+#[must_use]
+pub fn beginning(time: u64) -> [[u8; SECTOR]; HEAD_SECTORS] {
+    let mut sectors = [[0xFF; SECTOR]; HEAD_SECTORS];
+    let bytes = sectors.as_flattened_mut();
+    let (time, mut used) = (time.to_le_bytes(), 0);
+    for part in ulog::beginning(&time) {
+        bytes.iter_mut().skip(used).zip(part).for_each(|(to, from)| *to = *from);
+        used += part.len();
+    }
+    let filler = ulog::head(FILLER, (SECTOR * HEAD_SECTORS).saturating_sub(used + HEAD));
+    bytes.iter_mut().skip(used).zip(filler).for_each(|(to, from)| *to = from);
+    sectors
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+use super::*;
+
+/// Kinds and lengths of the messages in these bytes; the last must end where they do.
+fn messages(bytes: &[u8]) -> Vec<(char, usize)> {
+    let (mut at, mut found) = (0, vec![]);
+    while at < bytes.len() {
+        let length = usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+        found.push((char::from(bytes[at + 2]), length));
+        at += HEAD + length;
+    }
+    assert_eq!(at, bytes.len());
+    found
+}
+
+#[test]
+fn sectors_are_whole_messages_however_full_they_are() {
+    assert_eq!(messages(&BLANK), [('Z', SECTOR - HEAD)]);
+    assert_eq!(Content::of(&BLANK), Content::Blank);
+    for length in [1, 100, ROOM - HEAD] {
+        let mut sector = Sector::new();
+        assert!(sector.put(&[&ulog::head(b'D', length), &vec![7; length]]));
+        assert!(!sector.is_empty());
+        let bytes = sector.finish();
+        assert_eq!(messages(&bytes), [('D', length), ('Z', SECTOR - length - 2 * HEAD)]);
+        assert_eq!(Content::of(&bytes), Content::Whole);
+        assert!(sector.is_empty());
+    }
+    let mut sector = Sector::new();
+    assert!(!sector.put(&[&[0; ROOM], &[0]]) && sector.is_empty());
+}
+
+#[test]
+fn a_torn_sector_is_found_wherever_it_tore() {
+    let mut sector = Sector::new();
+    assert!(sector.put(&[&ulog::head(b'D', 300), &(0..300).map(|byte| byte as u8).collect::<Vec<_>>()]));
+    let whole = sector.finish();
+    for at in 1..SECTOR {
+        for (front, back) in [(&whole, &BLANK), (&BLANK, &whole)] {
+            let mut torn = *back;
+            torn[..at].copy_from_slice(&front[..at]);
+            let expected = match () {
+                () if torn == whole => Content::Whole,
+                () if torn == BLANK => Content::Blank,
+                () => Content::Torn,
+            };
+            assert_eq!(Content::of(&torn), expected, "{at}");
+        }
+    }
+    assert_eq!(Content::of(&[0; SECTOR]), Content::Torn);
+}
+
+#[test]
+fn the_beginning_fits_its_sectors_and_ends_with_them() {
+    let bytes = beginning(0x0123_4567_89AB_CDEF);
+    let bytes = bytes.as_flattened();
+    assert_eq!(bytes[8..16], 0x0123_4567_89AB_CDEF_u64.to_le_bytes());
+    let kinds: String = messages(&bytes[16..]).iter().map(|(kind, _)| kind).collect();
+    assert_eq!(kinds, "BIIIFAZ");
+}

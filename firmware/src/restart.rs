@@ -1,0 +1,33 @@
+//! The restart that a command asked for.
+//!
+//! The link refuses one while a motor turns or parameters are written; from its yes on nobody arms. The restart waits for the answer to go
+//! out, and for what was set just before to be saved.
+
+use crate::hardware::{Clock, Restart};
+use crate::shared::{Event, Severity, Shared};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// How often somebody looks whether a restart is wanted, us.
+const LOOK: u64 = 100_000;
+
+/// Time for the answer to go out, and for parameters to be saved, us.
+pub const GRACE: u64 = 500_000;
+
+/// Restarts when that was asked for, for ever where it does not end the program.
+pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, machine: &mut impl Restart) -> ! {
+    shared.can_restart.raise();
+    loop {
+        clock.until(clock.now().saturating_add(LOOK)).await;
+        if !shared.restarting.is_raised() {
+            continue;
+        }
+        clock.until(clock.now().saturating_add(GRACE)).await;
+        // Neither can be, since nobody arms meanwhile and saving does not give way; but what would follow is too bad to rely on it.
+        if shared.is_turning() || shared.saving.is_raised() {
+            shared.restarting.lower();
+            shared.announce(Event::new(Severity::Warning, "Restart: not now"));
+        } else {
+            machine.restart();
+        }
+    }
+}

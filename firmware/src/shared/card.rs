@@ -1,0 +1,86 @@
+//! What the other tasks know of the card, and what they tell its task.
+
+use super::event::Event;
+use super::queue::Queue;
+use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// Events that wait to be logged.
+pub const CARD_EVENTS: usize = 16;
+
+/// The longest the card's task may say nothing, us: more than an attempt to start a card and the wait for the next one.
+pub const CARD_SILENCE: u64 = 10_000_000;
+
+/// How the card is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CardState {
+    /// The board has no slot for one.
+    NoSlot,
+    /// There is none in its slot.
+    Absent,
+    /// It cannot be used.
+    Failed,
+    /// A flight would be logged, or is.
+    Ready,
+}
+
+/// The card's state and its events.
+pub struct CardStatus<M: RawMutex> {
+    /// What people are told while the card is ready.
+    pub events: Queue<M, Event, CARD_EVENTS>,
+    state: AtomicU8,
+    /// When its task said something last, ms.
+    said: AtomicU32,
+}
+
+impl<M: RawMutex> CardStatus<M> {
+    /// No slot.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { events: Queue::new(), state: AtomicU8::new(CardState::NoSlot as u8), said: AtomicU32::new(0) }
+    }
+
+    /// The card's task says how the card is, at `now`, us.
+    pub fn set(&self, state: CardState, now: u64) {
+        self.said.store(milliseconds(now), Ordering::Relaxed);
+        self.state.store(state as u8, Ordering::Relaxed);
+    }
+
+    /// How it is.
+    #[must_use]
+    pub fn state(&self) -> CardState {
+        let state = self.state.load(Ordering::Relaxed);
+        [CardState::NoSlot, CardState::Absent, CardState::Failed, CardState::Ready]
+            .into_iter()
+            .find(|known| *known as u8 == state)
+            .unwrap_or(CardState::NoSlot)
+    }
+
+    /// Whether its task has said nothing for too long at `now`, us: the card, or its driver, keeps it.
+    #[must_use]
+    pub fn is_silent(&self, now: u64) -> bool {
+        let silence = milliseconds(now).wrapping_sub(self.said.load(Ordering::Relaxed));
+        self.state() != CardState::NoSlot && u64::from(silence) > CARD_SILENCE / 1_000
+    }
+
+    /// Whether flights are logged at `now`, us; none where there is no card that could.
+    #[must_use]
+    pub fn health(&self, now: u64) -> Option<bool> {
+        match self.state() {
+            CardState::NoSlot | CardState::Absent => None,
+            CardState::Failed => Some(false),
+            CardState::Ready => Some(!self.is_silent(now)),
+        }
+    }
+}
+
+impl<M: RawMutex> Default for CardStatus<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The lowest 32 bits of the time in ms.
+fn milliseconds(time: u64) -> u32 {
+    (time / 1_000) as u32
+}

@@ -1,0 +1,348 @@
+//! Flights on a memory card: what an independent reader finds there, and what people are told of a card that does not do as it should.
+
+#![expect(clippy::single_range_in_vec_init, reason = "flights are lists of times, some with one")]
+
+use crate::support::Simulated;
+use crate::support::card::{Image, Parsed, START, Simulation, files, formatted, parsed, small};
+use crate::support::receiver::{Local, texts};
+use core::ops::Range;
+use fatfs::FatType;
+use firmware::card::log::{CHUNK, SIZE_MAX};
+use firmware::card::{RETRY, run};
+use firmware::hardware::{MotorCommand, SECTOR};
+use firmware::link::telemetry::vehicle;
+use firmware::recorder::AFTERWARDS;
+use firmware::recorder::ring::{Ring, SLOT};
+use firmware::shared::{CardState, Event, Report, Severity, Shared, Traffic};
+use mavlink::dialects::common::MavSysStatusSensor;
+use proptest::prelude::*;
+
+/// A second, us.
+const SECOND: u64 = 1_000_000;
+
+/// A tick, us.
+const TICK: u64 = 10_000;
+
+/// Ticks that the recorder holds.
+const ROOM: usize = 500;
+
+pub fn shared() -> Local {
+    let shared = Shared::new();
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())));
+    shared
+}
+
+/// Control, as far as the recorder knows it: a tick every 10 ms, whatever the card does.
+pub struct Ticks<'s> {
+    shared: &'s Local,
+    due: u64,
+}
+
+impl<'s> Ticks<'s> {
+    pub fn new(shared: &'s Local) -> Self {
+        Self { shared, due: 0 }
+    }
+
+    /// The ticks that were due until `now`, us, of a vehicle that is armed in one of these times.
+    pub fn until(&mut self, now: u64, armed: &[Range<u64>]) {
+        while self.due <= now {
+            let time = self.due;
+            let tick = || Report::NONE.tick(time, MotorCommand::Stop, Some(11.1));
+            self.shared.recorder.record(armed.iter().any(|range| range.contains(&time)), tick);
+            self.due += TICK;
+        }
+    }
+}
+
+/// The times of the ticks of a flight, us: armed from `from` to `to`, and what is recorded afterwards.
+pub fn times(from: u64, to: u64) -> Vec<u64> {
+    (from..to + (u64::from(AFTERWARDS) - 1) * TICK).step_by(TICK as usize).collect()
+}
+
+/// Logs for `duration` us what flights there are in these times.
+fn fly(card: &Simulation, clock: &Simulated, shared: &Local, duration: u64, armed: &[Range<u64>]) {
+    let mut ticks = Ticks::new(shared);
+    ticks.due = clock.0.get();
+    clock.run(duration, run(card.clone(), CHUNK, clock, shared), |now| ticks.until(now, armed));
+}
+
+/// The files of a card that are not empty, read.
+fn logs(card: &Simulation) -> Vec<(String, Parsed)> {
+    let mut medium = card.medium.borrow_mut();
+    let sectors = medium.sectors;
+    let files = files(&mut medium.image, sectors).into_iter().filter(|(_, bytes)| !bytes.is_empty());
+    files.map(|(name, bytes)| (name, parsed(&bytes))).collect()
+}
+
+/// Whether SYS_STATUS says that there is a log, and that it is well.
+fn bits(shared: &Local, now: u64) -> (bool, bool) {
+    let status = vehicle::status(None, None, Traffic::default(), shared.card.health(now));
+    let bit = MavSysStatusSensor::MAV_SYS_STATUS_LOGGING;
+    (status.onboard_control_sensors_present.contains(bit), status.onboard_control_sensors_health.contains(bit))
+}
+
+#[test]
+fn every_flight_is_a_file_with_each_tick_and_all_that_was_said() {
+    for (image, sectors) in [small(), formatted(FatType::Fat32, 70_000, 512)] {
+        let (clock, shared) = (Simulated::default(), shared());
+        let card = Simulation::new(image, sectors, &clock);
+        let mut ticks = Ticks::new(&shared);
+        let flights = [SECOND..3 * SECOND, 6 * SECOND..7 * SECOND];
+        clock.run(10 * SECOND, run(card.clone(), CHUNK, &clock, &shared), |now| {
+            ticks.until(now, &flights);
+            if now == 900_000 || now == 2_000_000 {
+                shared.announce(Event::new(Severity::Critical, format_args!("said at {now}")));
+            }
+        });
+        assert_eq!(bits(&shared, clock.0.get()), (true, true));
+        let logs = logs(&card);
+        let names: Vec<&str> = logs.iter().map(|(name, _)| name.as_str()).collect();
+        // The third is the next flight's.
+        assert_eq!(names, ["LOG00001.ULG", "LOG00002.ULG", "LOG00003.ULG"]);
+        let first = &logs[0].1;
+        assert_eq!(first.ticks, times(SECOND, 3 * SECOND));
+        assert_eq!((first.time, first.is_whole, first.gaps.len()), (SECOND, true, 0));
+        let expected = [900_000, 2_000_000].map(|time| ('2', time, format!("said at {time}")));
+        assert!(expected.iter().all(|text| first.texts.contains(text)), "{:?}", first.texts);
+        assert_eq!(logs[1].1.ticks, times(6 * SECOND, 7 * SECOND));
+        assert!(logs[2].1.ticks.is_empty() && logs[2].1.is_whole);
+        assert_eq!(
+            texts(&shared)[2..],
+            [
+                "said at 2000000",
+                "Log 00001: 399 ticks, 0 missed",
+                "Card: next log 00002",
+                "Log 00002: 299 ticks, 0 missed",
+                "Card: next log 00003"
+            ]
+        );
+    }
+}
+
+#[test]
+fn a_file_without_a_flight_is_the_next_flights_whatever_restarts_come_between() {
+    let (clock, (image, sectors)) = (Simulated::default(), small());
+    let card = Simulation::new(image, sectors, &clock);
+    for restart in 0..3 {
+        let shared = shared();
+        fly(&card, &clock, &shared, SECOND, &[]);
+        assert_eq!(logs(&card).len(), 1, "{restart}");
+    }
+    let now = clock.0.get();
+    let shared = shared();
+    fly(&card, &clock, &shared, 5 * SECOND, &[now + SECOND..now + 2 * SECOND]);
+    let logs = logs(&card);
+    assert_eq!((logs.len(), &logs[0].1.ticks), (2, &times(now + SECOND, now + 2 * SECOND)));
+}
+
+#[test]
+fn in_flight_nothing_is_written_but_the_flights_own_sectors_in_order() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
+    let card = Simulation::new(image, sectors, &clock);
+    fly(&card, &clock, &shared, SECOND, &[]);
+    card.medium.borrow_mut().written.clear();
+    let before = files(&mut card.medium.borrow_mut().image.clone(), sectors);
+    // The task starts anew, and the card is as it was: the first thing it writes is the flight.
+    fly(&card, &clock, &shared, 2 * SECOND, &[SECOND..10 * SECOND]);
+    let written: Vec<u32> = card.medium.borrow().written.iter().map(|(sector, _)| *sector).collect();
+    let data = written[0]..written[0] + CHUNK / SECTOR as u32;
+    assert!(written.len() > 60 && written.iter().all(|sector| data.contains(sector)), "{written:?}");
+    assert!(written[2..].is_sorted_by(|a, b| b - a == 1));
+    let after = files(&mut card.medium.borrow_mut().image, sectors);
+    assert_eq!(before.keys().collect::<Vec<_>>(), after.keys().collect::<Vec<_>>());
+}
+
+#[test]
+fn a_flight_longer_than_its_file_makes_it_longer_and_then_goes_on_in_the_next() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat16, 80_000, 4_096));
+    let card = Simulation::new(image, sectors, &clock);
+    let minutes = 18 * 60 * SECOND;
+    fly(&card, &clock, &shared, minutes + 5 * SECOND, &[SECOND..minutes]);
+    let logs = logs(&card);
+    let ticks: Vec<u64> = logs.iter().flat_map(|(_, log)| log.ticks.clone()).collect();
+    assert!(ticks == times(SECOND, minutes), "{}", ticks.len());
+    assert!(logs.iter().all(|(_, log)| log.is_whole && log.gaps.is_empty()));
+    let sizes: Vec<usize> = files(&mut card.medium.borrow_mut().image, sectors).values().map(Vec::len).collect();
+    assert_eq!((sizes.len(), sizes[0]), (3, SIZE_MAX as usize));
+    assert!(sizes.iter().all(|size| size.is_multiple_of(CHUNK as usize)));
+}
+
+#[test]
+fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_then_says_what() {
+    for (stall, missed) in [(4 * SECOND, 0..1), (7 * SECOND, 150..260)] {
+        let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
+        let card = Simulation::new(image, sectors, &clock);
+        fly(&card, &clock, &shared, SECOND, &[]);
+        card.medium.borrow_mut().written.clear();
+        // 2 ms each, and one of them seconds.
+        card.medium.borrow_mut().takes = Some(if stall > 5 * SECOND {
+            |write| if write == 50 { 7_000_000 } else { 2_000 }
+        } else {
+            |write| if write == 50 { 4_000_000 } else { 2_000 }
+        });
+        let now = clock.0.get();
+        let _ = texts(&shared);
+        fly(&card, &clock, &shared, 15 * SECOND, &[now + SECOND..now + 11 * SECOND]);
+        let (_, log) = logs(&card).swap_remove(0);
+        let all = times(now + SECOND, now + 11 * SECOND);
+        let lost = all.len() - log.ticks.len();
+        assert!(missed.contains(&lost), "{lost}");
+        assert!(log.ticks.is_sorted() && log.is_whole);
+        let expected: Vec<u16> = Some(lost as u16 * 10).filter(|gap| *gap > 0).into_iter().collect();
+        assert_eq!(log.gaps, expected);
+        let words = format!("Log 00001: {} ticks, {lost} missed", log.ticks.len());
+        assert!(texts(&shared).contains(&words), "{words}");
+    }
+}
+
+#[test]
+fn a_card_that_fails_in_flight_is_told_and_the_rest_goes_to_the_next_file_if_it_recovers() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
+    let card = Simulation::new(image, sectors, &clock);
+    let mut ticks = Ticks::new(&shared);
+    let medium = card.medium.clone();
+    let mut seen = vec![];
+    clock.run(12 * SECOND, run(card.clone(), CHUNK, &clock, &shared), |now| {
+        ticks.until(now, &[SECOND..8 * SECOND]);
+        medium.borrow_mut().fails = (3 * SECOND..5 * SECOND).contains(&now);
+        if now == 4 * SECOND {
+            seen.push(bits(&shared, now));
+        }
+    });
+    assert_eq!(seen, [(true, false)]);
+    assert_eq!(bits(&shared, clock.0.get()), (true, true));
+    let logs = logs(&card);
+    let all: Vec<u64> = logs.iter().flat_map(|(_, log)| log.ticks.clone()).collect();
+    assert_eq!(all, times(SECOND, 8 * SECOND));
+    assert!(logs.iter().all(|(_, log)| log.is_whole) && !logs[1].1.ticks.is_empty());
+    let said = texts(&shared);
+    assert_eq!(said.iter().filter(|text| *text == "Card failed: flights are not logged").count(), 1, "{said:?}");
+}
+
+#[test]
+fn a_missing_or_removed_card_is_told_once_and_one_that_is_put_in_is_used() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
+    let card = Simulation::new(image, sectors, &clock);
+    card.medium.borrow_mut().is_absent = true;
+    fly(&card, &clock, &shared, 4 * RETRY, &[]);
+    assert_eq!(texts(&shared), ["No card: flights are not logged"]);
+    assert_eq!(bits(&shared, clock.0.get()), (false, false));
+    let medium = card.medium.clone();
+    let mut ticks = Ticks::new(&shared);
+    let begin = clock.0.get();
+    ticks.due = begin;
+    clock.run(4 * RETRY, run(card.clone(), CHUNK, &clock, &shared), |now| {
+        medium.borrow_mut().is_absent = now < begin + 2 * RETRY || now > begin + 3 * RETRY;
+        ticks.until(now, &[begin + 3 * RETRY - SECOND..u64::MAX]);
+    });
+    assert_eq!(
+        texts(&shared),
+        ["No card: flights are not logged", "Card: next log 00001", "Card failed: flights are not logged"]
+    );
+}
+
+#[test]
+fn a_full_card_is_told_keeps_what_it_has_and_gets_no_empty_files() {
+    // Room for the first chunk and a part of the second.
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat16, 4_400, 512));
+    let card = Simulation::new(image, sectors, &clock);
+    let minutes = 10 * 60 * SECOND;
+    fly(&card, &clock, &shared, minutes + 30 * SECOND, &[SECOND..minutes]);
+    let said = texts(&shared);
+    assert!(said.contains(&"Card full: move logs off it".into()), "{said:?}");
+    assert_eq!(bits(&shared, clock.0.get()), (true, false));
+    let before = files(&mut card.medium.borrow_mut().image, sectors);
+    let ticks = &logs(&card)[0].1.ticks;
+    assert!(before.len() <= 2 && ticks.len() > 4_000, "{} {}", before.len(), ticks.len());
+    assert_eq!(*ticks, times(SECOND, minutes)[..ticks.len()]);
+    // With a recording that a reset has left, which finds no room either.
+    fly(&card, &clock, &shared, 10 * RETRY, &[]);
+    let mut after = files(&mut card.medium.borrow_mut().image, sectors);
+    after.retain(|name, bytes| !bytes.is_empty() || before.contains_key(name));
+    assert!(after == before, "{:?}", after.keys());
+    assert!(files(&mut card.medium.borrow_mut().image, sectors).len() <= before.len() + 1);
+}
+
+#[test]
+fn the_root_directory_is_never_made_longer() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat32, 70_000, 512));
+    let card = Simulation::new(image, sectors, &clock);
+    // A sector has room for 16 names.
+    let flights: Vec<_> = (0..20).map(|flight| (4 * flight + 1) * SECOND..(4 * flight + 2) * SECOND).collect();
+    fly(&card, &clock, &shared, 85 * SECOND, &flights);
+    assert_eq!(logs(&card).len(), 16);
+    assert_eq!(bits(&shared, clock.0.get()), (true, false));
+}
+
+#[test]
+fn a_card_of_something_else_is_told_and_left_as_it_is() {
+    let (good, sectors) = small();
+    let foreign = |change: &dyn Fn(&mut Image)| {
+        let mut image = good.clone();
+        change(&mut image);
+        let (clock, shared) = (Simulated::default(), shared());
+        let card = Simulation::new(image, sectors, &clock);
+        fly(&card, &clock, &shared, 2 * RETRY, &[SECOND..2 * SECOND]);
+        assert_eq!(texts(&shared), ["Card unusable: format it as FAT32 (MBR)"]);
+        assert!(card.medium.borrow().written.is_empty());
+    };
+    foreign(&Image::clear);
+    // The kind of partition that exFAT has, and no table at all.
+    foreign(&|image| image.get_mut(&0).unwrap()[446 + 4] = 0x07);
+    foreign(&|image| {
+        let first = image[&START];
+        image.insert(0, first);
+    });
+    // Sectors of a cluster, sectors at all, bytes of a sector.
+    foreign(&|image| image.get_mut(&START).unwrap()[13] = 0);
+    foreign(&|image| image.get_mut(&START).unwrap()[19..21].fill(0xFF));
+    foreign(&|image| image.get_mut(&START).unwrap()[11..13].copy_from_slice(&1_024_u16.to_le_bytes()));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_damaged_beginning_of_a_file_system_ends_in_words_and_never_in_a_panic(
+        damage in prop::collection::vec((0..SECTOR, any::<u8>()), 1..6), is_table: bool,
+    ) {
+        let (mut image, sectors) = small();
+        let sector = image.get_mut(if is_table { &0 } else { &START }).unwrap();
+        damage.iter().for_each(|(at, byte)| sector[if is_table { *at } else { *at % 64 }] = *byte);
+        let (clock, shared) = (Simulated::default(), shared());
+        let card = Simulation::new(image, sectors, &clock);
+        fly(&card, &clock, &shared, SECOND, &[300_000..SECOND]);
+        prop_assert_eq!(texts(&shared).len(), 1);
+    }
+}
+
+#[test]
+fn the_recording_that_a_reset_left_is_copied_once() {
+    let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
+    let mut ticks = Ticks::new(&shared);
+    ticks.until(4 * SECOND, &[SECOND..3 * SECOND / 2]);
+    let mut whole = vec![0; shared.recorder.size().unwrap() as usize];
+    assert_eq!(shared.recorder.read(0, &mut whole), whole.len());
+    let card = Simulation::new(image, sectors, &clock);
+    for restart in 0..3 {
+        fly(&card, &clock, &shared, SECOND, &[]);
+        let files = files(&mut card.medium.borrow_mut().image, sectors);
+        assert_eq!(files.keys().collect::<Vec<_>>(), ["LOG00002.ULG", "REC00001.ULG"], "{restart}");
+        assert_eq!(files["REC00001.ULG"], whole);
+        assert!(texts(&shared).contains(&"Last recording: REC00001.ULG".into()));
+    }
+    // Another recording is another file.
+    let shared = self::shared();
+    Ticks::new(&shared).until(5 * SECOND, &[SECOND..2 * SECOND]);
+    fly(&card, &clock, &shared, SECOND, &[]);
+    let files = files(&mut card.medium.borrow_mut().image, sectors);
+    assert_eq!(files.keys().collect::<Vec<_>>(), ["LOG00002.ULG", "REC00001.ULG", "REC00003.ULG"]);
+    assert_eq!(files["REC00001.ULG"], whole);
+}
+
+#[test]
+fn a_card_that_keeps_its_task_is_told() {
+    let shared = shared();
+    shared.card.set(CardState::Ready, 5 * SECOND);
+    assert_eq!((shared.card.health(14 * SECOND), shared.card.health(16 * SECOND)), (Some(true), Some(false)));
+}

@@ -1,0 +1,103 @@
+//! A restart by command: granted on the ground, refused otherwise, and done after it was answered.
+
+use crate::support::Simulated;
+use crate::support::receiver::{Fed, Local, command, replies, report, texts};
+use controller_core::flight::Mode;
+use firmware::hardware::Restart;
+use firmware::restart::{self, GRACE};
+use firmware::shared::Reply;
+use mavlink::dialects::common::{MavCmd, MavResult};
+use std::cell::Cell;
+
+const RESTART: MavCmd = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN;
+
+/// Asks with this first parameter; the answer, what was said, and whether a restart is under way.
+fn asked(shared: &Local, first: f32) -> (MavResult, Vec<String>, bool) {
+    Fed::new(shared).message(&command(RESTART, [first, 0.0, 0.0, 0.0, 0.0]), 0);
+    let [Reply::Command { command: RESTART, result }] = replies(shared)[..] else { panic!("no answer") };
+    (result, texts(shared), shared.restarting.is_raised())
+}
+
+fn restartable(mode: Mode) -> Local {
+    let shared = Local::new();
+    shared.can_restart.raise();
+    report(&shared, mode, 0);
+    shared
+}
+
+#[test]
+fn it_is_granted_where_no_motor_turns_and_in_no_other_mode() {
+    for mode in Mode::ALL {
+        let turns = mode.is_armed() || mode == Mode::MotorTest;
+        let (result, texts, restarting) = asked(&restartable(mode), 1.0);
+        if turns {
+            assert_eq!((result, restarting), (MavResult::MAV_RESULT_DENIED, false), "{mode:?}");
+            assert_eq!(texts, ["Restart: only disarmed, and no motor turning"]);
+        } else {
+            assert_eq!((result, restarting), (MavResult::MAV_RESULT_ACCEPTED, true), "{mode:?}");
+        }
+    }
+}
+
+#[test]
+fn it_waits_for_flash_and_needs_somebody_who_can() {
+    let shared = restartable(Mode::Ready);
+    shared.saving.raise();
+    let words = vec!["Restart: parameters are being saved".to_owned()];
+    assert_eq!(asked(&shared, 1.0), (MavResult::MAV_RESULT_TEMPORARILY_REJECTED, words, false));
+    let words = vec!["Restart: nobody here can do that".to_owned()];
+    assert_eq!(asked(&Local::new(), 1.0), (MavResult::MAV_RESULT_UNSUPPORTED, words, false));
+}
+
+#[test]
+fn other_restarts_are_unsupported_in_words() {
+    for (first, words) in [
+        (3.0, "Restart: not into a bootloader"),
+        (2.0, "Restart: parameter 1 is 1, nothing else"),
+        (f32::NAN, "Restart: parameter 1 is 1, nothing else"),
+    ] {
+        let said = (MavResult::MAV_RESULT_UNSUPPORTED, vec![words.to_owned()], false);
+        assert_eq!(asked(&restartable(Mode::Ready), first), said);
+    }
+    let shared = restartable(Mode::Ready);
+    Fed::new(&shared).message(&command(RESTART, [1.0, 1.0, 0.0, 0.0, 0.0]), 0);
+    assert_eq!(texts(&shared), ["Restart: there is only the autopilot"]);
+    assert!(!shared.restarting.is_raised());
+}
+
+/// When it was restarted.
+struct Machine<'a>(&'a Simulated, &'a Cell<Option<u64>>, &'a Local);
+
+impl Restart for Machine<'_> {
+    fn restart(&mut self) {
+        self.1.set(Some(self.0.0.get()));
+        self.2.restarting.lower();
+    }
+}
+
+/// When it restarts if that is asked for at half a second, in this mode from then on.
+fn restarted(mode: Mode) -> (Option<u64>, Vec<String>) {
+    let (clock, shared, time) = (Simulated::default(), Local::new(), Cell::new(None));
+    let mut machine = Machine(&clock, &time, &shared);
+    clock.run(2_000_000, restart::run(&shared, &clock, &mut machine), |now| {
+        if now == 500_000 {
+            assert!(shared.can_restart.is_raised() && time.get().is_none());
+            shared.restarting.raise();
+            report(&shared, mode, now);
+        }
+    });
+    assert!(!shared.restarting.is_raised());
+    (time.get(), texts(&shared))
+}
+
+#[test]
+fn it_is_done_once_the_answer_had_time_to_go_out() {
+    let (time, texts) = restarted(Mode::Ready);
+    assert!((500_000 + GRACE..=600_000 + GRACE).contains(&time.unwrap()), "{time:?}");
+    assert!(texts.is_empty());
+}
+
+#[test]
+fn a_motor_that_turns_after_all_is_not_stopped_by_it() {
+    assert_eq!(restarted(Mode::MotorTest), (None, vec!["Restart: not now".to_owned()]));
+}

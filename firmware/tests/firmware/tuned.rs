@@ -1,0 +1,203 @@
+//! Parameters that the certificate depends on: certified when they are set, and again when they are booted with.
+
+use crate::hil_takeover::increment;
+use crate::parameters::chip_with;
+use crate::support::Simulated;
+use crate::support::chip::{Chip, Words};
+use crate::support::receiver::{Fed, Local, replies, report, texts};
+use controller_core::flight::{Grounded, Mode, Request};
+use controller_core::tuning::judged::JudgedLoops;
+use firmware::control::Control;
+use firmware::parameters::storage::Storage;
+use firmware::parameters::table::{Name, PARAMETERS};
+use firmware::parameters::tuned::Built;
+use firmware::shared::{Asked, Flag, Reply};
+use firmware::{boot, configuration};
+use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
+use std::cell::RefCell;
+
+/// Boots on `shared`; why it can never arm, if so.
+fn boot_on(shared: &Local) -> Option<Grounded> {
+    let (pilot, _) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
+    pilot.grounded()
+}
+
+/// Booted with nothing set.
+fn booted() -> Local {
+    let shared = Local::new();
+    assert_eq!(boot_on(&shared), None);
+    shared
+}
+
+fn set(name: Name, param_value: f32) -> PARAM_SET_DATA {
+    let param_type = MavParamType::MAV_PARAM_TYPE_REAL32;
+    PARAM_SET_DATA { param_value, target_system: 1, target_component: 1, param_id: name.row().name.into(), param_type }
+}
+
+/// Sets a parameter by a message; what is said of it.
+fn said(shared: &Local, name: Name, value: f32) -> Vec<String> {
+    Fed::new(shared).message(&set(name, value), 0);
+    assert_eq!(replies(shared), [Reply::Parameter(name)]);
+    assert!(!shared.is_busy());
+    texts(shared)
+}
+
+#[test]
+fn every_row_of_the_configuration_shows_what_was_built() {
+    let shared = booted();
+    let configuration = configuration::embedded().unwrap();
+    let shown = |name: Name| shared.parameters.get(name);
+    assert_eq!(shown(Name::Mass), configuration.vehicle().mass);
+    assert_eq!(shown(Name::TorqueMaxZ), configuration.limits().torque_max.z);
+    assert_eq!(shown(Name::Snap), configuration.bounds().snap);
+    assert_eq!(shown(Name::RotorThrustMax), configuration.rotors().unwrap()[0].thrust_max);
+    for row in PARAMETERS.iter().filter(|row| row.parameter.is_tuned()) {
+        let value = shown(row.parameter);
+        assert!(row.allows(value) && (row.unit != "%" || value == 100.0), "{}: {value}", row.name);
+    }
+}
+
+#[test]
+fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
+    let chip = Chip::erased();
+    let shared = Local::new();
+    let mut storage = Storage::load(Words::<4>(&chip), &shared);
+    assert_eq!(boot_on(&shared), None);
+    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(said(&shared, Name::GainAttitude, 90.0), ["GAIN_ATT_P: may be flown, from the next boot on"]);
+    let clock = Simulated::default();
+    clock.run(10_000, storage.keep(&clock, &shared), |_| ());
+
+    let again = Local::new();
+    Storage::load(Words::<4>(&chip), &again);
+    assert_eq!(boot_on(&again), None, "{:?}", texts(&again));
+    assert_eq!((again.parameters.get(Name::Mass), again.parameters.get(Name::GainAttitude)), (0.4, 90.0));
+    assert_eq!(again.parameters.set_by_hand().collect::<Vec<_>>(), [Name::Mass, Name::GainAttitude]);
+    // What flies is lighter, and turns more gently.
+    let built = Built {
+        configuration: configuration::embedded().unwrap(),
+        loops: &configuration::LOOPS,
+        identity: configuration::IDENTITY,
+    };
+    let flown = built.tuned(|name| again.parameters.raw(name)).unwrap();
+    assert_eq!(flown.vehicle().mass, 0.4);
+    assert_ne!(flown.law(), built.configuration.law());
+    // Back as it was built: nothing is left to be kept.
+    said(&again, Name::Mass, built.configuration.vehicle().mass);
+    said(&again, Name::GainAttitude, 100.0);
+    assert_eq!(again.parameters.set_by_hand().count(), 0);
+}
+
+#[test]
+fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_told() {
+    let shared = booted();
+    let before = shared.parameters.get(Name::RotorThrustMax);
+    let words = said(&shared, Name::RotorThrustMax, 3.2);
+    assert_eq!(words[0], "ROT_THR_MAX: refused, cannot be flown");
+    assert!(words[1].starts_with("R rotor 1 greatest: needs 2.3"), "{words:?}");
+    assert_eq!(shared.parameters.get(Name::RotorThrustMax), before);
+    // What one value does not allow, another may make possible.
+    assert_eq!(said(&shared, Name::Mass, 0.55)[0], "MASS: refused, cannot be flown");
+    assert_eq!(said(&shared, Name::RotorThrustMax, 4.0).len(), 1);
+    assert_eq!(said(&shared, Name::Mass, 0.55), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(said(&shared, Name::RotorThrustMax, 3.6)[0], "ROT_THR_MAX: refused, cannot be flown");
+}
+
+#[test]
+fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
+    let shared = booted();
+    let words = said(&shared, Name::ThrustMax, 4.0);
+    assert_eq!(words[0], "THR_MAX: refused, cannot be flown");
+    assert!(words[1].starts_with("limits.thrust_max: must be above 4.5"), "{words:?}");
+    assert_eq!(said(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70.00 to 130.00 % by 10"]);
+    assert_eq!(said(&shared, Name::Mass, f32::NAN), ["MASS: allowed are 0.01 to 100.00 kg"]);
+    assert_eq!(said(&shared, Name::TunedOn, 1.0), ["CFG_ID: is only told"]);
+    assert_eq!(shared.parameters.set_by_hand().count(), 0);
+}
+
+#[test]
+fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certificate_says() {
+    let shared = Local::new();
+    let configuration = configuration::embedded().unwrap();
+    let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7 };
+    boot::start_with(Box::leak(Box::new(boot::Place::new())), &shared, built).unwrap();
+    let words = said(&shared, Name::GainRate, 110.0);
+    assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
+    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
+}
+
+#[test]
+fn before_anything_is_built_there_is_nothing_to_tune() {
+    let shared = Local::new();
+    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: not yet"]);
+}
+
+#[test]
+fn nothing_is_certified_while_a_motor_turns() {
+    for mode in Mode::ALL {
+        let shared = booted();
+        report(&shared, mode, 0);
+        let words = said(&shared, Name::Mass, 0.4);
+        let turns = mode.is_armed() || mode == Mode::MotorTest;
+        assert_eq!(shared.parameters.get(Name::Mass) != 0.4, turns, "{mode:?}: {words:?}");
+    }
+}
+
+#[test]
+fn nobody_arms_while_somebody_is_busy() {
+    let flags: [fn(&Local) -> &Flag; 3] = [|s| &s.saving, |s| &s.judging, |s| &s.restarting];
+    for flag in flags {
+        let shared = Local::new();
+        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), &shared).unwrap();
+        let mut control = Control::new(&shared, pilot, outputs);
+        let mut refused = |now: u64| {
+            for end in [now - 5_000, now] {
+                shared.increment(increment(end));
+            }
+            shared.request(Asked { request: Request::Arm, command: None }).unwrap();
+            control.tick(now);
+            texts(&shared)
+        };
+        refused(10_000);
+        flag(&shared).raise();
+        assert_eq!(refused(20_000), ["Refused: parameters in work, or a restart"]);
+        flag(&shared).lower();
+        assert_ne!(refused(30_000), ["Refused: parameters in work, or a restart"]);
+    }
+}
+
+/// Booted with these values stored, the configuration's number among them.
+fn booted_with(identity: u32, stored: &[(Name, f32)]) -> (Option<Grounded>, Vec<String>, Local) {
+    let mut values = PARAMETERS.map(|row| row.default);
+    values[Name::TunedOn as usize] = identity as f32;
+    stored.iter().for_each(|&(name, value)| values[name as usize] = value);
+    let chip: RefCell<Chip> = chip_with(&values);
+    let shared = Local::new();
+    Storage::load(Words::<4>(&chip), &shared);
+    let grounded = boot_on(&shared);
+    let texts = texts(&shared);
+    (grounded, texts, shared)
+}
+
+#[test]
+fn stored_values_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
+    let stored = [(Name::Mass, 0.46), (Name::RotorThrustMax, 3.2)];
+    let (grounded, texts, shared) = booted_with(configuration::IDENTITY, &stored);
+    assert_eq!(grounded, Some(Grounded::Inequality("R rotor 1 greatest")));
+    assert_eq!(texts, ["MASS 0.46: cannot be flown", "ROT_THR_MAX 3.2: cannot be flown"]);
+    // It can be mended from the ground.
+    assert_eq!(said(&shared, Name::RotorThrustMax, 3.6), ["ROT_THR_MAX: may be flown, from the next boot on"]);
+    let (grounded, texts, _) = booted_with(configuration::IDENTITY, &[(Name::ThrustMax, 4.0)]);
+    assert_eq!(grounded, Some(Grounded::Parameter("limits.thrust_max")));
+    assert_eq!(texts, ["THR_MAX 4: cannot be flown"]);
+}
+
+#[test]
+fn values_that_were_tuned_on_another_configuration_are_dropped_and_that_is_said() {
+    let (grounded, texts, shared) =
+        booted_with(configuration::IDENTITY ^ 1, &[(Name::Mass, 0.4), (Name::SystemId, 9.0)]);
+    assert_eq!(grounded, None);
+    assert_eq!(texts, ["Another configuration was tuned: as built now"]);
+    assert_eq!(shared.parameters.get(Name::Mass), configuration::embedded().unwrap().vehicle().mass);
+    assert_eq!(shared.parameters.get(Name::SystemId), 9.0);
+}

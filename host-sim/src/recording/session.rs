@@ -1,0 +1,97 @@
+//! What a session with the firmware adds to its recording: what the vehicle does, what it believes, and what it says.
+
+use super::drawing::{pose, stamp, transform, vector};
+use super::schemas::{FRAME_TRANSFORM, LAW, LOG, POSE_IN_FRAME, ROTORS, SCENE_UPDATE, STATE};
+use super::{Recording, Topic};
+use firmware::shared::Report;
+use scenario::body::{BodyState, attitude_from_euler};
+use serde_json::json;
+use std::io::{self, Write};
+
+/// What a session is recorded as.
+pub const TOPICS: &[Topic] = &[
+    ("/vehicle", POSE_IN_FRAME),
+    ("/reference", POSE_IN_FRAME),
+    ("/told", POSE_IN_FRAME),
+    ("/tf", FRAME_TRANSFORM),
+    ("/scene", SCENE_UPDATE),
+    ("/law", LAW),
+    ("/rotors", ROTORS),
+    ("/state", STATE),
+    ("/log", LOG),
+];
+
+/// Foxglove's level of information.
+const INFORMATION: u8 = 2;
+
+/// One moment of a session.
+#[derive(Debug, Clone)]
+pub struct Moment {
+    /// The vehicle's time, us.
+    pub now: u64,
+    /// Where it really is.
+    pub truth: BodyState,
+    /// What its rotors really give, N.
+    pub rotors: Vec<f64>,
+    /// What the last control tick did, once there was one.
+    pub report: Option<Report>,
+    /// The battery as it is measured, V, if it is.
+    pub voltage: Option<f32>,
+}
+
+impl<W: Write> Recording<W> {
+    /// Adds a moment.
+    ///
+    /// # Errors
+    /// As the writer's.
+    pub fn moment(&mut self, moment: &Moment) -> io::Result<()> {
+        let Moment { now, truth, rotors, report, voltage } = moment;
+        let now = *now;
+        self.message("/vehicle", now, &pose(now, &truth.position, &truth.attitude))?;
+        self.message("/tf", now, &transform(now, &truth.position, &truth.attitude))?;
+        self.message("/rotors", now, &json!({ "thrust": rotors }))?;
+        let Some(report) = report else { return Ok(()) };
+        if let Some(told) = &report.state {
+            self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;
+        }
+        if let Some(reference) = &report.reference {
+            let ahead = reference.heading.direction();
+            let level = attitude_from_euler(0.0, 0.0, f64::from(ahead.y).atan2(f64::from(ahead.x)));
+            self.message("/reference", now, &pose(now, &reference.position.cast(), &level))?;
+        }
+        if let (Some(wrench), Some(reference), Some(told)) = (&report.wrench, &report.reference, &report.state) {
+            let law = json!({
+                "thrust": wrench.thrust,
+                "torque": vector(&wrench.torque.cast()),
+                "position_error": (told.position - reference.position).norm(),
+            });
+            self.message("/law", now, &law)?;
+        }
+        let state = json!({
+            "mode": report.mode.text(),
+            "ready": report.ready,
+            "airborne": report.is_airborne,
+            "battery": voltage,
+            "pose_age": report.health.pose_age.map(|age| age as f64 * 1e-6),
+            "thrust_scale": report.thrust_scale,
+            "missed_ticks": report.timing.missed,
+        });
+        self.message("/state", now, &state)
+    }
+
+    /// Adds a text that the vehicle said at `time`, us.
+    ///
+    /// # Errors
+    /// As the writer's.
+    pub fn said(&mut self, time: u64, text: &str) -> io::Result<()> {
+        let log = json!({
+            "timestamp": stamp(time),
+            "level": INFORMATION,
+            "message": text,
+            "name": "vehicle",
+            "file": "",
+            "line": 0,
+        });
+        self.message("/log", time, &log)
+    }
+}

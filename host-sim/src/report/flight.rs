@@ -1,0 +1,180 @@
+//! The page of one flight: what `fly` writes beside its log.
+
+pub mod columns;
+pub mod plots;
+
+use super::document;
+use super::page::{Block, Page, Section};
+use super::plot::Color;
+use super::prose::{Cell, Fact, Table};
+use super::recorder::Recorder;
+use super::replay::{Body, Replay};
+use crate::claims::{self, Claim};
+use crate::flown::Flown;
+use crate::table::{percent, short};
+use scenario::Scenario;
+use scenario::stability::LoopMargin;
+use scenario::verdict::Verdict;
+
+/// A flight that is over.
+pub struct Flight<'a> {
+    /// What was flown.
+    pub scenario: &'a Scenario,
+    /// The file it was read from.
+    pub text: &'a str,
+    /// Whether it may fly for real.
+    pub verdict: &'a Verdict,
+    /// The same in a sentence.
+    pub certification: &'a str,
+    /// What was claimed.
+    pub claims: &'a [Claim],
+    /// What it showed.
+    pub flown: &'a Flown,
+}
+
+/// A recorder of everything that the page shows of a flight of `scenario`.
+#[must_use]
+pub fn recorder(scenario: &Scenario) -> Recorder {
+    let timing = &scenario.timing;
+    Recorder::new(timing.ticks, timing.period(), columns::columns(scenario))
+}
+
+/// The page of a flight.
+#[must_use]
+pub fn page(flight: &Flight, recorder: Recorder) -> Page {
+    let Flight { scenario, verdict, claims, flown, .. } = flight;
+    let ticks_per_row = recorder.ticks_per_row();
+    let track = recorder.finish(&scenario.name);
+    let plots = plots::plots(scenario, verdict.certificate(), &track);
+    let holds = claims::all_hold(claims);
+    let sections = [
+        ("Replay", vec![Block::Replay(replay(scenario))]),
+        ("Claims", vec![Block::Table(claims_table(claims))]),
+        ("Plots", vec![Block::Text(about_plots(ticks_per_row)), Block::Plots(plots)]),
+        (
+            "Certificate",
+            vec![
+                Block::Text(format!("Configuration {}.", flight.certification)),
+                Block::Table(inequalities(verdict)),
+                Block::Table(loops(verdict)),
+            ],
+        ),
+        (
+            "Scenario",
+            vec![
+                Block::Folded(
+                    "Vehicle, gains and all else, section by section".into(),
+                    document::tables(flight.text, "scenario"),
+                ),
+                Block::Listing("The file as it was read".into(), flight.text.into()),
+            ],
+        ),
+    ];
+    Page {
+        title: scenario.name.clone(),
+        kind: "flight".into(),
+        verdict: Some((holds, if holds { "Every claim holds" } else { "Not every claim holds" }.into())),
+        lead: lead(scenario),
+        highlights: highlights(scenario, verdict, flown),
+        tracks: vec![track],
+        sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
+    }
+}
+
+fn lead(scenario: &Scenario) -> String {
+    let timing = &scenario.timing;
+    let law = if scenario.configuration.paper().is_some() { "the paper's law" } else { "the extended law" };
+    let beyond = match scenario.reality.sections().as_slice() {
+        [] => String::new(),
+        sections => format!(" Beyond the model: [{}], of which no certificate knows.", sections.join("], [")),
+    };
+    format!(
+        "{} s of simulated flight under {law} at {} Hz, plant step {} ms.{beyond}",
+        short(timing.duration()),
+        short(1e6 / timing.period_us as f64),
+        short(1e3 * timing.step())
+    )
+}
+
+fn highlights(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Fact> {
+    let since = |since: Option<f64>| since.map_or_else(|| "never".to_owned(), |since| format!("{} s", short(since)));
+    let margin = verdict.certificate().tightest().map_or("none".to_owned(), |tightest| percent(tightest.margin()));
+    let torque = flown.torque.map(short).join(", ");
+    vec![
+        Fact::new("Certified", if verdict.refusal().is_none() { "yes" } else { "no" }),
+        Fact::new("Tightest proven margin", margin),
+        Fact::new("On its reference after", since(flown.position_reached())),
+        Fact::new("Steady position error", format!("{} m", short(flown.steady_position_error))),
+        Fact::new("Height lost", format!("{} m", short(flown.height_lost))),
+        Fact::new("Greatest torques", format!("{torque} N m")),
+        Fact::new("Mass", format!("{} kg", short(f64::from(scenario.configuration.vehicle().mass)))),
+        Fact::new("Written by", format!("host-sim {}", env!("CARGO_PKG_VERSION"))),
+    ]
+}
+
+fn about_plots(ticks_per_row: u64) -> String {
+    let rows = match ticks_per_row {
+        1 => "Every control tick is drawn.".to_owned(),
+        ticks => format!(
+            "Each point stands for {ticks} ticks: of two points the one is the least, the other the greatest value seen; \
+             positions and attitudes are samples. Every tick is in log.csv."
+        ),
+    };
+    format!("{rows} Dashed lines are what was asked for; thin lines across are bounds.")
+}
+
+fn claims_table(claims: &[Claim]) -> Table {
+    let mut table = Table::new("What was claimed and what was flown", &["claim", "required", "flown", "verdict"]);
+    table.rows.extend(claims.iter().map(|claim| {
+        let [required, flown] = [&claim.required, &claim.flown].map(|text| Cell::number(typeset(text)));
+        vec![Cell::text(claim.claim.clone()), required, flown, Cell::Verdict(claim.holds)]
+    }));
+    table
+}
+
+/// As a page may write what a terminal has to spell.
+fn typeset(text: &str) -> String {
+    text.replace("<=", "≤").replace(">=", "≥").replace("^2", "²")
+}
+
+/// The inequalities that decide whether the commands are proven to stay within the limits.
+fn inequalities(verdict: &Verdict) -> Table {
+    let head = ["inequality", "required", "available", "margin", "verdict"];
+    let mut table = Table::new("Commands: a proof", &head);
+    table.rows.extend(verdict.certificate().inequalities().map(|inequality| {
+        let side = |value: f64| Cell::number(typeset(format!("{} {}", short(value), inequality.unit).trim_end()));
+        let margin = Cell::number(percent(inequality.margin()));
+        let (required, available) = (side(inequality.required), side(inequality.available));
+        vec![Cell::text(inequality.name), required, available, margin, Cell::Verdict(Some(inequality.holds()))]
+    }));
+    table
+}
+
+fn loops(verdict: &Verdict) -> Table {
+    let head = ["sampled loop", "spectral radius", "gain down to", "gain up to", "more delay", "verdict"];
+    let mut table = Table::new("Small motions about hover: an analysis", &head);
+    table.rows.extend(verdict.loops().iter().map(|report| {
+        let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
+            [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
+        });
+        let holds = LoopMargin::LEAST.lacking(report).is_none();
+        let mut row = vec![Cell::text(report.axis.name()), Cell::number(format!("{:.4}", report.spectral_radius))];
+        row.extend(margins.map(Cell::Number));
+        row.push(Cell::Verdict(Some(holds)));
+        row
+    }));
+    table
+}
+
+fn replay(scenario: &Scenario) -> Replay {
+    let rotors = scenario.configuration.rotors().into_iter().flat_map(|rotors| rotors.iter());
+    let vehicle = scenario.configuration.vehicle();
+    Replay {
+        bodies: vec![Body { track: 0, label: scenario.name.clone(), color: Color::Blue }],
+        rotors: rotors.map(|rotor| rotor.position.cast().into()).collect(),
+        hover_thrust: f64::from(vehicle.mass * vehicle.gravity),
+    }
+}
+
+#[cfg(test)]
+mod tests;

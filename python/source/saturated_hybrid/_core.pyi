@@ -1,0 +1,534 @@
+"""The compiled part. SI units, rad; world z up, body x forward, y left, z up; quaternions scalar first, body to world.
+
+Array arguments may be of any numeric type, or sequences. An argument that cannot be used is a `ValueError` naming it.
+"""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, Self, TypedDict, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Allocation",
+    "Campaign",
+    "Certificate",
+    "Claim",
+    "Flight",
+    "Governor",
+    "Inequality",
+    "Law",
+    "LawRows",
+    "Loop",
+    "Scenario",
+    "Tuned",
+    "VehicleRows",
+    "campaign",
+    "certify",
+    "fly",
+    "merge",
+    "reference",
+    "state",
+    "tune",
+]
+
+class _Rotors(TypedDict):
+    """The rotors of a vehicle."""
+
+    position: NDArray[np.float64]
+    """(n, 3), m, body, from the centre of mass."""
+    spin: NDArray[np.float64]
+    """(n,): the sign of the drag torque about body z: +1 clockwise seen from above, -1 counter-clockwise."""
+    thrust_coefficient: NDArray[np.float64]
+    """(n,), N/(rad/s)^2."""
+    drag_coefficient: NDArray[np.float64]
+    """(n,), N m/(rad/s)^2."""
+    speed: NDArray[np.float64]
+    """(n, 2), least and greatest, rad/s."""
+    lag: float
+    """First-order lag of the speeds, s."""
+
+@final
+class Scenario:
+    """A scenario: vehicle, limits, gains, start, reference and circumstances of a flight. docs/scenario-file.md has its keys.
+
+    It never changes; `edited` gives a changed one. It can be pickled.
+    """
+
+    @staticmethod
+    def load(path: str | PathLike[str]) -> Scenario:
+        """Reads a TOML file. `ValueError` names the file, the field and the reason."""
+    @staticmethod
+    def parse(text: str, file: str = "scenario") -> Scenario:
+        """Reads TOML text, which errors call `file`."""
+    @staticmethod
+    def built_in(name: str) -> Scenario:
+        """One of `names()`: the repository's scenarios and vehicles."""
+    @staticmethod
+    def names() -> list[str]:
+        """What `built_in` knows."""
+    def edited(self, changes: Mapping[str, Any]) -> Scenario:
+        """The scenario with other values, by their dotted paths: `{"vehicle.mass": 0.48, "wind": {"steady": [2, 0, 0]}}`.
+
+        Numbers, text, booleans, lists and dictionaries; `None` takes a key or a section away. Comments in the text stay.
+        """
+    def reference(self, times: ArrayLike) -> NDArray[np.float32]:
+        """The reference at `times` (n,), s, rounded to microseconds: (n, 19)."""
+    @property
+    def text(self) -> str:
+        """The TOML."""
+    @property
+    def name(self) -> str:
+        """Names the flight."""
+    @property
+    def law(self) -> str:
+        """ "paper" or "extended"."""
+    @property
+    def duration(self) -> float:
+        """s."""
+    @property
+    def period(self) -> float:
+        """Of the control, s."""
+    @property
+    def ticks(self) -> int:
+        """Control periods in `duration`."""
+    @property
+    def mass(self) -> float:
+        """kg."""
+    @property
+    def gravity(self) -> float:
+        """m/s^2."""
+    @property
+    def inertia(self) -> NDArray[np.float64]:
+        """(3,), diagonal, kg m^2, body."""
+    @property
+    def thrust_max(self) -> float:
+        """N."""
+    @property
+    def torque_max(self) -> NDArray[np.float64]:
+        """(3,), N m, body."""
+    @property
+    def rotors(self) -> _Rotors | None:
+        """None if thrust and torque act directly."""
+    @property
+    def initial(self) -> NDArray[np.float64]:
+        """(13,): where it starts."""
+
+@final
+class Inequality:
+    """One inequality of a certificate: `required` below `available`."""
+
+    @property
+    def name(self) -> str:
+        """Where it comes from (A1: Assumption 1, T1 and T2: Theorems 1 and 2, R: a rotor) and what it is about."""
+    @property
+    def unit(self) -> str:
+        """Of both sides."""
+    @property
+    def required(self) -> float:
+        """The left side."""
+    @property
+    def available(self) -> float:
+        """The right side."""
+    @property
+    def margin(self) -> float:
+        """The part of what is available that is left over; negative where it fails."""
+    @property
+    def holds(self) -> bool:
+        """Whether it does."""
+
+@final
+class Loop:
+    """One sampled loop about hover, with rotor lag and delays: an analysis of small motions, not a proof."""
+
+    @property
+    def axis(self) -> str:
+        """ "roll", "pitch", "yaw", "lateral x", "lateral y" or "vertical"."""
+    @property
+    def spectral_radius(self) -> float:
+        """Growth of an error per sample; stable below one."""
+    @property
+    def stable(self) -> bool:
+        """Whether it is."""
+    @property
+    def gain_down(self) -> float | None:
+        """Greatest factor below one on the loop's gain that destabilises it; 0 if none does. None if it is unstable as it is."""
+    @property
+    def gain_up(self) -> float | None:
+        """Least factor above one that does; infinite if none does."""
+    @property
+    def delay(self) -> float | None:
+        """Least further delay that does, s."""
+    @property
+    def crossover(self) -> float | None:
+        """Highest frequency at which the loop's gain is one, rad/s."""
+    @property
+    def lacks(self) -> str | None:
+        """What it lacks of the margin that flying takes, in words."""
+
+@final
+class Certificate:
+    """Whether a scenario may fly: the proof that its commands stay within the limits, and its sampled loops. True if it may."""
+
+    @property
+    def certified(self) -> bool:
+        """Whether it may fly."""
+    @property
+    def reasons(self) -> list[str]:
+        """Everything that keeps it on the ground, in words; empty if nothing does."""
+    @property
+    def commands_proven(self) -> bool:
+        """Whether every inequality holds, whatever the sampled loops do."""
+    @property
+    def inequalities(self) -> list[Inequality]:
+        """All that decide."""
+    @property
+    def loops(self) -> list[Loop]:
+        """The six sampled loops."""
+    @property
+    def thrust(self) -> tuple[float, float]:
+        """Least and greatest thrust that the law can command, N."""
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """(3,): greatest |torque| that it can command about each body axis, N m."""
+    @property
+    def rotors(self) -> NDArray[np.float64]:
+        """(n, 2): least and greatest thrust that it can command of each rotor, N."""
+    @property
+    def report(self) -> str:
+        """What `host-sim certify` prints."""
+    def __bool__(self) -> bool: ...
+
+def certify(scenario: Scenario) -> Certificate:
+    """The certificate and the sampled loops of a scenario."""
+
+@final
+class Law:
+    """The control law of a scenario, as after a reset: the bits that boards fly.
+
+    What nothing certifies may be simulated too; `certified` says which it is.
+    """
+
+    def __new__(cls, scenario: Scenario) -> Self: ...
+    @property
+    def certified(self) -> bool:
+        """Whether its commands are proven to stay within the limits."""
+    def copy(self) -> Law:
+        """Another law that remembers the same."""
+    def reset(self) -> None:
+        """Everything forgotten: how a flight begins."""
+    def step(self, state: ArrayLike, reference: ArrayLike) -> NDArray[np.float32]:
+        """One control tick.
+
+        Args:
+            state: (13,).
+            reference: (19,).
+
+        Returns:
+            The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.
+
+        Raises:
+            ValueError: names the field that cannot be used; nothing has changed then.
+        """
+    def for_rotors(self, asked: ArrayLike) -> NDArray[np.float32]:
+        """What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`."""
+    def set_period(self, period: float) -> None:
+        """The time by which the next steps advance the filters, s, in (0, 0.1]. It begins as the scenario's."""
+    def hold_estimates(self) -> None:
+        """After a step whose wrench was clipped: nothing can be learnt from that motion."""
+    @property
+    def thrust_scale(self) -> float:
+        """What the rotors deliver of what is commanded, as far as the law knows; 1 under the paper's."""
+    @property
+    def estimates(self) -> dict[str, Any] | None:
+        """`force` (3,) m/s^2 world, `torque` (3,) N m body, `thrust_scale`; None under the paper's law."""
+    @property
+    def diagnostics(self) -> dict[str, Any] | None:
+        """What the last step went through, float32: errors, filters and desired motion, each (3,), `desired_attitude` and
+        `attitude_error` (4,), `lift_sign`. None after a reset."""
+
+@final
+class LawRows:
+    """The law of rows of vehicles, each with its own memory. Rows are shared out to all cores."""
+
+    def __new__(cls, scenario: Scenario, rows: int) -> Self: ...
+    def __len__(self) -> int: ...
+    def reset(self, chosen: Sequence[bool] | None = None) -> None:
+        """Resets the rows that are chosen, (rows,) bool; all of them if none are given."""
+    def step(self, states: ArrayLike, references: ArrayLike) -> NDArray[np.float32]:
+        """One tick of every row: states (rows, 13), references (rows, 19), to wrenches (rows, 4).
+
+        If one is refused, the error names the row and no row has changed.
+        """
+    def hold_estimates(self, chosen: Sequence[bool] | None = None) -> None:
+        """As `Law.hold_estimates`, of the rows that are chosen."""
+    def for_rotors(self, wrenches: ArrayLike) -> NDArray[np.float32]:
+        """As `Law.for_rotors`, of every row: (rows, 4)."""
+    @property
+    def thrust_scale(self) -> NDArray[np.float32]:
+        """(rows,)."""
+
+@final
+class Allocation:
+    """From a wrench to the rotors' thrusts: what cannot be had is given up, yaw first, then thrust, roll and pitch last."""
+
+    def __new__(cls, scenario: Scenario) -> Self: ...
+    def __len__(self) -> int: ...
+    def thrusts(self, asked: ArrayLike) -> tuple[NDArray[np.float32], bool]:
+        """Thrusts (n,), N, each within its rotor's range, for a wrench (4,); and whether anything of it was given up."""
+    def speeds(self, thrusts: ArrayLike) -> NDArray[np.float32]:
+        """Rotor speeds (n,), rad/s, for thrusts (n,), N."""
+
+@final
+class Governor:
+    """Any stream of setpoints in, a reference within the scenario's reference bounds out, once per control period.
+
+    Args:
+        scenario: bounds and period.
+        horizontal_speed, vertical_speed: greatest speeds asked for, m/s.
+        snap_ramp, heading_ramp: how long snap and psi'' take from one end of their bound to the other, s.
+        timeout: how long velocities and rates are valid without renewal, s.
+    """
+
+    def __new__(
+        cls,
+        scenario: Scenario,
+        *,
+        horizontal_speed: float = 5.0,
+        vertical_speed: float = 2.0,
+        snap_ramp: float = 0.1,
+        heading_ramp: float = 0.2,
+        timeout: float = 0.5,
+    ) -> Self: ...
+    def start(self, position: ArrayLike, velocity: ArrayLike | None = None, yaw: float = 0.0) -> None:
+        """Starts anew at a steady motion: (3,) m, (3,) m/s, world; rad."""
+    def accept(
+        self,
+        position: ArrayLike | Sequence[float | None] | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        *,
+        yaw: float | None = None,
+        yaw_rate: float | None = None,
+    ) -> None:
+        """Replaces the setpoint, world frame.
+
+        A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
+        position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the one asked for.
+        """
+    def stop(self) -> None:
+        """Gives up the setpoint and comes to rest."""
+    @property
+    def at_rest(self) -> bool:
+        """Whether the reference rests where it was asked to be."""
+    def tick(self) -> NDArray[np.float32]:
+        """The reference (19,) one period later."""
+    def run(self, ticks: int) -> NDArray[np.float32]:
+        """The references (ticks, 19) of as many periods."""
+
+@final
+class Claim:
+    """What a flight claimed, and whether it holds: texts, as `host-sim fly` prints them."""
+
+    @property
+    def claim(self) -> str:
+        """What it is about."""
+    @property
+    def required(self) -> str:
+        """What must be; empty where nothing must."""
+    @property
+    def flown(self) -> str:
+        """What was."""
+    @property
+    def holds(self) -> bool | None:
+        """None where nothing is required."""
+
+@final
+class Flight:
+    """A flight that was flown. Its length is its number of control ticks."""
+
+    @property
+    def columns(self) -> dict[str, NDArray[np.float64]]:
+        """What log.csv holds, number by number: each column (ticks,), by its name there."""
+    @property
+    def claims(self) -> list[Claim]:
+        """All of them."""
+    @property
+    def table(self) -> str:
+        """The claims as a table."""
+    @property
+    def every_claim_holds(self) -> bool:
+        """Whether none fails."""
+    @property
+    def certified(self) -> bool:
+        """Whether the scenario may fly for real."""
+    @property
+    def reasons(self) -> list[str]:
+        """Why not."""
+    def __len__(self) -> int: ...
+
+def fly(scenario: Scenario) -> Flight:
+    """Flies a scenario. `RuntimeError` with the time if the flight cannot go on."""
+
+@final
+class Campaign:
+    """What a campaign showed. As text: what `host-sim campaign` prints."""
+
+    @property
+    def flights(self) -> int:
+        """How many there are, of a shard its own."""
+    @property
+    def tracking(self) -> int:
+        """Flights that recovered and tracked."""
+    @property
+    def beyond(self) -> int:
+        """Flights with a command beyond a certified bound."""
+    @property
+    def clipped(self) -> int:
+        """Flights with a command that a rotor could not follow."""
+    @property
+    def refusal(self) -> str | None:
+        """Why the scenario may not fly, if so."""
+    @property
+    def holds(self) -> bool:
+        """Whether every flight tracks within all bounds, and the scenario may fly."""
+
+def campaign(
+    scenario: Scenario,
+    directory: str | PathLike[str],
+    *,
+    flights: int | None = None,
+    seed: int | None = None,
+    shard: tuple[int, int] = (1, 1),
+    plant_step: float | None = None,
+) -> Campaign:
+    """Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
+
+    The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any interruption
+    give the same. What is there already is not flown again.
+
+    Args:
+        scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.
+        directory: where `campaign.arrow` and the rest go.
+        flights, seed: of the whole campaign; left out: the scenario's.
+        shard: (I, N): part I of N, from 1; `merge` puts the parts together.
+        plant_step: s; left out: the longest of at most 5 ms that fits.
+
+    Raises:
+        ValueError: names the argument, or says that the directory holds another campaign.
+        OSError: it cannot be written.
+    """
+
+def merge(shards: Sequence[str | PathLike[str]], directory: str | PathLike[str]) -> Campaign:
+    """Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split."""
+
+@final
+class Tuned:
+    """Gains that a search found, and what they showed."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario with these gains."""
+    @property
+    def height_lost(self) -> float:
+        """From upside down, m."""
+    @property
+    def recovered(self) -> float:
+        """Time until back for good, s."""
+    @property
+    def gust(self) -> float:
+        """Deepest excursion in a gust of 5 m/s, m."""
+    @property
+    def step(self) -> float:
+        """Time until a step of 1 m is flown, s."""
+    @property
+    def noise(self) -> float:
+        """RMS of the position under noise, m."""
+    @property
+    def cost(self) -> float:
+        """What the search made small."""
+    @property
+    def judged(self) -> int:
+        """Candidates."""
+
+def tune(
+    scenario: Scenario,
+    *,
+    name: str | None = None,
+    generations: int = 150,
+    population: int = 48,
+    seed: int = 1,
+    margin: float = 0.05,
+    gain_margin: float = 2.0,
+    delay_margin: float = 0.003,
+    position_error: float = 1e-3,
+    mrp_error: float = 1e-4,
+    recovery: float = 20.0,
+    projection: bool = True,
+) -> Tuned:
+    """Searches gains that certify and then please a pilot most; minutes to hours, on all cores. As `host-sim tune`.
+
+    Args:
+        name: of the tuned scenario; left out: its own with `-tuned`.
+        generations, population, seed: how hard to search, and from which seed: the same gives the same gains.
+        margin: least margin of every inequality, as a fraction.
+        gain_margin: least gain margin of every sampled loop, 1.5 or more.
+        delay_margin: least delay margin of every sampled loop, s, 0.002 or more.
+        position_error, mrp_error: greatest of the scenario's own flight in its last quarter, m and 1.
+        recovery: how long a recovery from upside down may take, s.
+        projection: whether the paper's law may use the thrust projection.
+
+    Raises:
+        RuntimeError: no gains met the requirements; says in what the closest fail.
+    """
+
+@final
+class VehicleRows:
+    """Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on."""
+
+    def __new__(cls, scenario: Scenario, rows: int) -> Self: ...
+    def __len__(self) -> int: ...
+    def place(
+        self, states: ArrayLike, chosen: Sequence[bool] | None = None, seeds: Sequence[int] | None = None
+    ) -> None:
+        """Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
+        turbulence's. If one is refused, the error names the row and no row has changed."""
+    def step(self, wrenches: ArrayLike) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
+        rows' motion is no longer finite, each (rows,)."""
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """(rows, 13): the true ones."""
+    @property
+    def measured(self) -> NDArray[np.float64]:
+        """(rows, 13): what controllers are told, by the scenario's `[sensors]`; the true ones where it has none."""
+    @property
+    def references(self) -> NDArray[np.float32]:
+        """(rows, 19): the scenario's, each at its row's own time."""
+    @property
+    def ticks(self) -> NDArray[np.uint64]:
+        """(rows,): periods since each was placed."""
+
+def state(
+    position: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    attitude: ArrayLike | None = None,
+    angular_velocity: ArrayLike | None = None,
+    *,
+    euler: ArrayLike | None = None,
+) -> NDArray[np.float64]:
+    """A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin, level,
+    facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll)."""
+
+def reference(
+    position: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | None = None,
+    snap: ArrayLike | None = None,
+    yaw: float = 0.0,
+    yaw_rate: float = 0.0,
+    yaw_acceleration: float = 0.0,
+) -> NDArray[np.float32]:
+    """A reference (19,), world: (3,) each, in m to m/s^4; rad, rad/s, rad/s^2. What is left out is zero."""

@@ -1,0 +1,125 @@
+//! Campaigns of randomised flights, their shards, and merging them: the directories that `host-sim campaign` writes.
+
+use crate::refused::{failed, refused, refused_field, unwritable};
+use crate::scenarios::Scenario;
+use crate::waiting::interruptible;
+use host_sim::campaign::CampaignError;
+use host_sim::campaign::fly::{self, Orders};
+use host_sim::campaign::step;
+use host_sim::campaign::summary;
+use pyo3::prelude::*;
+use scenario::campaign::MOST_FLIGHTS;
+use std::path::PathBuf;
+
+/// What a campaign showed. As text: what `host-sim campaign` prints.
+#[pyclass(frozen, module = "saturated_hybrid")]
+pub struct Campaign {
+    summary: summary::Summary,
+}
+
+#[pymethods]
+impl Campaign {
+    /// How many there are, of a shard its own.
+    #[getter]
+    fn flights(&self) -> u64 {
+        self.summary.flights
+    }
+
+    /// Flights that recovered and tracked.
+    #[getter]
+    fn tracking(&self) -> u64 {
+        self.summary.tracking
+    }
+
+    /// Flights with a command beyond a certified bound.
+    #[getter]
+    fn beyond(&self) -> u64 {
+        self.summary.beyond
+    }
+
+    /// Flights with a command that a rotor could not follow.
+    #[getter]
+    fn clipped(&self) -> u64 {
+        self.summary.clipped
+    }
+
+    /// Why the scenario may not fly, if so.
+    #[getter]
+    fn refusal(&self) -> Option<&str> {
+        self.summary.refusal.as_deref()
+    }
+
+    /// Whether every flight tracks within all bounds, and the scenario may fly.
+    #[getter]
+    fn holds(&self) -> bool {
+        self.summary.holds
+    }
+
+    fn __str__(&self) -> String {
+        self.summary.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        let summary::Summary { flights, tracking, beyond, .. } = &self.summary;
+        format!("<Campaign: {tracking} of {flights} flights track, {beyond} beyond a bound>")
+    }
+}
+
+/// Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
+///
+/// The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any interruption
+/// give the same. What is there already is not flown again.
+///
+/// Args:
+///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.
+///     directory: where `campaign.arrow` and the rest go.
+///     flights, seed: of the whole campaign; left out: the scenario's.
+///     shard: (I, N): part I of N, from 1; `merge` puts the parts together.
+///     plant_step: s; left out: the longest of at most 5 ms that fits.
+///
+/// Raises:
+///     ValueError: names the argument, or says that the directory holds another campaign.
+///     OSError: it cannot be written.
+#[pyfunction]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(1, 1), plant_step=None))]
+pub fn campaign(
+    py: Python<'_>,
+    scenario: &Scenario,
+    directory: PathBuf,
+    flights: Option<u64>,
+    seed: Option<u64>,
+    shard: (u64, u64),
+    plant_step: Option<f64>,
+) -> PyResult<Campaign> {
+    let own = &scenario.read.campaign;
+    let (flights, seed) = (flights.unwrap_or(own.flights), seed.unwrap_or(own.seed));
+    if !(1.0..=MOST_FLIGHTS).contains(&(flights as f64)) {
+        return Err(refused_field("flights", format!("must be from 1 to {MOST_FLIGHTS}, found {flights}")));
+    }
+    if !(1..=shard.1).contains(&shard.0) {
+        let allowed = "must be (I, N) with I from 1 to N";
+        return Err(refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1)));
+    }
+    let stepped = match plant_step {
+        None => step::longest(&scenario.read),
+        Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
+    };
+    let orders = Orders { flights, seed, shard };
+    let flown = interruptible(py, |interrupt| fly::campaign(&stepped, &scenario.text, &orders, &directory, interrupt))?;
+    Ok(Campaign { summary: flown.map_err(raised)? })
+}
+
+/// Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split.
+#[pyfunction]
+pub fn merge(py: Python<'_>, shards: Vec<PathBuf>, directory: PathBuf) -> PyResult<Campaign> {
+    let merged = py.detach(|| fly::merge(&shards, &directory));
+    Ok(Campaign { summary: merged.map_err(raised)? })
+}
+
+fn raised(error: CampaignError) -> PyErr {
+    match &error {
+        CampaignError::Input(_) | CampaignError::Parameter(_) => refused(error),
+        CampaignError::Output(_) => unwritable(error),
+        CampaignError::Rows(_) | CampaignError::Interrupted(_) => failed(error),
+    }
+}

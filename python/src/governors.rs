@@ -1,0 +1,134 @@
+//! The governor of a scenario: setpoints in, references inside its bounds out.
+
+use crate::refused::{refused, refused_field};
+use crate::rows::{array, of_asked, row};
+use crate::scenarios::Scenario;
+use controller_core::governor::{self, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::heading::Heading;
+use nalgebra::{Vector2, Vector3};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+/// Any stream of setpoints in, a reference within the scenario's reference bounds out, once per control period.
+///
+/// Args:
+///     scenario: bounds and period.
+///     horizontal_speed, vertical_speed: greatest speeds asked for, m/s.
+///     snap_ramp, heading_ramp: how long snap and psi'' take from one end of their bound to the other, s.
+///     timeout: how long velocities and rates are valid without renewal, s.
+#[pyclass(module = "saturated_hybrid")]
+pub struct Governor {
+    governor: Box<governor::Governor>,
+}
+
+#[pymethods]
+impl Governor {
+    #[new]
+    #[pyo3(signature = (scenario, *, horizontal_speed=5.0, vertical_speed=2.0, snap_ramp=0.1, heading_ramp=0.2, timeout=0.5))]
+    fn new(
+        scenario: &Scenario,
+        horizontal_speed: f32,
+        vertical_speed: f32,
+        snap_ramp: f32,
+        heading_ramp: f32,
+        timeout: f32,
+    ) -> PyResult<Self> {
+        let limits = GovernorLimits { horizontal_speed, vertical_speed, snap_ramp, heading_ramp, timeout };
+        let period = scenario.read.timing.period() as f32;
+        let mut memory = Box::new(Memory::EMPTY);
+        let bounds = scenario.read.configuration.bounds();
+        let made = governor::Governor::new(bounds, &limits, period, &mut memory).map_err(refused)?;
+        Ok(Self { governor: Box::new(made.clone()) })
+    }
+
+    /// Starts anew at a steady motion: (3,) m, (3,) m/s, world; rad.
+    #[pyo3(signature = (position, velocity=None, yaw=0.0))]
+    fn start(&mut self, position: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>, yaw: f64) -> PyResult<()> {
+        let velocity = velocity.map_or(Ok(Vector3::zeros()), |velocity| single(velocity, "velocity"))?;
+        let heading = Heading::new(Vector2::new(yaw.cos() as f32, yaw.sin() as f32), 0.0, 0.0);
+        let heading = heading.map_err(|error| refused_field("yaw", error.reason))?;
+        self.governor.start(&single(position, "position")?, &velocity, &heading).map_err(refused)
+    }
+
+    /// Replaces the setpoint, world frame.
+    ///
+    /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
+    /// position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the one asked for.
+    #[pyo3(signature = (position=None, velocity=None, acceleration=None, *, yaw=None, yaw_rate=None))]
+    fn accept(
+        &mut self,
+        position: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        acceleration: Option<&Bound<'_, PyAny>>,
+        yaw: Option<f32>,
+        yaw_rate: Option<f32>,
+    ) -> PyResult<()> {
+        let motion = motion(position, velocity, acceleration)?;
+        let turn = match (yaw, yaw_rate) {
+            (None, None) => Turn::Keep,
+            (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
+            (None, Some(rate)) => Turn::Rate(rate),
+        };
+        self.governor.accept(&Setpoint { motion, turn }).map_err(refused)
+    }
+
+    /// Gives up the setpoint and comes to rest.
+    fn stop(&mut self) {
+        self.governor.stop();
+    }
+
+    /// Whether the reference rests where it was asked to be.
+    #[getter]
+    fn at_rest(&self) -> bool {
+        self.governor.at_rest()
+    }
+
+    /// The reference (19,) one period later.
+    fn tick<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &of_asked(&self.governor.tick()))
+    }
+
+    /// The references (ticks, 19) of as many periods.
+    fn run<'py>(&mut self, py: Python<'py>, ticks: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        if ticks > MOST_TICKS {
+            return Err(refused_field("ticks", format!("must be at most {MOST_TICKS}, found {ticks}")));
+        }
+        let governor = &mut self.governor;
+        array(py, py.detach(|| (0..ticks).map(|_| of_asked(&governor.tick())).collect()))
+    }
+}
+
+/// Of one call: about half a gigabyte of references.
+const MOST_TICKS: usize = 10_000_000;
+
+fn single(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector3<f32>> {
+    Ok(Vector3::from(row::<3>(array, field)?).map(|value| value as f32))
+}
+
+/// What is asked for, from what is given of it. A position may be `None` on axes that move at a velocity.
+fn motion(
+    position: Option<&Bound<'_, PyAny>>,
+    velocity: Option<&Bound<'_, PyAny>>,
+    acceleration: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Motion> {
+    let or_still =
+        |given: Option<&Bound<'_, PyAny>>, field| given.map_or(Ok(Vector3::zeros()), |given| single(given, field));
+    let Some(position) = position else {
+        if acceleration.is_some() {
+            return Err(refused_field("acceleration", "needs a position and its velocity"));
+        }
+        let lacking = || refused_field("velocity", "there is neither a position nor a velocity; give one");
+        return Ok(Motion::Velocity(single(velocity.ok_or_else(lacking)?, "velocity")?));
+    };
+    if let Ok(mixed) = position.extract::<[Option<f32>; 3]>()
+        && mixed.contains(&None)
+    {
+        return Ok(Motion::Mixed { position: mixed, velocity: or_still(velocity, "velocity")? });
+    }
+    let position = single(position, "position")?;
+    if velocity.is_none() && acceleration.is_none() {
+        return Ok(Motion::Position(position));
+    }
+    let (velocity, acceleration) = (or_still(velocity, "velocity")?, or_still(acceleration, "acceleration")?);
+    Ok(Motion::PositionVelocityAcceleration { position, velocity, acceleration })
+}

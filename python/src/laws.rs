@@ -1,0 +1,253 @@
+//! The control law of a scenario: one vehicle, or rows of them.
+//!
+//! A step that is refused changes nothing, of rows none of them.
+
+use crate::refused::{refused, refused_field};
+use crate::rows::{REFERENCE, STATE, WRENCH, array, asked, of_wrench, row, rows, told, wrench};
+use crate::scenarios::Scenario;
+use controller_core::certificate::certified::Certified;
+use controller_core::controller::Diagnostics;
+use controller_core::law;
+use controller_core::state::Wrench;
+use host_sim::flight;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use std::fmt::Display;
+
+/// Rows that one core takes at a time: fewer are not worth waking another for.
+const ROWS_AT_ONCE: usize = 256;
+
+/// The control law of a scenario, as after a reset: the bits that boards fly.
+///
+/// What nothing certifies may be simulated too; `certified` says which it is.
+#[pyclass(module = "saturated_hybrid")]
+pub struct Law {
+    law: law::Law,
+    certified: bool,
+    diagnostics: Option<Diagnostics>,
+}
+
+#[pymethods]
+impl Law {
+    #[new]
+    fn new(scenario: &Scenario) -> PyResult<Self> {
+        let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
+        let (law, certified) = match Certified::new(configuration.clone()) {
+            Ok(certified) => (law::Law::new(&certified, period), true),
+            Err(_) => (law::Law::uncertified(configuration, period), false),
+        };
+        Ok(Self { law: law.map_err(refused)?, certified, diagnostics: None })
+    }
+
+    /// Whether its commands are proven to stay within the limits.
+    #[getter]
+    fn certified(&self) -> bool {
+        self.certified
+    }
+
+    /// Another law that remembers the same.
+    fn copy(&self) -> Self {
+        Self { law: self.law.clone(), ..*self }
+    }
+
+    /// Everything forgotten: how a flight begins.
+    fn reset(&mut self) {
+        self.law.reset();
+        self.diagnostics = None;
+    }
+
+    /// One control tick.
+    ///
+    /// Args:
+    ///     state: (13,).
+    ///     reference: (19,).
+    ///
+    /// Returns:
+    ///     The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.
+    ///
+    /// Raises:
+    ///     ValueError: names the field that cannot be used; nothing has changed then.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        state: &Bound<'py, PyAny>,
+        reference: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let (state, reference) = (row::<STATE>(state, "state")?, row::<REFERENCE>(reference, "reference")?);
+        let (wrench, diagnostics) = step(&mut self.law, &state, &reference).map_err(refused)?;
+        self.diagnostics = Some(diagnostics);
+        Ok(PyArray1::from_slice(py, &of_wrench(&wrench)))
+    }
+
+    /// What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`.
+    fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let asked = wrench(&row::<WRENCH>(asked, "wrench")?);
+        Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.law, &asked))))
+    }
+
+    /// The time by which the next steps advance the filters, s, in (0, 0.1]. It begins as the scenario's.
+    fn set_period(&mut self, period: f64) -> PyResult<()> {
+        self.law.set_period(period as f32).map_err(refused)
+    }
+
+    /// After a step whose wrench was clipped: nothing can be learnt from that motion.
+    fn hold_estimates(&mut self) {
+        self.law.hold_estimates();
+    }
+
+    /// What the rotors deliver of what is commanded, as far as the law knows; 1 under the paper's.
+    #[getter]
+    fn thrust_scale(&self) -> f32 {
+        self.law.thrust_scale()
+    }
+
+    /// `force` (3,) m/s^2 world, `torque` (3,) N m body, `thrust_scale`; None under the paper's law.
+    #[getter]
+    fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(estimates) = self.law.estimates() else { return Ok(None) };
+        let named = PyDict::new(py);
+        named.set_item("force", PyArray1::from_slice(py, estimates.force.value.as_slice()))?;
+        named.set_item("torque", PyArray1::from_slice(py, estimates.torque.as_slice()))?;
+        named.set_item("thrust_scale", estimates.scale)?;
+        Ok(Some(named))
+    }
+
+    /// What the last step went through, float32: errors, filters and desired motion, each (3,), `desired_attitude` and
+    /// `attitude_error` (4,), `lift_sign`. None after a reset.
+    #[getter]
+    fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(d) = &self.diagnostics else { return Ok(None) };
+        let named = PyDict::new(py);
+        for (name, vector) in [
+            ("position_error", &d.position_error),
+            ("velocity_error", &d.velocity_error),
+            ("z_1", &d.z_1),
+            ("z_2", &d.z_2),
+            ("feedback", &d.feedback),
+            ("filtered", &d.filtered),
+            ("intermediate", &d.intermediate),
+            ("acceleration_command", &d.acceleration_command),
+            ("desired_angular_velocity", &d.desired_angular_velocity),
+            ("desired_angular_acceleration", &d.desired_angular_acceleration),
+            ("mrp", &d.mrp),
+            ("angular_velocity_error", &d.angular_velocity_error),
+            ("attitude_feedback", &d.attitude_feedback),
+            ("rate_feedback", &d.rate_feedback),
+        ] {
+            named.set_item(name, PyArray1::from_slice(py, vector.as_slice()))?;
+        }
+        for (name, q) in [("desired_attitude", &d.desired_attitude), ("attitude_error", &d.attitude_error)] {
+            named.set_item(name, PyArray1::from_slice(py, &[q.w, q.i, q.j, q.k]))?;
+        }
+        named.set_item("lift_sign", d.lift_sign)?;
+        Ok(Some(named))
+    }
+}
+
+/// The law of rows of vehicles, each with its own memory. Rows are shared out to all cores.
+#[pyclass(module = "saturated_hybrid")]
+pub struct LawRows {
+    reset: law::Law,
+    laws: Vec<law::Law>,
+}
+
+#[pymethods]
+impl LawRows {
+    #[new]
+    fn new(scenario: &Scenario, rows: usize) -> PyResult<Self> {
+        let reset = flight::law(&scenario.read).map_err(refused)?;
+        Ok(Self { laws: vec![reset.clone(); rows], reset })
+    }
+
+    fn __len__(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// Resets the rows that are chosen, (rows,) bool; all of them if none are given.
+    #[pyo3(signature = (chosen=None))]
+    fn reset(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
+        for number in numbers(chosen, self.laws.len())? {
+            self.laws[number] = self.reset.clone();
+        }
+        Ok(())
+    }
+
+    /// One tick of every row: states (rows, 13), references (rows, 19), to wrenches (rows, 4).
+    ///
+    /// If one is refused, the error names the row and no row has changed.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        states: &Bound<'py, PyAny>,
+        references: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let count = self.laws.len();
+        let states = rows::<STATE>(states, count, "states")?;
+        let references = rows::<REFERENCE>(references, count, "references")?;
+        let laws = &self.laws;
+        let stepped: Result<Vec<(law::Law, [f32; 4])>, String> = py.detach(|| {
+            let given = laws.par_iter().zip(&states).zip(&references).enumerate().with_min_len(ROWS_AT_ONCE);
+            let one = |(number, ((law, state), reference)): (usize, ((&law::Law, _), _))| {
+                let mut law = law.clone();
+                let (wrench, _) = step(&mut law, state, reference).map_err(|error| format!("row {number}: {error}"))?;
+                Ok((law, of_wrench(&wrench)))
+            };
+            given.map(one).collect()
+        });
+        let (laws, wrenches) = stepped.map_err(refused)?.into_iter().unzip();
+        self.laws = laws;
+        array(py, wrenches)
+    }
+
+    /// As `Law.hold_estimates`, of the rows that are chosen.
+    #[pyo3(signature = (chosen=None))]
+    fn hold_estimates(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
+        for number in numbers(chosen, self.laws.len())? {
+            self.laws[number].hold_estimates();
+        }
+        Ok(())
+    }
+
+    /// As `Law.for_rotors`, of every row: (rows, 4).
+    fn for_rotors<'py>(&self, py: Python<'py>, wrenches: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let wrenches = rows::<WRENCH>(wrenches, self.laws.len(), "wrenches")?;
+        let asked = self.laws.iter().zip(&wrenches).map(|(law, row)| of_wrench(&for_rotors(law, &wrench(row))));
+        array(py, asked.collect())
+    }
+
+    /// (rows,).
+    #[getter]
+    fn thrust_scale<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_vec(py, self.laws.iter().map(law::Law::thrust_scale).collect())
+    }
+}
+
+/// What rotors are asked for, as flights and boards have it.
+fn for_rotors(law: &law::Law, wrench: &Wrench) -> Wrench {
+    wrench.scaled(1.0 / law.thrust_scale())
+}
+
+/// The numbers of the rows that are chosen: all of them, where none are.
+///
+/// # Errors
+/// If there are more or fewer rows.
+pub fn numbers(chosen: Option<Vec<bool>>, count: usize) -> PyResult<Vec<usize>> {
+    let chosen = chosen.unwrap_or_else(|| vec![true; count]);
+    if chosen.len() == count {
+        Ok((0..count).filter(|number| chosen[*number]).collect())
+    } else {
+        Err(refused_field("chosen", format!("must have shape ({count},), found ({},)", chosen.len())))
+    }
+}
+
+fn step(
+    law: &mut law::Law,
+    state: &[f64; STATE],
+    reference: &[f64; REFERENCE],
+) -> Result<(Wrench, Diagnostics), String> {
+    let said = |error: &dyn Display| error.to_string();
+    let reference = asked(reference).map_err(|error| format!("reference.{error}"))?;
+    law.step(&told(state), &reference).map_err(|error| said(&error))
+}

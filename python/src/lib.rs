@@ -1,0 +1,55 @@
+//! What `host-sim` does, for Python: `saturated_hybrid._core`, which `source/saturated_hybrid` shows to its users.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`scenarios`] | scenarios from files, text and the built-in ones; edited copies; their references |
+//! | [`laws`] | the control law, one vehicle or rows of them |
+//! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
+//! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
+//! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
+//! | [`vehicles`] | rows of simulated vehicles, for environments |
+//! | [`rows`] | numpy arrays as states, references and wrenches, and back |
+//! | [`refused`], [`waiting`] | errors; long work that lets other threads run and Ctrl-C through |
+//!
+//! Arrays that come in may have any numeric type and are rounded once, where the law's single precision begins; those that go
+//! out have the precision of what they hold. What documents the items here is their docstring in Python, which
+//! `source/saturated_hybrid/_core.pyi` repeats with types; a test compares the two.
+
+mod allocations;
+mod campaigns;
+mod certificates;
+mod flights;
+mod governors;
+mod laws;
+mod refused;
+mod rows;
+mod scenarios;
+mod tuning;
+mod vehicles;
+mod waiting;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::allocations::Allocation;
+    #[pymodule_export]
+    use super::campaigns::{Campaign, campaign, merge};
+    #[pymodule_export]
+    use super::certificates::{Certificate, Inequality, Loop, certify};
+    #[pymodule_export]
+    use super::flights::{Claim, Flight, fly};
+    #[pymodule_export]
+    use super::governors::Governor;
+    #[pymodule_export]
+    use super::laws::{Law, LawRows};
+    #[pymodule_export]
+    use super::rows::{reference, state};
+    #[pymodule_export]
+    use super::scenarios::Scenario;
+    #[pymodule_export]
+    use super::tuning::{Tuned, tune};
+    #[pymodule_export]
+    use super::vehicles::VehicleRows;
+}

@@ -1,0 +1,220 @@
+//! Arrays as states, references and wrenches, and back. One row each; the columns, SI units, rad:
+//!
+//! ```text
+//! state      13   p(3) v(3) world, z up | q(4) scalar first, body to world | omega(3) body
+//! reference  19   p_d(3) v(3) a(3) j(3) s(3) world | nu_x nu_y (unit) | psi' psi''
+//! wrench      4   thrust along body z | torque(3) body
+//! ```
+//!
+//! The order of `log.csv`. A heading is a direction, as everywhere, so that a row gives a reference back bit for bit.
+
+use crate::refused::{refused, refused_field};
+use controller_core::heading::Heading;
+use controller_core::reference::Reference;
+use controller_core::state::{State, Wrench};
+use nalgebra::{Quaternion, Vector2, Vector3};
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use scenario::body::{BodyState, attitude_from_euler};
+
+/// Columns of a state.
+pub const STATE: usize = 13;
+/// Columns of a reference.
+pub const REFERENCE: usize = 19;
+/// Columns of a wrench.
+pub const WRENCH: usize = 4;
+
+/// Rows of `N` numbers each.
+pub type Rows<const N: usize> = Vec<[f64; N]>;
+
+/// The numbers of `array` and its shape.
+fn numbers(array: &Bound<'_, PyAny>, field: &str) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    let read: PyArrayLikeDyn<'_, f64, AllowTypeChange> =
+        array.extract().map_err(|_| refused_field(field, "must be an array of numbers"))?;
+    Ok((read.as_array().iter().copied().collect(), read.shape().to_vec()))
+}
+
+/// One row.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn row<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<[f64; N]> {
+    let (values, shape) = numbers(array, field)?;
+    let other = |_| refused_field(field, format!("must have shape ({N},), found {}", shown(&shape)));
+    if shape.len() == 1 { values.try_into().map_err(other) } else { Err(other(values)) }
+}
+
+/// So many rows.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyResult<Rows<N>> {
+    let (values, shape) = numbers(array, field)?;
+    if shape != [count, N] {
+        return Err(refused_field(field, format!("must have shape ({count}, {N}), found {}", shown(&shape))));
+    }
+    let (rows, _) = values.as_chunks();
+    Ok(rows.to_vec())
+}
+
+/// Numbers of any count.
+///
+/// # Errors
+/// Names `field` if it is not one-dimensional.
+pub fn vector(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vec<f64>> {
+    let (values, shape) = numbers(array, field)?;
+    if shape.len() == 1 {
+        Ok(values)
+    } else {
+        Err(refused_field(field, format!("must have shape (n,), found {}", shown(&shape))))
+    }
+}
+
+fn shown(shape: &[usize]) -> String {
+    let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+    if let [size] = sizes.as_slice() { format!("({size},)") } else { format!("({})", sizes.join(", ")) }
+}
+
+/// Rows as an array.
+pub fn array<'py, T: numpy::Element, const N: usize>(
+    py: Python<'py>,
+    rows: Vec<[T; N]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let count = rows.len();
+    PyArray1::from_vec(py, rows.into_iter().flatten().collect()).reshape([count, N])
+}
+
+/// Three of the numbers of a row, from `first` on.
+fn three<const N: usize>(row: &[f64; N], first: usize) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| row[first + axis])
+}
+
+/// The vehicle's state.
+pub fn body(row: &[f64; STATE]) -> BodyState {
+    BodyState {
+        position: three(row, 0),
+        velocity: three(row, 3),
+        attitude: Quaternion::new(row[6], row[7], row[8], row[9]),
+        angular_velocity: three(row, 10),
+    }
+}
+
+/// What the law is told.
+pub fn told(row: &[f64; STATE]) -> State {
+    body(row).measured()
+}
+
+/// A state as a row.
+pub fn of_body(state: &BodyState) -> [f64; STATE] {
+    let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
+    [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z]
+}
+
+/// What the law is told as a row.
+pub fn of_told(state: &State) -> [f64; STATE] {
+    let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
+    [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z].map(f64::from)
+}
+
+/// The reference of a row.
+///
+/// # Errors
+/// If its heading is none.
+pub fn asked(row: &[f64; REFERENCE]) -> Result<Reference, controller_core::error::ParameterError> {
+    let single = |first| three(row, first).map(|value| value as f32);
+    let direction = Vector2::new(row[15] as f32, row[16] as f32);
+    let (rate, acceleration) = (row[17] as f32, row[18] as f32);
+    let heading =
+        Heading::restored(direction, rate, acceleration).or_else(|_| Heading::new(direction, rate, acceleration))?;
+    let (position, velocity, acceleration) = (single(0), single(3), single(6));
+    Ok(Reference { position, velocity, acceleration, jerk: single(9), snap: single(12), heading })
+}
+
+/// A reference as a row.
+pub fn of_asked(reference: &Reference) -> [f32; REFERENCE] {
+    let Reference { position, velocity, acceleration, jerk, snap, heading } = reference;
+    let mut row = [0.0; REFERENCE];
+    for (place, vector) in [position, velocity, acceleration, jerk, snap].into_iter().enumerate() {
+        row[3 * place..3 * place + 3].copy_from_slice(vector.as_slice());
+    }
+    let direction = heading.direction();
+    row[15..].copy_from_slice(&[direction.x, direction.y, heading.rate(), heading.acceleration()]);
+    row
+}
+
+/// The wrench of a row.
+pub fn wrench(row: &[f64; WRENCH]) -> Wrench {
+    Wrench { thrust: row[0] as f32, torque: three(row, 1).map(|value| value as f32) }
+}
+
+/// A wrench as a row.
+pub fn of_wrench(wrench: &Wrench) -> [f32; WRENCH] {
+    [wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z]
+}
+
+/// A vector argument; zero where it is left out.
+fn or_zero(argument: Option<&Bound<'_, PyAny>>, field: &str) -> PyResult<Vector3<f64>> {
+    argument.map_or(Ok(Vector3::zeros()), |array| Ok(row::<3>(array, field)?.into()))
+}
+
+/// A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin, level,
+/// facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll).
+#[pyfunction]
+#[pyo3(signature = (position=None, velocity=None, attitude=None, angular_velocity=None, *, euler=None))]
+pub fn state<'py>(
+    py: Python<'py>,
+    position: Option<&Bound<'py, PyAny>>,
+    velocity: Option<&Bound<'py, PyAny>>,
+    attitude: Option<&Bound<'py, PyAny>>,
+    angular_velocity: Option<&Bound<'py, PyAny>>,
+    euler: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let attitude = match (attitude, euler) {
+        (Some(_), Some(_)) => return Err(refused_field("euler", "attitude is given already; leave one of them out")),
+        (Some(attitude), None) => {
+            let [w, i, j, k] = row::<4>(attitude, "attitude")?;
+            Quaternion::new(w, i, j, k)
+        }
+        (None, Some(euler)) => {
+            let [roll, pitch, yaw] = row::<3>(euler, "euler")?;
+            attitude_from_euler(roll, pitch, yaw)
+        }
+        (None, None) => Quaternion::identity(),
+    };
+    let state = BodyState {
+        position: or_zero(position, "position")?,
+        velocity: or_zero(velocity, "velocity")?,
+        attitude,
+        angular_velocity: or_zero(angular_velocity, "angular_velocity")?,
+    };
+    Ok(PyArray1::from_slice(py, &of_body(&state)))
+}
+
+/// A reference (19,), world: (3,) each, in m to m/s^4; rad, rad/s, rad/s^2. What is left out is zero.
+#[pyfunction]
+#[pyo3(signature = (position=None, velocity=None, acceleration=None, jerk=None, snap=None, yaw=0.0, yaw_rate=0.0, yaw_acceleration=0.0))]
+#[allow(clippy::too_many_arguments)] // its user names them
+pub fn reference<'py>(
+    py: Python<'py>,
+    position: Option<&Bound<'py, PyAny>>,
+    velocity: Option<&Bound<'py, PyAny>>,
+    acceleration: Option<&Bound<'py, PyAny>>,
+    jerk: Option<&Bound<'py, PyAny>>,
+    snap: Option<&Bound<'py, PyAny>>,
+    yaw: f64,
+    yaw_rate: f64,
+    yaw_acceleration: f64,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let single = |argument, field| Ok::<_, PyErr>(or_zero(argument, field)?.map(|value| value as f32));
+    let direction = Vector2::new(yaw.cos() as f32, yaw.sin() as f32);
+    let heading = Heading::new(direction, yaw_rate as f32, yaw_acceleration as f32).map_err(refused)?;
+    let reference = Reference {
+        position: single(position, "position")?,
+        velocity: single(velocity, "velocity")?,
+        acceleration: single(acceleration, "acceleration")?,
+        jerk: single(jerk, "jerk")?,
+        snap: single(snap, "snap")?,
+        heading,
+    };
+    Ok(PyArray1::from_slice(py, &of_asked(&reference)))
+}

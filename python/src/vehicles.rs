@@ -1,0 +1,185 @@
+//! Rows of simulated vehicles under wrenches that somebody else decides on: what environments are made of.
+//!
+//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the scenario has
+//! any. A row whose motion is no longer finite stays where it was until it is put somewhere.
+
+use crate::laws::numbers;
+use crate::refused::{refused, refused_field};
+use crate::rows::{STATE, WRENCH, array, body, of_asked, of_body, of_told, rows, wrench};
+use crate::scenarios::Scenario;
+use host_sim::sensors::Sensors;
+use host_sim::vehicle::SimulatedVehicle;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use scenario::body::{BodyState, GREATEST_TURN_PER_STEP};
+
+/// Rows that one core takes at a time.
+const ROWS_AT_ONCE: usize = 16;
+
+/// One vehicle.
+struct Row {
+    vehicle: SimulatedVehicle,
+    sensors: Option<Sensors>,
+    /// What its controller is told now.
+    told: [f64; STATE],
+    tick: u64,
+    lost: bool,
+}
+
+impl Row {
+    fn new(scenario: &scenario::Scenario) -> Self {
+        let vehicle = SimulatedVehicle::new(scenario, &scenario.configuration);
+        let mut row = Self { vehicle, sensors: Sensors::new(scenario), told: [0.0; STATE], tick: 0, lost: false };
+        row.measure();
+        row
+    }
+
+    fn measure(&mut self) {
+        let state = *self.vehicle.state();
+        self.told = match &mut self.sensors {
+            Some(sensors) => of_told(&sensors.measure(&state)),
+            None => of_body(&state),
+        };
+    }
+
+    /// Whether anything was clipped.
+    fn hold(&mut self, asked: &[f64; WRENCH], steps: u32) -> bool {
+        if self.lost {
+            return false;
+        }
+        let held = self.vehicle.hold(&wrench(asked), steps);
+        self.tick += 1;
+        match held {
+            Ok((clipped, _)) => {
+                self.measure();
+                clipped
+            }
+            Err(_) => {
+                self.lost = true;
+                false
+            }
+        }
+    }
+}
+
+/// Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on.
+#[pyclass(module = "saturated_hybrid")]
+pub struct VehicleRows {
+    scenario: scenario::Scenario,
+    rows: Vec<Row>,
+}
+
+#[pymethods]
+impl VehicleRows {
+    #[new]
+    fn new(scenario: &Scenario, rows: usize) -> PyResult<Self> {
+        if scenario.read.reality.estimator.is_some() {
+            let problem = "estimator: rows of vehicles have none; leave that section out, [sensors] may stay";
+            return Err(refused_field(&scenario.file, problem));
+        }
+        let scenario = scenario.read.clone();
+        Ok(Self { rows: (0..rows).map(|_| Row::new(&scenario)).collect(), scenario })
+    }
+
+    fn __len__(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
+    /// turbulence's. If one is refused, the error names the row and no row has changed.
+    #[pyo3(signature = (states, chosen=None, seeds=None))]
+    fn place(&mut self, states: &Bound<'_, PyAny>, chosen: Option<Vec<bool>>, seeds: Option<Vec<u64>>) -> PyResult<()> {
+        let states = rows::<STATE>(states, self.rows.len(), "states")?;
+        let seeds = seeds.unwrap_or_else(|| (0..self.rows.len() as u64).collect());
+        if seeds.len() != self.rows.len() {
+            let count = self.rows.len();
+            return Err(refused_field("seeds", format!("must have shape ({count},), found ({},)", seeds.len())));
+        }
+        let chosen = numbers(chosen, self.rows.len())?;
+        let step = self.scenario.timing.step();
+        for number in &chosen {
+            let start = start(&states[*number], step);
+            start.map_err(|problem| refused(format!("row {number}: {problem}")))?;
+        }
+        for number in chosen {
+            let mut scenario = self.scenario.clone();
+            scenario.initial = body(&states[number]);
+            if let Some(sensors) = &mut scenario.reality.sensors {
+                sensors.seed = seeds[number];
+            }
+            if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
+                turbulence.seed = seeds[number];
+            }
+            self.rows[number] = Row::new(&scenario);
+        }
+        Ok(())
+    }
+
+    /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
+    /// rows' motion is no longer finite, each (rows,).
+    #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        wrenches: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<bool>>)> {
+        let wrenches = rows::<WRENCH>(wrenches, self.rows.len(), "wrenches")?;
+        if let Some(number) = wrenches.iter().position(|row| row.iter().any(|value| !value.is_finite())) {
+            return Err(refused(format!("row {number}: wrench: must be finite")));
+        }
+        let (vehicles, steps) = (&mut self.rows, self.scenario.timing.steps_per_tick);
+        let clipped = py.detach(|| {
+            let given = vehicles.par_iter_mut().zip(&wrenches).with_min_len(ROWS_AT_ONCE);
+            given.map(|(row, asked)| row.hold(asked, steps)).collect::<Vec<bool>>()
+        });
+        let lost = self.rows.iter().map(|row| row.lost).collect();
+        Ok((PyArray1::from_vec(py, clipped), PyArray1::from_vec(py, lost)))
+    }
+
+    /// (rows, 13): the true ones.
+    #[getter]
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array(py, self.rows.iter().map(|row| of_body(row.vehicle.state())).collect())
+    }
+
+    /// (rows, 13): what controllers are told, by the scenario's `[sensors]`; the true ones where it has none.
+    #[getter]
+    fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array(py, self.rows.iter().map(|row| row.told).collect())
+    }
+
+    /// (rows, 19): the scenario's, each at its row's own time.
+    #[getter]
+    fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let period = self.scenario.timing.period_us;
+        let at = |row: &Row| of_asked(&self.scenario.trajectory.at(row.tick * period));
+        array(py, self.rows.iter().map(at).collect())
+    }
+
+    /// (rows,): periods since each was placed.
+    #[getter]
+    fn ticks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        PyArray1::from_vec(py, self.rows.iter().map(|row| row.tick).collect())
+    }
+}
+
+/// Where a vehicle may be put: finite, a rotation, and no faster than its integration step can follow.
+fn start(row: &[f64; STATE], step: f64) -> Result<BodyState, String> {
+    let state = body(row);
+    if !state.is_finite() {
+        return Err("state: must be finite".to_owned());
+    }
+    let length = state.attitude.norm();
+    if (length - 1.0).abs() > 1e-3 {
+        return Err(format!("state.attitude: quaternion must have unit length within 1e-3, found length {length}"));
+    }
+    let greatest = GREATEST_TURN_PER_STEP / step;
+    let rate = state.angular_velocity.norm();
+    if rate > greatest {
+        return Err(format!(
+            "state.angular_velocity: must be at most {greatest:.4} rad/s for this plant step, found {rate}"
+        ));
+    }
+    Ok(state)
+}

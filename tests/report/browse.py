@@ -1,0 +1,255 @@
+"""Opens reports in a headless browser as a reader would, phone and desktop, light and dark. Run by .ci/report.
+
+    browse.py SCREENSHOTS REPORT…
+
+For every report: no message on the console, no request but for the file itself, the replay moves when it is played and by its
+slider, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
+"""
+
+import base64
+import json
+import pathlib
+import sys
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+SIZES = {"phone": (390, 844), "desktop": (1280, 900)}
+
+
+def browser(chromium, driver):
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    # As root, in a container, without a graphics card.
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     "--disable-background-networking"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    found = webdriver.Chrome(options=options, service=Service(driver))
+    found.set_page_load_timeout(30)
+    found.set_script_timeout(30)
+    return found
+
+
+class Reader:
+    """A browser of one size and colour scheme with one report open."""
+
+    def __init__(self, chrome, report, size, scheme, still=False):
+        self.chrome, self.report, self.size = chrome, report, size
+        self.name = f"{report.parent.name}-{size}-{scheme}"
+        width, height = SIZES[size]
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 2 if size == "phone" else 1,
+                   "mobile": size == "phone"}
+        chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        chrome.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": size == "phone"})
+        features = [{"name": "prefers-color-scheme", "value": scheme},
+                    {"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"}]
+        chrome.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": features})
+        chrome.get_log("performance"), chrome.get_log("browser")
+        chrome.get(report.resolve().as_uri())
+        self.frames()
+
+    def script(self, text, *arguments):
+        return self.chrome.execute_script(text, *arguments)
+
+    def expect(self, holds, what):
+        if not holds:
+            raise SystemExit(f"error: {self.name}: {what}")
+
+    def frames(self):
+        """Waits until what was asked for is drawn."""
+        self.chrome.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
+
+    def element(self, selector):
+        return self.chrome.find_element(By.CSS_SELECTOR, selector)
+
+    def seen(self, selector):
+        """The element, scrolled to."""
+        element = self.element(selector)
+        self.script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", element)
+        return element
+
+    def picture(self, selector="canvas.stage"):
+        """What a canvas shows."""
+        self.frames()
+        return self.script("return document.querySelector(arguments[0]).toDataURL()", selector)
+
+    def time(self):
+        return float(self.script("return document.querySelector('.now').textContent").split()[0])
+
+    def quiet(self):
+        """Nothing on the console, and no request."""
+        log = self.chrome.get_log("browser")
+        self.expect(not log, f"on the console: {log}")
+        requested = []
+        for entry in self.chrome.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                requested.append(message["params"]["request"]["url"])
+        self.expect(requested == [self.report.resolve().as_uri()], f"requested {requested}")
+
+    def fits(self):
+        width = self.script("return [document.documentElement.scrollWidth, innerWidth]")
+        self.expect(width[0] <= width[1], f"the page is {width[0]} pixels wide on a screen of {width[1]}")
+        small = self.script("""return [...document.querySelectorAll("button, select, input")].filter((e) => e.offsetParent)
+            .filter((e) => e.offsetHeight < 24).map((e) => e.outerHTML)""")
+        self.expect(not small, f"too small for a finger: {small[:3]}")
+
+    def drawn(self):
+        """Every plot that was scrolled to shows something."""
+        boxes = self.chrome.find_elements(By.CSS_SELECTOR, ".chart")
+        for place, box in enumerate(boxes):
+            self.script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", box)
+            # The observer that says which plots are seen comes after the frame.
+            for _ in range(50):
+                self.frames()
+                canvas = self.script("const c = arguments[0].firstChild; return [c.width, c.height]", box)
+                if canvas != [300, 150]:
+                    break
+            used = self.script("""const c = arguments[0].firstChild;
+                return c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((byte) => byte > 0)""", box)
+            self.expect(used and canvas != [300, 150], f"plot {place} is empty")
+        return len(boxes)
+
+    def replay(self):
+        """It moves when it is played and by its slider, and stands still otherwise."""
+        first, start = self.picture(), self.time()
+        self.frames()
+        self.expect(self.picture() == first and self.time() == start, "the replay moves unasked")
+        self.seen(".play").click()
+        until = time.monotonic() + 10
+        while self.time() < start + 0.3 and time.monotonic() < until:
+            self.frames()
+        self.seen(".play").click()
+        played, at = self.picture(), self.time()
+        self.expect(played != first and at >= start + 0.3, f"the replay does not play: from {start} s to {at} s in 10 s")
+        self.frames()
+        self.expect(self.time() == at, "the replay does not pause")
+        self.script("""const slider = document.querySelector("input.time");
+            slider.value = 0.6 * slider.max; slider.dispatchEvent(new Event("input"))""")
+        end = float(self.script("return document.querySelector('input.time').max"))
+        self.expect(abs(self.time() - 0.6 * end) < 0.02 and self.picture() != played, "the slider moves nothing")
+        orbited = self.picture()
+        ActionChains(self.chrome).click_and_hold(self.seen("canvas.stage")).move_by_offset(60, 20).release().perform()
+        self.expect(self.picture() != orbited, "dragging does not orbit")
+
+    def keyboard(self):
+        """From the top by Tab alone: the skip link, then replay and plots by their keys."""
+        keys = lambda *pressed: ActionChains(self.chrome).send_keys(*pressed).perform()
+        focused = lambda: self.script("return document.activeElement.className || document.activeElement.tagName")
+        keys(Keys.TAB)
+        self.expect(focused() == "skip", f"the first Tab leads to {focused()}")
+        for _ in range(30):
+            if focused() == "stage":
+                break
+            keys(Keys.TAB)
+        self.expect(focused() == "stage", "Tab does not reach the replay")
+        for key, what in ((Keys.ARROW_LEFT, "orbit"), ("+", "come closer"), ("f", "follow"), ("r", "reset")):
+            before = self.picture()
+            keys(key)
+            self.expect(self.picture() != before, f"no key to {what}")
+        keys(Keys.HOME)
+        self.expect(self.time() == 0, "Home does not lead to the start")
+        keys(".")
+        self.expect(0 < self.time() < 1, "a full stop does not step")
+        keys(Keys.SPACE)
+        for _ in range(20):
+            self.frames()
+        keys(Keys.SPACE)
+        self.expect(self.time() > 0.02, "Space does not play")
+        for _ in range(80):
+            if focused() == "chart":
+                break
+            keys(Keys.TAB)
+        self.expect(focused() == "chart", "Tab does not reach a plot")
+        before, shown = self.time(), self.element(".range").text
+        keys(Keys.ARROW_RIGHT)
+        self.expect(self.time() > before, "the cursor of a plot does not move")
+        keys("+")
+        self.expect(self.element(".range").text != shown, "no key zooms")
+        zoomed = self.element(".range").text
+        keys(Keys.PAGE_DOWN)
+        self.expect(self.element(".range").text != zoomed, "no key pans")
+        keys("0")
+        self.expect(self.element(".range").text == shown, "0 does not show all")
+        time.sleep(0.5)
+        said = self.element("#live").get_attribute("textContent")
+        self.expect("x " in said and " m" in said, f"nothing is told to a screen reader: {said!r}")
+
+    def pointer(self):
+        """A mouse reads values, and zooms by dragging."""
+        chart = self.seen(".chart")
+        reading = lambda: self.element(".reading").text
+        ActionChains(self.chrome).move_to_element_with_offset(chart, 0, 0).perform()
+        before = reading()
+        ActionChains(self.chrome).move_to_element_with_offset(chart, 80, 0).perform()
+        self.expect(reading() != before and reading().endswith(" m"), f"the cursor reads {before!r}, then {reading()!r}")
+        shown = self.element(".range").text
+        ActionChains(self.chrome).click_and_hold(chart).move_by_offset(60, 0).release().perform()
+        self.expect(self.element(".range").text != shown, "dragging does not zoom")
+        ActionChains(self.chrome).double_click(chart).perform()
+        self.expect(self.element(".range").text == shown, "a double click does not show all")
+
+    def shoot(self, folder, whole=False):
+        self.script("scrollTo({top: 0, behavior: 'instant'})")
+        self.frames()
+        asked = {"format": "png", "captureBeyondViewport": whole}
+        if whole:
+            height = self.script("return document.documentElement.scrollHeight")
+            asked["clip"] = {"x": 0, "y": 0, "width": SIZES[self.size][0], "height": height, "scale": 1}
+        shot = self.chrome.execute_cdp_cmd("Page.captureScreenshot", asked)
+        (folder / f"{self.name}.png").write_bytes(base64.b64decode(shot["data"]))
+
+    def paper(self, folder):
+        """Printed it is light whatever the screen, without controls, and the figures are there."""
+        printed = self.chrome.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "paperWidth": 8.27, "paperHeight": 11.69})
+        document = base64.b64decode(printed["data"])
+        (folder / f"{self.name}.pdf").write_bytes(document)
+        pages = document.count(b"/Type /Page\n") + document.count(b"/Type /Page ")
+        self.expect(document[:5] == b"%PDF-" and len(document) > 50_000, f"paper: {len(document)} bytes")
+        self.expect(2 <= pages <= 20, f"paper: {pages} pages")
+        self.chrome.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print", "features": [
+            {"name": "prefers-color-scheme", "value": "dark"}]})
+        self.script("dispatchEvent(new Event('beforeprint'))")
+        look = self.script("""const hidden = (s) => getComputedStyle(document.querySelector(s)).display === "none";
+            return [getComputedStyle(document.body).backgroundColor, hidden("nav"), hidden(".transport"), hidden(".tools"),
+                getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()]""")
+        self.script("dispatchEvent(new Event('afterprint'))")
+        self.expect(look == ["rgb(255, 255, 255)", True, True, True, "#22272b"], f"paper looks like the screen: {look}")
+
+
+def main():
+    chromium, driver, folder, *reports = sys.argv[1:]
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    chrome = browser(chromium, driver)
+    try:
+        for report in map(pathlib.Path, reports):
+            started, plots = time.monotonic(), 0
+            for size in SIZES:
+                for scheme in ("light", "dark"):
+                    reader = Reader(chrome, report, size, scheme)
+                    reader.fits()
+                    if size == "desktop":
+                        reader.keyboard()
+                        reader.pointer()
+                    reader.replay()
+                    if (size, scheme) in (("desktop", "light"), ("phone", "dark")):
+                        plots = reader.drawn()
+                    reader.shoot(folder, whole=True)
+                    reader.quiet()
+            reader.paper(folder)
+            still = Reader(chrome, report, "desktop", "light", still=True)
+            still.expect(still.script("return getComputedStyle(document.documentElement).scrollBehavior") == "auto",
+                         "it scrolls smoothly for whoever wants no motion")
+            still.quiet()
+            print(f"{report}: {plots} plots, {time.monotonic() - started:.1f} s")
+    finally:
+        chrome.quit()
+
+
+main()
