@@ -1,7 +1,7 @@
 //! Rows of simulated vehicles under wrenches that somebody else decides on: what environments are made of.
 //!
 //! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the scenario has
-//! any. A row whose motion is no longer finite stays where it was until it is put somewhere.
+//! any. A row whose motion is no longer finite goes no further until it is put somewhere.
 
 use crate::laws::numbers;
 use crate::refused::{refused, refused_field};
