@@ -10,6 +10,7 @@
 //! | [`sensors`] | what the controller is told of the state |
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
+//! | [`controller`], [`rivals`] | what flies: our law, or other laws to compare it with |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`piloted`] | the whole pilot in closed loop, supervisor, estimator and conditioner included |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
@@ -21,6 +22,7 @@ pub mod actuators;
 pub mod campaign;
 pub mod certify;
 pub mod claims;
+pub mod controller;
 pub mod course;
 pub mod estimation;
 pub mod flight;
@@ -38,6 +40,7 @@ pub mod plots;
 pub mod progress;
 pub mod reality;
 pub mod recording;
+pub mod rivals;
 pub mod sensors;
 pub mod sitl;
 pub mod table;

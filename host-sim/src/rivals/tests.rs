@@ -1,0 +1,1 @@
+//! Each rival in its home conditions.
