@@ -1,8 +1,9 @@
 //! Flies a campaign of recoveries and prints what it showed: `cargo run --release -p host-sim --example recoveries -- FILE COUNT`.
 
 use controller_core::certificate::certified::Certified;
+use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
-use host_sim::campaign::recoveries::{Outcome, recoveries};
+use host_sim::campaign::recoveries::recoveries;
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;

@@ -4,7 +4,9 @@
 //! moves, how noisy the sensors are, what is asked for. Each flight's circumstances come from its number alone, so a campaign gives
 //! the same again whatever the number of cores, and any of its flights can be flown again by itself.
 
+pub mod draw;
 pub mod hours;
+pub mod outcome;
 pub mod recoveries;
 
 use crate::flight::Flight;

@@ -1,6 +1,7 @@
 //! A whole scenario file: its sections, read into one flight that can be flown.
 
 use crate::body::BodyState;
+use crate::campaign::{self, Campaign};
 use crate::reality::{self, Reality, estimator, sensors};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
@@ -23,7 +24,7 @@ pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
 
 /// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
-const MODEL_SECTIONS: [&str; 13] = [
+const MODEL_SECTIONS: [&str; 14] = [
     "name",
     "duration",
     "vehicle",
@@ -37,6 +38,7 @@ const MODEL_SECTIONS: [&str; 13] = [
     "initial",
     "reference",
     "reference_bounds",
+    "campaign",
 ];
 
 /// A flight that can be flown.
@@ -61,6 +63,8 @@ pub struct Scenario {
     pub reference: ReferenceKind,
     /// The same, ready to be evaluated.
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
+    /// How its circumstances differ from flight to flight of a campaign.
+    pub campaign: Campaign,
 }
 
 impl Scenario {
@@ -114,7 +118,19 @@ impl Scenario {
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;
-        Ok(Self { name, timing, configuration, rotor_lag, delay_steps, reality, initial, reference, trajectory })
+        let campaign = campaign::read(root, &timing, &configuration)?;
+        Ok(Self {
+            name,
+            timing,
+            configuration,
+            rotor_lag,
+            delay_steps,
+            reality,
+            initial,
+            reference,
+            trajectory,
+            campaign,
+        })
     }
 
     /// From a tick to the moment its wrench acts, s.

@@ -10,6 +10,7 @@
 //! | `[sampling]` | no delay |
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[truth]`, `[drag]`, `[wind]`, `[disturbance]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
+//! | `[campaign]` | the circumstances of [`campaign`] |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
 //! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the list of sections
@@ -22,6 +23,7 @@ pub mod actuation;
 pub mod board;
 pub mod body;
 pub mod bounds;
+pub mod campaign;
 pub mod extended;
 pub mod file;
 pub mod initial;

@@ -13,6 +13,9 @@ pub struct Hover {
 }
 
 impl Hover {
+    /// At the world's origin, along world x.
+    pub const ORIGIN: Self = Self { position: Vector3::new(0.0, 0.0, 0.0), heading: Heading::FORWARD };
+
     /// Holds `position`, pointing along `heading` (its rates are dropped: a hover is at rest).
     ///
     /// # Errors

@@ -1,0 +1,146 @@
+//! What one flight of a campaign showed, against what its certificate has proven.
+//!
+//! | figure | |
+//! |---|---|
+//! | height lost | start minus lowest height |
+//! | rise | greatest height above the start and above the reference |
+//! | settled | since when it has been within [`NEAR`] of its reference, for good |
+//! | final error | distance from the reference at the last tick |
+//! | share | the greatest part of a certified bound that was used: 1 is all of it |
+//!
+//! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that of a torque,
+//! whose bound is on both sides, |tau| over the bound.
+
+use crate::flight::{Flight, Tick};
+use controller_core::allocation::geometry::ROTORS_MAX;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::form::Interval;
+use scenario::Scenario;
+
+/// How near its reference a vehicle must stay to have settled, m.
+pub const NEAR: f64 = 0.2;
+/// Room for the rounding of a wrench's components against a bound, relative; for a rotor that may stand still, N.
+const ROUNDING: f64 = 1e-6;
+
+/// What one flight showed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Start minus lowest height, m.
+    pub height_lost: f64,
+    /// Greatest height above the start and the reference, m.
+    pub rise: f64,
+    /// Since when it has been near its reference, s; none if it was away at the end.
+    pub settled: Option<f64>,
+    /// Distance from the reference at the last tick, m.
+    pub final_error: f64,
+    /// Ticks with a command that a rotor could not follow.
+    pub clipped: u64,
+    /// Ticks with a thrust, torque or rotor command beyond its certified bound.
+    pub beyond: u64,
+    /// Greatest share of each certified bound that was used.
+    pub shares: Shares,
+    /// Ticks flown: fewer than the flight has where it could not go on.
+    pub ticks: u64,
+}
+
+/// Greatest shares of certified bounds.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Shares {
+    /// Of the thrust's interval.
+    pub thrust: f64,
+    /// Of the torque about each body axis.
+    pub torque: [f64; 3],
+    /// Of each rotor's interval; zero for rotors that are not there.
+    pub rotors: [f64; ROTORS_MAX],
+}
+
+impl Shares {
+    /// The greatest of all.
+    #[must_use]
+    pub fn greatest(&self) -> f64 {
+        self.torque.iter().chain(&self.rotors).copied().fold(self.thrust, f64::max)
+    }
+}
+
+impl Outcome {
+    /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to its end, the
+    /// height lost and the final error are infinite.
+    #[must_use]
+    pub fn of(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
+        let start = scenario.initial.position.z;
+        let mut outcome = Self {
+            height_lost: 0.0,
+            rise: f64::NEG_INFINITY,
+            settled: Some(0.0),
+            final_error: 0.0,
+            clipped: 0,
+            beyond: 0,
+            shares: Shares::default(),
+            ticks: 0,
+        };
+        for _ in 0..scenario.timing.ticks {
+            let Ok(tick) = flight.tick() else {
+                let lost = f64::INFINITY;
+                return Self { settled: None, height_lost: lost, final_error: lost, ..outcome };
+            };
+            outcome.observe(&tick, start, scenario.timing.period_us);
+            outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
+        }
+        Self { settled: outcome.settled.filter(|_| outcome.final_error <= NEAR), ..outcome }
+    }
+
+    fn observe(&mut self, tick: &Tick, start: f64, period_us: u64) {
+        let (position, wanted) = (&tick.state.position, tick.reference.position.map(f64::from));
+        self.height_lost = self.height_lost.max(start - position.z);
+        self.rise = self.rise.max(position.z - start.max(wanted.z));
+        self.clipped += u64::from(tick.clipped);
+        self.final_error = (position - wanted).norm();
+        self.ticks += 1;
+        if self.final_error > NEAR {
+            self.settled = Some((tick.time_us + period_us) as f64 * 1e-6);
+        }
+    }
+
+    /// Whether it recovered and tracks: it was flown to its end, and was near its reference then.
+    #[must_use]
+    pub fn tracks(&self) -> bool {
+        self.settled.is_some()
+    }
+
+    /// Whether it tracks, and no command went beyond its bound.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.tracks() && self.beyond == 0
+    }
+}
+
+impl Shares {
+    /// Takes a tick's commands into account; returns whether they are within their bounds.
+    fn take(&mut self, tick: &Tick, certificate: &Certificate) -> bool {
+        let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
+        let raised = 1.0 + ROUNDING;
+        let mut within = (proven.least / raised..=proven.greatest * raised).contains(&thrust);
+        self.thrust = self.thrust.max(share(thrust, proven));
+        let bounds = certificate.torque();
+        for (greatest, (torque, proven)) in self.torque.iter_mut().zip(tick.wrench.torque.iter().zip(bounds.iter())) {
+            let torque = f64::from(torque.abs());
+            *greatest = greatest.max(torque / proven);
+            within &= torque <= proven * raised;
+        }
+        for (rotor, (greatest, asked)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
+            let asked = f64::from(*asked);
+            let Some(proven) = certificate.rotor(rotor) else {
+                within = false;
+                continue;
+            };
+            *greatest = greatest.max(share(asked, proven));
+            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&asked);
+        }
+        within
+    }
+}
+
+/// How far from the middle of its interval, 1 at either end.
+fn share(value: f64, Interval { least, greatest }: Interval) -> f64 {
+    (2.0 * value - (least + greatest)).abs() / (greatest - least)
+}

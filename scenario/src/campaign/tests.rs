@@ -1,0 +1,84 @@
+//! `[campaign]` as users may write it, and as they must not.
+
+use super::*;
+use crate::Scenario;
+
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+
+fn parse(file: &str, section: &str) -> Result<Campaign, String> {
+    Scenario::parse(&format!("{file}\n{section}"), "f").map(|scenario| scenario.campaign).map_err(|error| error.what)
+}
+
+fn hummingbird(keys: &str) -> Result<Campaign, String> {
+    parse(HUMMINGBIRD, &format!("[campaign]\n{keys}"))
+}
+
+/// The example at the top of the module, which shows the defaults.
+#[test]
+fn the_documented_defaults_are_the_defaults() {
+    let module = include_str!("../campaign.rs");
+    let (_, example) = module.split_once("//! ```toml\n").unwrap();
+    let (example, _) = example.split_once("//! ```\n").unwrap();
+    let written = parse(HUMMINGBIRD, &example.replace("//! ", ""));
+    assert_eq!(written.unwrap(), parse(HUMMINGBIRD, "").unwrap());
+}
+
+#[test]
+fn every_key_is_read() {
+    let keys = "flights = 7\nseed = 3\nduration = 9\nreference = \"hover\"\nattitude = \"file\"\noffset = 1\nvelocity = 2\n\
+        rate = 3\nyaw_rate = 4\nwind = 5.5\ngust = 6\nturbulence = 7\ngyro_noise = 0.08\nposition_noise = 0.09\n\
+        attitude_noise_deg = 18\npose_delay = 0.11\nmass = 0.12\ninertia = 0.13\ncentre_of_mass = 0.14\n\
+        thrust_scale = 0.15\nrotor_scales = 0.16\n";
+    let Campaign { flights, seed, ranges } = hummingbird(keys).unwrap();
+    assert_eq!((flights, seed), (7, 3));
+    let noise = NoiseRanges { gyro: 0.08, position: 0.09, attitude: 18_f64.to_radians(), delay: 0.11 };
+    let model = ModelRanges { mass: 0.12, inertia: 0.13, centre_of_mass: 0.14, thrust_scale: 0.15, rotor_scales: 0.16 };
+    let expected = Ranges {
+        duration: 9.0,
+        reference: Asked::Hover,
+        attitude: false,
+        offset: 1.0,
+        velocity: 2.0,
+        rate: 3.0,
+        yaw_rate: 4.0,
+        wind: 5.5,
+        gust: 6.0,
+        turbulence: 7.0,
+        noise,
+        model,
+    };
+    assert_eq!(ranges, expected);
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    for (keys, expected) in [
+        ("flihgts = 3", "campaign.flihgts: unknown key, did you mean \"flights\"?"),
+        ("flights = 0", "campaign.flights: must be a whole number from 1 to"),
+        ("flights = 2.5", "campaign.flights: must be a whole number from 1 to"),
+        ("seed = -1", "campaign.seed: must be a whole number from 0 to"),
+        ("duration = 0", "campaign.duration: must be from 0.01 to 100000 s"),
+        ("reference = \"none\"", "campaign.reference: must be one of \"in-turn\", \"file\", \"hover\", found \"none\""),
+        ("attitude = 3", "campaign.attitude: must be a text"),
+        ("rate = 501.0", "campaign.rate: must be from 0 to 500 rad/s"),
+        ("yaw_rate = 501.0", "campaign.yaw_rate: must be from 0 to 500 rad/s"),
+        ("mass = 0.95", "campaign.mass: must be from 0 to 0.9"),
+        ("wind = nan", "campaign.wind: must be a finite number"),
+        ("wind = -1", "campaign.wind: must be from 0 to 100 m/s"),
+        ("gyro_noise = 0.1\n[sensors]\n", "campaign.gyro_noise: [sensors] says what is measured"),
+        ("pose_delay = 0.1\n[estimator]\n", "campaign.pose_delay: [estimator] says what is measured"),
+    ] {
+        let what = hummingbird(keys).unwrap_err();
+        assert!(what.starts_with(expected), "{keys}: {what}");
+    }
+    let what = parse(crate::PAPER, "[campaign]\nrotor_scales = 0.1\n").unwrap_err();
+    assert_eq!(what, "campaign.rotor_scales: needs [rotors]: add that section or leave this key out");
+}
+
+#[test]
+fn nobody_is_asked_to_bear_wind_that_its_law_gives_way_to() {
+    assert_eq!(parse(crate::PAPER, "").unwrap().ranges.wind, 0.0);
+    assert_eq!(hummingbird("").unwrap().ranges.wind, 5.0);
+    let extended = include_str!("../../../scenarios/paper-extended.toml");
+    assert!((parse(extended, "").unwrap().ranges.wind - 0.48).abs() < 1e-6);
+}
