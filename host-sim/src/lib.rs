@@ -16,12 +16,13 @@
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
-//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`], [`sitl`] | the commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`], [`compare`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
 pub mod campaign;
 pub mod certify;
 pub mod claims;
+pub mod compare;
 pub mod controller;
 pub mod course;
 pub mod estimation;

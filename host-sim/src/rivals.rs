@@ -17,11 +17,13 @@
 //! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | what several of them are made of |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
 //! | [`tuning`] | the search for them |
+//! | [`half_turn`] | what laws do about the half turn, with noise against them: unwinding and chattering |
 
 pub mod cascade;
 pub mod continuous;
 pub mod frame;
 pub mod gains;
+pub mod half_turn;
 pub mod indi;
 pub mod jet;
 pub mod kind;

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! position   v_s = v_d + K_p (p_d - p), limited across and along the vertical
-//! velocity   a_s = a_d + K_v e + K_i int(e) - K_d v_f',  e = v_s - v
+//! velocity   a_s = a_d + K_v e + K_i int(e) - K_d (v_f' - v_d'),  e = v_s - v
 //!            z_d along (a_s, a_s, g + a_s z), tilted at most so far; thrust limited, the vertical first
 //!            int' = e - (a_s - what the limits left of it) 2 / K_v        across: tracking anti-windup
 //! attitude   q_r: the shortest turn of body z to z_d;  q_d = q_r (the rest about z, its angle times w)
@@ -14,7 +14,7 @@
 //!
 //! The rate integral is held while a rotor saturates, and taken in the less the faster the error. Thrust is |a_s| along z_d, as body z
 //! sees it, so that it does not push down while the vehicle is upside down. Added, since ours has it: the angular velocity of the
-//! reference as feed-forward. Gains stand before accelerations.
+//! reference as feed-forward, and its acceleration in the velocity's D. Gains stand before accelerations.
 //!
 //! Home: setpoints from a pilot or a planner, moderate attitudes; it also recovers.
 
@@ -116,7 +116,7 @@ impl Cascade {
         let error = across.push(along) - seen.velocity;
         let (_, acceleration) = self.velocity.take(&seen.velocity);
         let asked = wanted.acceleration.0[0] + self.k_v.component_mul(&error) + self.velocity_integral
-            - self.k_d.component_mul(&acceleration);
+            - self.k_d.component_mul(&(acceleration - wanted.motion));
 
         // The vertical first, but some of the thrust is kept for moving across.
         let greatest = self.model.thrust_max / self.model.mass;

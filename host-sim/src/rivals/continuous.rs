@@ -26,6 +26,12 @@ impl Continuous {
     pub fn new(law: QuaternionFeedback) -> Self {
         Self { law, before: None }
     }
+
+    /// After one whole turn: the same attitude, on the side of q_0 < 0.
+    #[must_use]
+    pub fn after_a_turn(law: QuaternionFeedback) -> Self {
+        Self { law, before: Some(-Quaternion::identity()) }
+    }
 }
 
 impl Rival for Continuous {

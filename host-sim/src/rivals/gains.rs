@@ -62,7 +62,8 @@ impl Set {
         };
         let rivals = Kind::ALL.map(|kind| {
             let of = format!("{name}.{}", kind.name());
-            let table = item.get(kind.name()).and_then(Item::as_table).ok_or_else(|| failed(format!("{of}: missing")))?;
+            let table =
+                item.get(kind.name()).and_then(Item::as_table).ok_or_else(|| failed(format!("{of}: missing")))?;
             let number = |key: &str| {
                 let found = table.get(key).ok_or_else(|| failed(format!("{of}.{key}: missing")))?;
                 let number = found.as_float().or(found.as_integer().map(|whole| whole as f64));

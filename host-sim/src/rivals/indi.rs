@@ -107,13 +107,7 @@ impl Actuators {
         let left = (-ratio).exp();
         let hover = Vector4::new(model.mass * model.gravity, 0.0, 0.0, 0.0);
         let delay = (model.delay / model.period).round() as usize;
-        Self {
-            left,
-            mean_left: (1.0 - left) / ratio,
-            waiting: vec![hover; delay].into(),
-            acts: hover,
-            mean: hover,
-        }
+        Self { left, mean_left: (1.0 - left) / ratio, waiting: vec![hover; delay].into(), acts: hover, mean: hover }
     }
 
     /// A command is given; it, or one before it, acts over the period that begins.

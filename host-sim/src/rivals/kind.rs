@@ -34,15 +34,8 @@ pub enum Kind {
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Lee,
-        Self::Cascade,
-        Self::Mellinger,
-        Self::Indi,
-        Self::Nested,
-        Self::Continuous,
-        Self::Memoryless,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Lee, Self::Cascade, Self::Mellinger, Self::Indi, Self::Nested, Self::Continuous, Self::Memoryless];
 
     /// Its name in tables and in the file of gains.
     #[must_use]
@@ -97,9 +90,7 @@ impl Kind {
             Self::Cascade => Box::new(Cascade::new(model, gains.try_into().ok()?)),
             Self::Mellinger => Box::new(Mellinger::new(model, gains.try_into().ok()?)),
             Self::Indi => Box::new(Indi::new(model, gains.try_into().ok()?)),
-            Self::Nested => {
-                Box::new(Nested::new(model, scenario.configuration.vehicle(), gains.try_into().ok()?)?)
-            }
+            Self::Nested => Box::new(Nested::new(model, scenario.configuration.vehicle(), gains.try_into().ok()?)?),
             Self::Continuous => Box::new(Continuous::new(feedback(gains)?)),
             Self::Memoryless => Box::new(Memoryless(feedback(gains)?)),
         })

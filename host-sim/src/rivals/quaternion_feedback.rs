@@ -53,8 +53,8 @@ impl QuaternionFeedback {
         let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);
         let back = seen.attitude.inverse() * reference.attitude;
         let error = choose((desired.inverse() * seen.attitude).into_inner());
-        let feedback = self.k_q.component_mul(&error.imag()) * 2.0
-            + self.k_w.component_mul(&(seen.rate - back * reference.rate));
+        let feedback =
+            self.k_q.component_mul(&error.imag()) * 2.0 + self.k_w.component_mul(&(seen.rate - back * reference.rate));
         let inertia = &self.model.inertia;
         Commanded {
             thrust: self.model.mass * force.dot(&(seen.attitude * Vector3::z())),

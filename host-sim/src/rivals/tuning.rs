@@ -65,12 +65,13 @@ impl Judging for RivalJudge<'_> {
     }
 }
 
-/// Searches gains of every rival for the vehicle of `scenario`.
+/// Searches gains of every rival for the vehicle of `scenario`. The continuous law takes the memoryless one's, so that the two differ in
+/// nothing but their choice of quaternion.
 ///
 /// # Errors
 /// Names the rival of which no gains fly all trials to their end, or the signal that came.
 pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
-    let rivals = Kind::ALL.map(|kind| {
+    let search = |kind: Kind| {
         let judge = RivalJudge::new(scenario, kind, kind.start());
         let mut frontier = Frontier::default();
         let mut progress = Progress::new(kind.name(), u64::from(effort.generations));
@@ -85,6 +86,15 @@ pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Resul
         let (point, verdict) =
             evolution.best().ok_or_else(|| format!("{}: no gains fly every trial to its end", kind.name()))?;
         Ok((kind, RivalJudge::gains(&point), verdict.cost))
-    });
-    Ok(Set { rivals: rivals.into_iter().collect::<Result<_, _>>()? })
+    };
+    let mut rivals = Vec::new();
+    for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Continuous) {
+        rivals.push(search(kind)?);
+    }
+    if let Some((_, gains, _)) = rivals.iter().find(|(kind, ..)| *kind == Kind::Memoryless).cloned() {
+        let judge = RivalJudge::new(scenario, Kind::Continuous, &gains);
+        let cost = judge.judge(&judge.start()).cost;
+        rivals.insert(rivals.len() - 1, (Kind::Continuous, gains, cost));
+    }
+    Ok(Set { rivals })
 }
