@@ -102,25 +102,30 @@ impl SectionSix {
 
 /// What Section VI shows of the paper's design, of nested saturations with the same small motions, and of the quickest of them.
 pub fn claim(claims: &mut Claims, filtered: &SectionSix, others: [&SectionSix; 2]) {
-    let of = |get: fn(&SectionSix) -> f64| others.map(get);
+    let of = |get: &dyn Fn(&SectionSix) -> f64| others.map(get);
     let interval = |shown: &SectionSix| format!("{:.2} to {:.2}", shown.thrust.0, shown.thrust.1);
     let within = (3.51..=6.19).contains(&filtered.thrust.0) && filtered.thrust.1 <= 6.19;
     let both = others.map(interval).join("; ");
     claims.add("thrust within 3.51 to 6.19 N", "Section VI, N", interval(filtered), both, &[within]);
-    let axes: [(&str, fn(&SectionSix) -> f64); 3] =
-        [("x", |s| s.torque.x), ("y", |s| s.torque.y), ("z", |s| s.torque.z)];
-    for (axis, get) in axes {
+    let axes = [("x", 0), ("y", 1), ("z", 2)];
+    for (axis, index) in axes {
+        let get = |shown: &SectionSix| shown.torque[index];
         let figure = format!("Section VI, greatest |torque {axis}|, N m");
-        claims.less("less torque than nested saturations", &figure, get(filtered), &of(get));
+        claims.less("less torque than nested saturations", &figure, get(filtered), &of(&get));
     }
-    claims.less("bounded attitude references", "Section VI, greatest |omega_d|, rad/s", filtered.rate, &of(|s| s.rate));
+    claims.less(
+        "bounded attitude references",
+        "Section VI, greatest |omega_d|, rad/s",
+        filtered.rate,
+        &of(&|s| s.rate),
+    );
     let figure = "Section VI, last 10 s, greatest position error, mm";
     let precise = filtered.steady.0 < 1e-3;
-    let other = of(|s| 1e3 * s.steady.0).map(three).join("; ");
+    let other = of(&|s| 1e3 * s.steady.0).map(three).join("; ");
     claims.add("position error below 1 mm in the end", figure, three(1e3 * filtered.steady.0), other, &[precise]);
     let figure = "Section VI, within 0.2 m for good after, s";
-    claims.less("(not claimed) sooner there", figure, filtered.settled, &of(|s| s.settled));
-    claims.less("(not claimed) less height lost", "Section VI, m", filtered.height_lost, &of(|s| s.height_lost));
+    claims.less("(not claimed) sooner there", figure, filtered.settled, &of(&|s| s.settled));
+    claims.less("(not claimed) less height lost", "Section VI, m", filtered.height_lost, &of(&|s| s.height_lost));
 }
 
 /// Heading on a circle that tilts the vehicle by 14 degrees.

@@ -36,7 +36,7 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
     for rotor in 1..=manifest.rotors as usize {
         shares.push(figure(&format!("Share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor)));
     }
-    let figures = vec![
+    let figures = [
         figure("On the reference for good after", "s", "settled"),
         figure("Height lost", "m", "height_lost"),
         figure("Rise above start and reference", "m", "rise"),

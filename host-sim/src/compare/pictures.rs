@@ -27,6 +27,9 @@ const LOOKS: [(RGBColor, bool); 8] = [
     (GREY, true),
 ];
 
+/// One of the quantities shown, over time.
+type Get = fn(&Shown) -> &Vec<(f64, f64)>;
+
 /// One curve of each law.
 fn curves(names: &[&str], points: impl Fn(usize) -> Option<Vec<(f64, f64)>>) -> Vec<Curve> {
     let curve = |law: usize| {
@@ -44,7 +47,7 @@ fn panel(
     quantity: &'static str,
     scale: Scale,
     names: &[&str],
-    (shown, get): (&[Option<Shown>], fn(&Shown) -> &Vec<(f64, f64)>),
+    (shown, get): (&[Option<Shown>], Get),
     (end, least, most): (f64, f64, f64),
 ) -> Panel {
     let points = |law: usize| {
@@ -61,8 +64,8 @@ fn panel(
 /// [`PlotError`] if the drawing library refuses.
 pub fn scenes(names: &[&str], all: &[(&'static str, Vec<Option<Shown>>)]) -> Result<String, PlotError> {
     let of = |name: &str| all.iter().find(|(scene, _)| *scene == name).map_or(&[][..], |(_, shown)| shown);
-    let height: fn(&Shown) -> &Vec<(f64, f64)> = |shown| &shown.height;
-    let error: fn(&Shown) -> &Vec<(f64, f64)> = |shown| &shown.error;
+    let height: Get = |shown| &shown.height;
+    let error: Get = |shown| &shown.error;
     let free = (-f64::MAX, f64::MAX);
     four([
         panel(
@@ -94,7 +97,7 @@ pub fn random(
         let share = |time: f64| 100.0 * thrown.share(|one| one.settled.is_some_and(|settled| settled <= time));
         Some((0..=600).map(|step| f64::from(step) * 0.05).map(|time| (time, share(time))).collect())
     };
-    let error: fn(&Shown) -> &Vec<(f64, f64)> = |shown| &shown.error;
+    let error: Get = |shown| &shown.error;
     four([
         Panel {
             title: "Random starts: settled by then",

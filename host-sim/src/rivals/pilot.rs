@@ -120,7 +120,7 @@ impl RivalPilot {
         let not_finite = InputError::NotFinite { field: "wrench" };
         if let Some(mixer) = &self.mixer {
             let allocation = mixer.allocate(wrench)?;
-            return Ok((allocation.achieved, !allocation.is_exact()));
+            return Ok((mixer.wrench(&allocation.thrusts), !allocation.is_exact()));
         }
         if !(wrench.thrust + wrench.torque.sum()).is_finite() {
             return Err(not_finite);
