@@ -9,9 +9,9 @@
 
 use crate::configuration;
 use crate::outputs::Outputs;
+use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
-use crate::parameters::flight;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
