@@ -9,11 +9,12 @@
 
 use crate::configuration;
 use crate::outputs::Outputs;
+use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
-use crate::parameters::{Parameters, flight};
 use crate::shared::{Event, Severity, Shared};
 use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::estimator::{Estimator, Settings};
 use controller_core::flight::{FlightSettings, Memory, Pilot};
@@ -73,7 +74,7 @@ pub fn start_with<M: RawMutex>(
     if parameters.boot(built) {
         shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));
     }
-    let certification = certify(place, built, parameters);
+    let certification = certify(place, built.tuned(|name| parameters.raw(name)));
     log(certification);
     if certification.is_err() {
         for name in parameters.set_by_hand() {
@@ -94,16 +95,11 @@ pub fn start_with<M: RawMutex>(
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]
-fn certify<M: RawMutex>(
+fn certify(
     place: &'static Place,
-    built: &Built,
-    parameters: &Parameters<M>,
+    configuration: Result<Configuration, ParameterError>,
 ) -> &'static Result<Certified, Refused> {
-    let certified = || match built.tuned(|name| parameters.raw(name)) {
-        Ok(configuration) => Certified::new(configuration),
-        Err(error) => Err(Refused::Undefined(error)),
-    };
-    place.certification.init_with(certified)
+    place.certification.init_with(|| Certified::new(configuration.map_err(Refused::Undefined)?))
 }
 
 #[inline(never)]

@@ -1,16 +1,21 @@
 //! Bytes on the link, and frames whose checksums are right but whose numbers are anything. Whatever comes, a pose that is handed
-//! on is made of numbers and never twice of one time, and so is a setpoint made of them as far as the governor is concerned.
+//! on is made of numbers and never twice of one time, and so is a setpoint made of them as far as the governor is concerned. And whatever
+//! parameters were set, a vehicle could fly with what was taken.
 
 #![no_main]
 
 use arbitrary::Arbitrary;
+use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
+use firmware::parameters::table::{Name, PARAMETERS};
+use firmware::parameters::tuned::Built;
 use firmware::shared::Shared;
 use libfuzzer_sys::fuzz_target;
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::common::{MavMessage, MavParamType, PARAM_SET_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
+use std::sync::OnceLock;
 
 /// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET, COMMAND_LONG,
 /// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN, MISSION_REQUEST_LIST,
@@ -32,6 +37,9 @@ enum Event {
 
 fuzz_target!(|events: Vec<Event>| {
     let shared: Shared<NoopRawMutex> = Shared::new();
+    let built = built();
+    shared.parameters.boot(built);
+    shared.can_restart.raise();
     let (mut parser, mut receiver) = (Parser::new(), Receiver::new(&shared));
     let mut now = 1_000_000_u64;
     let mut last = Vec::new();
@@ -42,7 +50,10 @@ fuzz_target!(|events: Vec<Event>| {
             Event::Message { which, sender, sequence, mut payload } => {
                 payload.resize(255, 0);
                 let message = LISTENED[usize::from(which) % LISTENED.len()];
-                if let Ok(message) = MavMessage::parse(MavlinkVersion::V2, message, &payload) {
+                if let Ok(mut message) = MavMessage::parse(MavlinkVersion::V2, message, &payload) {
+                    if let MavMessage::PARAM_SET(set) = &mut message {
+                        named(set, sequence);
+                    }
                     let mut frame = MAVLinkV2MessageRaw::new();
                     let header = MavHeader { system_id: u32::from(250 + sender % 4), component_id: 1, sequence };
                     frame.serialize_message(header, &message);
@@ -68,5 +79,35 @@ fuzz_target!(|events: Vec<Event>| {
         }
         while shared.requests.take().is_some() {}
         let _ = shared.disarm.take();
+        let _ = shared.restarting.take();
+        assert!(!shared.is_busy());
+    }
+    if shared.parameters.set_by_hand().next().is_some() {
+        assert_eq!(built.judge(|name| shared.parameters.raw(name)), Ok(()));
     }
 });
+
+/// What the embedded scenario is, with some of the gains' factors judged good and some not.
+fn built() -> &'static Built {
+    static LOOPS: OnceLock<JudgedLoops> = OnceLock::new();
+    static BUILT: OnceLock<Built> = OnceLock::new();
+    let loops = LOOPS.get_or_init(|| JudgedLoops::judge(|factors| factors.rate.percent() >= 90.0, |_| true));
+    BUILT.get_or_init(|| Built { configuration: firmware::configuration::embedded().unwrap(), loops, identity: 7 })
+}
+
+/// A name that there is, where there is none; its value then lies within its range, on one of its steps.
+fn named(set: &mut PARAM_SET_DATA, choice: u8) {
+    if set.param_id.to_str().is_ok_and(|name| Name::from_name(name).is_some()) {
+        return;
+    }
+    let row = &PARAMETERS[usize::from(choice) % PARAMETERS.len()];
+    let part = f32::from(set.param_value.to_bits() as u8) / 255.0;
+    let above = part * (row.most - row.least);
+    let above = if row.step > 0.0 { (above / row.step).round() * row.step } else { above };
+    *set = PARAM_SET_DATA {
+        param_value: row.least + above,
+        param_id: row.name.into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+        ..set.clone()
+    };
+}

@@ -11,7 +11,7 @@
 //! time; and while it does nobody arms.
 
 use super::table::Name;
-use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::inequality::Inequality;
 use controller_core::error::{ParameterError, Reason};
@@ -58,6 +58,7 @@ impl Built {
     ///
     /// # Errors
     /// What the constructors refuse; or gains whose loops the build found without margin.
+    #[inline(never)] // its stack must not be beside that of certifying
     pub fn tuned(&self, value: impl Fn(Name) -> f32) -> Result<Configuration, ParameterError> {
         let mut tuning = Tuning { figures: Figures::of(&self.configuration), factors: Factors::BUILT };
         for name in Name::tuned() {
@@ -85,13 +86,11 @@ impl Built {
     #[inline(never)] // its stack is that of booting
     pub fn judge(&self, value: impl Fn(Name) -> f32) -> Result<(), Unfit> {
         let configuration = self.tuned(value).map_err(Unfit::Parameter)?;
-        match Certified::new(configuration) {
-            Ok(_) => Ok(()),
-            Err(Refused::Undefined(error)) => Err(Unfit::Parameter(error)),
-            Err(Refused::Fails(certificate)) => {
-                let failed = certificate.inequalities().find(|inequality| !inequality.holds()).copied();
-                failed.map_or(Ok(()), |inequality| Err(Unfit::Inequality(inequality)))
-            }
+        // What `Certified` is made of at boot, without the copies that only a pilot needs.
+        let certificate = Certificate::new(&configuration).map_err(Unfit::Parameter)?;
+        match certificate.inequalities().find(|inequality| !inequality.holds()) {
+            Some(inequality) => Err(Unfit::Inequality(*inequality)),
+            None => Ok(()),
         }
     }
 

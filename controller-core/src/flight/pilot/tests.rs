@@ -55,6 +55,23 @@ fn armed() -> (Pilot<'static>, u64, Estimate) {
 }
 
 #[test]
+fn settings_are_chosen_on_the_ground_and_kept_in_the_air() {
+    let other = FlightSettings { take_off_height: 3.0, fence_radius: 7.0, ..FlightSettings::DEFAULT };
+    let mut grounded = pilot();
+    grounded.fence.place(&Vector3::new(1.0, 2.0, 3.0));
+    grounded.choose(&other);
+    assert_eq!(grounded.settings, other);
+    assert!(
+        !grounded.fence.contains(&Vector3::new(9.0, 2.0, 3.0)) && grounded.fence.contains(&Vector3::new(7.0, 2.0, 3.0))
+    );
+    assert_eq!(grounded.fence.home(), Vector3::new(1.0, 2.0, 3.0));
+    let (mut flying, ..) = armed();
+    flying.choose(&other);
+    assert_eq!(flying.settings, FlightSettings::DEFAULT);
+    assert!(flying.fence.contains(&Vector3::new(9.0, 2.0, 3.0)));
+}
+
+#[test]
 fn thrusts_that_the_law_refuses_to_renew_are_held_for_five_ticks_and_then_stop() {
     let (mut pilot, last, broken) = armed();
     let thrusts = pilot.chain.as_ref().unwrap().thrusts().cloned().unwrap();
