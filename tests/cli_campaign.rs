@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
-const COMPLETE: [&str; 4] = ["campaign.arrow", "campaign.json", "scenario.toml", "summary.txt"];
+const COMPLETE: [&str; 5] = ["campaign.arrow", "campaign.json", "report.html", "scenario.toml", "summary.txt"];
 
 /// A directory of this suite, with a campaign of the Hummingbird in it.
 fn directory(test: &str, campaign: &str) -> PathBuf {

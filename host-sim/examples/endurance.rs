@@ -6,7 +6,7 @@
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::Estimator;
 use controller_core::flight::{Memory, Pilot};
-use host_sim::campaign::hours::{Hours, Plan, TIMED, fly};
+use host_sim::campaign::hours::{Hours, Obeyed, Plan, TIMED, fly};
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
@@ -35,6 +35,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "{missions} missions, the frame moved {moves} times, {refusals} requests to be asked again; shortest and longest delays, ticks: {extremes:?}"
     );
+    for (what, unit, obeyed) in [("take-off", "m", &flown.heights), ("landing", "m/s", &flown.speeds)] {
+        for Obeyed { chosen, found: (least, most), .. } in obeyed {
+            println!("{what}: {chosen} {unit} chosen on the ground, {least:.3} to {most:.3} {unit} found");
+        }
+    }
     let sizes = [size_of::<Pilot>(), size_of::<Estimator>(), size_of::<Memory>()];
     println!("pilot, estimator, governor and mixer: {sizes:?} bytes, as at the start; nothing is allocated");
     println!("took {:.0} s", begun.elapsed().as_secs_f64());

@@ -112,7 +112,7 @@ class Chart {
     const { context, margin, width, height } = this;
     const [bottom, right] = [height - margin.bottom, width - margin.right];
     const marks = (axis, most) => (axis.logarithmic ? decades : ticks)(axis.least, axis.greatest, most);
-    const across = marks(this.horizontal, Math.max(2, (width - 80) / 80));
+    const across = marks(this.horizontal, Math.max(2, (width - 80) / 60));
     const up = marks(this.vertical, Math.max(2, height / 42));
     context.strokeStyle = color("grid");
     context.fillStyle = color("muted");

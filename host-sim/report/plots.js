@@ -89,6 +89,13 @@ class Plot {
     return least > greatest ? (this.logarithmic ? [0.1, 1] : [-1, 1]) : [least, greatest];
   }
 
+  /** What all but one in a hundred of the shown values exceed: a moment near zero must not stretch the decades. */
+  small() {
+    const values = this.curves.filter(({ on }) => on).flatMap(({ source, column }) =>
+      [...source.column(column).subarray(source.row(view.from), source.row(view.to) + 1)].filter((value) => value > 0));
+    return values.sort((a, b) => a - b)[Math.floor(values.length / 100)] ?? Infinity;
+  }
+
   /** The vertical axis: what is shown, what is proven, and other bounds unless they would flatten it. */
   axis() {
     let [least, greatest] = this.extremes(view.from, view.to);
@@ -99,7 +106,7 @@ class Plot {
     }
     if (this.logarithmic) {
       const high = Math.ceil(Math.log10(greatest) + 1e-9);
-      const low = Math.max(Math.min(Math.floor(Math.log10(least)), high - 1), high - 9);
+      const low = Math.max(Math.min(Math.floor(Math.log10(Math.min(this.small(), least * 1e3))), high - 1), high - 9);
       return { least: 10 ** low, greatest: 10 ** high, logarithmic: true };
     }
     const room = greatest - least > 1e-9 * Math.max(Math.abs(greatest), 1e-6) ? 0.07 * (greatest - least) : Math.abs(greatest) * 0.1 || 1;
@@ -121,7 +128,7 @@ class Plot {
   paintBounds(context) {
     const { chart } = this;
     const written = [];
-    const mirrored = (bound) => this.bounds.find(({ value, label }) => label === bound.label && value === -bound.value);
+    const mirrored = (bound) => this.bounds.find(({ value, label }) => label === bound.label && value !== 0 && value === -bound.value);
     context.textAlign = "right";
     for (const bound of this.bounds) {
       const { value, label, color: name, text } = bound;
@@ -132,13 +139,13 @@ class Plot {
       chart.line([[chart.margin.left, y], [chart.width - chart.margin.right, y]]);
       context.setLineDash([]);
       context.globalAlpha = 1;
-      const above = value > 0 ? y - 3 : y + 14;
+      const above = Math.max(value > 0 ? y - 3 : y + 14, 12);
       // Only where no other label stands; the table below the plot has them all.
       if (value < 0 && mirrored(bound)) continue;
       if (!(y > 2 && y < chart.height - chart.margin.bottom) || written.some((other) => Math.abs(other - above) < 13)) continue;
       written.push(above);
       context.textBaseline = "alphabetic";
-      chart.label(`${label}: ${mirrored(bound) ? "±" : ""}${text}`, chart.width - chart.margin.right - 4, Math.max(above, 12));
+      chart.label(`${label}: ${mirrored(bound) ? "±" : ""}${text}`, chart.width - chart.margin.right - 4, above);
     }
   }
 

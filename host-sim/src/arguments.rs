@@ -1,10 +1,12 @@
 //! What the program can be asked on its command line, in clap's terms, and what of it is refused.
 
 mod campaign;
+mod compare;
 mod sessions;
 
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
+pub use compare::CompareArguments;
 use host_sim::tune::requirements::Requirements;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
@@ -30,6 +32,7 @@ Examples:
   host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
   host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
   host-sim campaign mine.toml --flights 1000 thrown into the air a thousand times, in every way, in wind and noise
+  host-sim compare vehicles/hummingbird.toml ours beside other laws, in the same flights
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
                                              the vehicle alone, for firmware in an emulator or on a board
@@ -89,6 +92,9 @@ pub enum Command {
     Campaign(CampaignArguments),
     /// Put the shards of a campaign together: the same bytes as the campaign that was never split.
     Merge(MergeArguments),
+    /// Fly other laws beside ours: the same scenes, the same random flights; a table and pictures.
+    #[command(after_help = COMPARE_HELP)]
+    Compare(CompareArguments),
     /// Serve the control law alone, lock-step on standard input and output.
     #[command(after_help = LAW_HELP)]
     Law {
@@ -154,6 +160,13 @@ inequality that limits each, and the answer: the least cost.
 
 Interrupted, a search writes the best it has found so far and says so; the exit status is then 130 or 143. If it has found
 nothing yet, it writes nothing.";
+
+const COMPARE_HELP: &str = "\
+Each figure is better the less it is; rows that begin with a star are those where another law does better than ours. docs/rivals.md says
+what the laws are and what is fair about it. Random flights are those of [campaign], the same for every law.
+
+Exit status 0: every random flight of ours settles, and no command of it is cut or leaves its certified bounds; 1: one does not, or the
+scenario is not certified.";
 
 const LAW_HELP: &str = "\
 One line of 33 numbers in, one line of 4 numbers out, flushed, until end of input. SI units, rad, world z up.

@@ -10,7 +10,7 @@
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
 //! | [`manifest`], [`store`] | what a directory holds; its files |
-//! | [`fly`], [`summary`] | the commands `campaign` and `merge`, and what they print |
+//! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
 //! | [`recoveries`], [`mod@hours`] | campaigns without a file |
 
 pub mod draw;
@@ -19,6 +19,7 @@ pub mod hours;
 pub mod manifest;
 pub mod outcome;
 pub mod recoveries;
+pub mod report;
 pub mod rows;
 pub mod step;
 pub mod store;

@@ -4,8 +4,11 @@
 //! reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
 
 use crate::actuators::ActuationError;
+use crate::controller::Controller;
 use crate::estimation::{Estimation, NoEstimate};
 use crate::reality::Surroundings;
+use crate::rivals::pilot::RivalPilot;
+use crate::rivals::rival::Rival;
 use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
 use controller_core::allocation::Thrusts;
@@ -28,7 +31,7 @@ pub struct Flight {
     vehicle: SimulatedVehicle,
     sensors: Option<Sensors>,
     estimation: Option<Box<Estimation>>,
-    law: Law,
+    controller: Controller,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
     steps_per_tick: u32,
@@ -129,7 +132,7 @@ impl Flight {
     /// As [`law`]'s.
     pub fn certified(scenario: &Scenario, certified: &Certified) -> Result<Self, ParameterError> {
         let law = Law::new(certified, scenario.timing.period() as f32)?;
-        Ok(Self::start(scenario, certified.configuration(), law))
+        Ok(Self::start(scenario, certified.configuration(), Controller::Ours(law)))
     }
 
     /// A flight that nothing certifies.
@@ -139,16 +142,23 @@ impl Flight {
     pub fn uncertified(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
         let law = Law::uncertified(configuration, scenario.timing.period() as f32)?;
-        Ok(Self::start(scenario, configuration, law))
+        Ok(Self::start(scenario, configuration, Controller::Ours(law)))
     }
 
-    fn start(scenario: &Scenario, configuration: &Configuration, law: Law) -> Self {
+    /// A flight of another law, on the vehicle, sensors and rotors of `scenario`.
+    #[must_use]
+    pub fn of_rival(scenario: &Scenario, rival: Box<dyn Rival>) -> Self {
+        let pilot = Box::new(RivalPilot::new(scenario, rival));
+        Self::start(scenario, &scenario.configuration, Controller::Rival(pilot))
+    }
+
+    fn start(scenario: &Scenario, configuration: &Configuration, controller: Controller) -> Self {
         let timing = &scenario.timing;
         Self {
             vehicle: SimulatedVehicle::new(scenario, configuration),
             sensors: Sensors::new(scenario),
             estimation: Estimation::new(scenario).map(Box::new),
-            law,
+            controller,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
             steps_per_tick: timing.steps_per_tick,
@@ -170,14 +180,14 @@ impl Flight {
         let measured = self.measure(&state).map_err(|error| fail(Cause::Estimate(error)))?;
         let told = measured.as_deref().copied().unwrap_or_else(|| state.measured());
         let reference = self.trajectory.at(time_us);
-        let (wrench, diagnostics) = self.law.step(&told, &reference).map_err(|error| fail(Cause::Law(error)))?;
-        let asked = wrench.scaled(1.0 / self.law.thrust_scale());
+        let (wrench, diagnostics) = self.controller.step(&told, &reference).map_err(|error| fail(Cause::Law(error)))?;
+        let asked = wrench.scaled(1.0 / self.controller.thrust_scale());
         let (clipped, rotor_thrusts) = self.hold(&asked).map_err(|error| fail(Cause::Actuation(error)))?;
         if clipped || surroundings.standing {
-            self.law.hold_estimates();
+            self.controller.hold_estimates();
         }
         self.tick += 1;
-        let estimates = self.law.estimates();
+        let estimates = self.controller.estimates();
         Ok(Tick {
             time_us,
             state,
@@ -200,7 +210,7 @@ impl Flight {
         };
         let (told, jumped) = estimation.told()?;
         if jumped {
-            self.law.hold_estimates();
+            self.controller.hold_estimates();
         }
         Ok(Some(Box::new(told)))
     }

@@ -10,18 +10,21 @@
 //! | [`sensors`] | what the controller is told of the state |
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
+//! | [`controller`], [`rivals`] | what flies: our law, or other laws to compare it with |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
 //! | [`piloted`] | the whole pilot in closed loop, supervisor, estimator and conditioner included |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |
-//! | [`fly`], [`law`], [`certify`], [`tune`], [`hil`], [`sitl`] | the commands |
+//! | [`fly`], [`law`], [`certify`], [`tune`], [`compare`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
 pub mod campaign;
 pub mod certify;
 pub mod claims;
+pub mod compare;
+pub mod controller;
 pub mod course;
 pub mod estimation;
 pub mod flight;
@@ -40,6 +43,7 @@ pub mod progress;
 pub mod reality;
 pub mod recording;
 pub mod report;
+pub mod rivals;
 pub mod sensors;
 pub mod sitl;
 pub mod table;

@@ -2,13 +2,16 @@
 
 mod arguments;
 
-use arguments::{Arguments, CampaignArguments, Command, HilArguments, MergeArguments, SitlArguments, TuneArguments};
+use arguments::{
+    Arguments, CampaignArguments, Command, CompareArguments, HilArguments, MergeArguments, SitlArguments, TuneArguments,
+};
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::{self, CampaignError};
 use host_sim::certify::certify;
 use host_sim::claims;
+use host_sim::compare::{self, CompareError, compare};
 use host_sim::fly::{FlyError, fly};
 use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
@@ -16,6 +19,8 @@ use host_sim::hil::{self, Clients, End, HilError};
 use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
+use host_sim::rivals::gains::{self, Set};
+use host_sim::rivals::tuning;
 use host_sim::sitl::{self, SitlError};
 use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
@@ -45,6 +50,7 @@ fn main() -> ExitCode {
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),
             Some(Command::Merge(arguments)) => run_merge(&arguments),
+            Some(Command::Compare(arguments)) => run_compare(&arguments),
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
@@ -288,6 +294,54 @@ fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     }
     print_text(&summary)?;
     Ok(status(true, interrupt.signal()))
+}
+
+fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
+    let effort = arguments.effort()?;
+    let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
+    let directory = arguments.directory(&scenario.name);
+    let interrupt = watch()?;
+    let mut found = None;
+    let set = match (&effort, &arguments.gains) {
+        (Some(effort), _) => match tuning::tune(&scenario, *effort, &interrupt) {
+            Ok(set) => {
+                found = Some(("rivals.toml", set.written(&scenario, &arguments.command(effort))));
+                set
+            }
+            Err(message) => {
+                eprintln!("error: {}: {message}", scenario.name);
+                return Ok(status(false, interrupt.signal()));
+            }
+        },
+        (None, Some(file)) => {
+            Set::of(&scenario, &text_of(Some(file))?, &file.display().to_string()).map_err(|error| error.to_string())?
+        }
+        (None, None) => Set::of(&scenario, gains::BUILT_IN, "the built-in gains").map_err(|error| error.to_string())?,
+    };
+    let mut comparison = match compare(&scenario, &set, arguments.flights, &interrupt) {
+        Ok(comparison) => comparison,
+        Err(error @ (CompareError::NotCertified(_) | CompareError::Interrupted(_))) => {
+            eprintln!("error: {}: {error}", scenario.name);
+            return Ok(status(false, interrupt.signal()));
+        }
+        Err(error) => return Err(error.to_string()),
+    };
+    comparison.files.extend(found);
+    compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
+    print_text(&format!(
+        "{}: our law and {} others; {} random flights of each\n\n{}\n* another law does better; {}; table, pictures in {}\n",
+        scenario.name,
+        set.rivals.len(),
+        arguments.flights,
+        comparison.text,
+        if comparison.holds {
+            "every random flight of ours settles, unclipped, within its bounds"
+        } else {
+            "NOT every random flight of ours settles, unclipped, within its bounds"
+        },
+        directory.display()
+    ))?;
+    Ok(status(comparison.holds, None))
 }
 
 /// The name of a tuned scenario and the file it goes to. Whatever is wrong with them shows now, not after the search.

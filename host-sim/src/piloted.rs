@@ -219,6 +219,11 @@ impl<'m> PilotedVehicle<'m> {
         self.now
     }
 
+    /// Other flight settings, as the firmware's control task hands them on: taken while nothing is armed.
+    pub fn choose(&mut self, settings: &FlightSettings) {
+        self.pilot.choose(settings);
+    }
+
     /// The pilot.
     #[must_use]
     pub fn pilot(&self) -> &Pilot<'m> {

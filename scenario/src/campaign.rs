@@ -4,7 +4,7 @@
 //! [campaign]
 //! flights = 1000                       # how many
 //! seed = 0
-//! duration = 60.0                      # s, each
+//! duration = 60.0                      # s, each; 180 under the paper's law, which takes its time
 //! reference = "in-turn"                # hover at the origin and the file's reference in turn; or "file", or "hover"
 //! attitude = "uniform"                 # of all attitudes alike; or "file": that of [initial]
 //! offset = 10.0                        # m, from the reference's first point
@@ -26,7 +26,7 @@
 //! ```
 //!
 //! Each number is the greatest of what is drawn: evenly from zero up, or within a ball of that radius, or as much on either side.
-//! Every key may be left out; these are the defaults. Only the default of `wind` depends on the file ([`default_wind`]).
+//! Every key may be left out; these are the defaults. Those of `duration` and `wind` ([`default_wind`]) depend on the law.
 
 use crate::body::GREATEST_TURN_PER_STEP;
 use crate::reality::numbers::{Allowed, seed};
@@ -120,7 +120,7 @@ impl Campaign {
         let turn = greatest_rate(timing);
         let noise = NoiseRanges { gyro: 0.01, position: 2e-3, attitude: ATTITUDE_NOISE_DEG.to_radians(), delay: 0.0 };
         let ranges = Ranges {
-            duration: 60.0,
+            duration: if configuration.paper().is_some() { 180.0 } else { 60.0 },
             reference: Asked::InTurn,
             attitude: true,
             offset: 10.0,

@@ -39,6 +39,7 @@ class Client:
         self.beaten = self.sent = -10.0
         self.setpoint = None
         self.counts = {}
+        self.texts = []
 
     def step(self):
         """Takes one message, and sends what is due by the vehicle's time."""
@@ -56,6 +57,7 @@ class Client:
         elif kind == "EXTENDED_SYS_STATE":
             self.landed = message.landed_state
         elif kind == "STATUSTEXT":
+            self.texts.append(message.text)
             print(f"    {self.now:7.2f} s  {message.text}")
         if self.now - self.beaten >= 0.5:
             self.beaten = self.now
@@ -167,6 +169,37 @@ def parameters(client):
         assert client.reply("PARAM_VALUE", param_id="TKO_ALT").param_value == kept, asked
 
 
+def tuning(client):
+    """A gain is set to a good value; what cannot be flown is refused in words, with the old value."""
+
+    def asked(name, value):
+        client.texts = []
+        client.line.mav.param_set_send(1, 1, name.encode(), value, m.MAV_PARAM_TYPE_REAL32)
+        kept = client.reply("PARAM_VALUE", patience=20.0, param_id=name).param_value
+        client.rest(0.5)
+        return kept, client.texts
+
+    assert asked("GAIN_ATT_P", 80.0) == (80.0, ["GAIN_ATT_P: may be flown, from the next boot on"])
+    kept, texts = asked("GAIN_ATT_P", 130.0)
+    assert kept == 80.0 and texts[0] == "GAIN_ATT_P: refused, cannot be flown", (kept, texts)
+    kept, texts = asked("ROT_THR_MAX", 2.0)
+    assert kept > 3.5 and texts[0] == "ROT_THR_MAX: refused, cannot be flown", (kept, texts)
+    assert "rotor 1 greatest: needs " in texts[1], texts
+    kept, texts = asked("GAIN_ATT_D", 95.0)
+    assert kept == 100.0 and texts == ["GAIN_ATT_D: allowed are 70.00 to 130.00 % by 10"], (kept, texts)
+    assert asked("GAIN_ATT_P", 100.0)[0] == 100.0
+    assert client.command(m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 3) == UNSUPPORTED
+    if EMULATED:
+        assert client.command(m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1) == UNSUPPORTED
+        return
+    assert asked("GAIN_ATT_P", 90.0)[0] == 90.0
+    assert client.command(m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1) == ACCEPTED
+    # Half a second until it restarts; then it flies with what it was given, which is what the rest of this script does.
+    client.rest(2.0)
+    client.line.mav.param_request_read_send(1, 1, b"GAIN_ATT_P", -1)
+    assert client.reply("PARAM_VALUE", param_id="GAIN_ATT_P").param_value == 90.0
+
+
 def flight(client):
     """Arm, take off, a square of positions, body velocities, hold, land, disarmed."""
     ready = lambda one: one.get_type() == "SYS_STATUS" and (
@@ -275,7 +308,8 @@ def main():
         while client.position is None:
             client.step()
         # Seconds of an emulated board are long, and its heartbeats were asked for more often.
-        parts = (parameters, flight) if EMULATED else (rates, questions, parameters, flight, forced, recording)
+        common = (parameters, tuning, flight)
+        parts = common if EMULATED else (rates, questions, *common, forced, recording)
         assert client.line.target_system == 1, client.line.target_system
         for part in parts:
             started = time.monotonic()

@@ -3,7 +3,7 @@
     browse.py SCREENSHOTS REPORT…
 
 For every report: no message on the console, no request but for the file itself, the replay moves when it is played and by its
-slider, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
+slider, distributions can be read, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
 """
 
 import base64
@@ -137,6 +137,24 @@ class Reader:
         ActionChains(self.chrome).click_and_hold(self.seen("canvas.stage")).move_by_offset(60, 20).release().perform()
         self.expect(self.picture() != orbited, "dragging does not orbit")
 
+    def has(self, selector):
+        return bool(self.chrome.find_elements(By.CSS_SELECTOR, selector))
+
+    def distribution(self):
+        """A distribution is read by its keys, and shown as a share on demand."""
+        chart = self.seen("figure[data-distribution] .chart")
+        for _ in range(50):
+            self.frames()
+            if self.script("return arguments[0].firstChild.width !== 300", chart):
+                break
+        bars = self.picture("figure[data-distribution] canvas")
+        self.script("arguments[0].focus()", chart)
+        ActionChains(self.chrome).send_keys(Keys.ARROW_RIGHT * 8).perform()
+        read = self.element("figure[data-distribution] .reading").text
+        self.expect("% up to" in read, f"a distribution reads {read!r}")
+        self.element("figure[data-distribution] .fit").click()
+        self.expect(self.picture("figure[data-distribution] canvas") != bars, "the share looks like the bars")
+
     def keyboard(self):
         """From the top by Tab alone: the skip link, then replay and plots by their keys."""
         keys = lambda *pressed: ActionChains(self.chrome).send_keys(*pressed).perform()
@@ -215,7 +233,7 @@ class Reader:
         self.chrome.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print", "features": [
             {"name": "prefers-color-scheme", "value": "dark"}]})
         self.script("dispatchEvent(new Event('beforeprint'))")
-        look = self.script("""const hidden = (s) => getComputedStyle(document.querySelector(s)).display === "none";
+        look = self.script("""const hidden = (s) => [...document.querySelectorAll(s)].every((e) => getComputedStyle(e).display === "none");
             return [getComputedStyle(document.body).backgroundColor, hidden("nav"), hidden(".transport"), hidden(".tools"),
                 getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()]""")
         self.script("dispatchEvent(new Event('afterprint'))")
@@ -234,10 +252,13 @@ def main():
                 for scheme in ("light", "dark"):
                     reader = Reader(chrome, report, size, scheme)
                     reader.fits()
-                    if size == "desktop":
-                        reader.keyboard()
-                        reader.pointer()
-                    reader.replay()
+                    if reader.has("canvas.stage"):
+                        if size == "desktop":
+                            reader.keyboard()
+                            reader.pointer()
+                        reader.replay()
+                    if reader.has("figure[data-distribution]"):
+                        reader.distribution()
                     if (size, scheme) in (("desktop", "light"), ("phone", "dark")):
                         plots = reader.drawn()
                     reader.shoot(folder, whole=True)

@@ -73,8 +73,8 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
             let _ = check(&mut image, sectors, &known, on_card, &format!("{what}, torn at {tear}"));
         }
         // A start after the cut, now and then: it changes no file but the newest, and logs to one that it may log to.
-        if index % 9 == 0 {
-            let tear = TEARS[index / 9 % TEARS.len()];
+        if index % 7 == 0 {
+            let tear = TEARS[index / 7 % TEARS.len()];
             let mut torn = old.unwrap_or([0; SECTOR]);
             torn[..tear].copy_from_slice(&data[..tear]);
             image.insert(*sector, torn);

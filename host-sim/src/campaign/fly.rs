@@ -7,8 +7,9 @@ use super::CampaignError;
 use super::draw::circumstances;
 use super::manifest::Manifest;
 use super::outcome::Outcome;
+use super::report;
 use super::rows::{Row, batch};
-use super::store::{SUMMARY, Store};
+use super::store::{REPORT, SUMMARY, Store};
 use super::summary::Summary;
 use crate::flight::Flight;
 use crate::interrupt::Interrupt;
@@ -59,7 +60,7 @@ pub fn campaign(
             chunks.fly()?
         }
     };
-    finish(scenario, &verdict, &store, &flown)
+    finish(scenario, text, &verdict, &store, &flown)
 }
 
 /// Puts shards together, in any order, into `directory`: the same bytes as the campaign that was never split.
@@ -96,12 +97,13 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
     numbered.sort_by_key(|(chunk, _)| *chunk);
     let flown: Vec<RecordBatch> = numbered.into_iter().map(|(_, batch)| batch).collect();
     let store = Store::open(directory, &whole, &text)?;
-    finish(&scenario, &verdict, &store, &flown)
+    finish(&scenario, &text, &verdict, &store, &flown)
 }
 
 /// Writes what was flown and what it showed.
 fn finish(
     scenario: &Scenario,
+    text: &str,
     verdict: &Verdict,
     store: &Store,
     flown: &[RecordBatch],
@@ -109,6 +111,7 @@ fn finish(
     let summary = Summary::of(scenario, verdict, store.manifest(), flown);
     store.finish(flown)?;
     store.write(SUMMARY, &summary.to_string())?;
+    store.write(REPORT, &report::page(&summary, text, store.manifest(), flown).html())?;
     Ok(summary)
 }
 

@@ -2,8 +2,8 @@
 //!
 //! | a mission, s | what happens | what must follow |
 //! |---|---|---|
-//! | 0 | another wind; on the ground | |
-//! | 3 to 80 | arms, takes off, holds | it is up in a time that is always the same; 50 s of hover are measured |
+//! | 0 | another wind; on the ground; two parameters are changed, how high it takes off and how fast it lands | both are what it does |
+//! | 3 to 80 | arms, takes off, holds | it is up in a time that is always the same for the same height; 50 s of hover are measured |
 //! | 80 to 260 | points, then a circle, by setpoints; the ground station falls silent for 4 s | holds, and flies on when asked |
 //! | 260 | setpoints cease | holds |
 //! | 280, 300 | no poses for 0.7 s; for 1.5 s | nothing; levels, and holds when they are back |
@@ -23,13 +23,13 @@ use crate::piloted::{Meddler, PilotedError, PilotedVehicle, Place};
 use crate::reality::RealVehicle;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{FlightSettings, Outcome, Pose, Reason, Refusal, Stamped, Velocity};
+use controller_core::flight::{FlightSettings, Mode, Outcome, Pose, Reason, Refusal, Stamped, Velocity};
 use nalgebra::Vector3;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use scenario::Scenario;
 use scenario::reality::estimator::Estimator;
-use script::{MISSION, Script};
+use script::{HEIGHTS, MISSION, SPEEDS, Script};
 use std::fmt;
 
 /// What is to be flown.
@@ -63,13 +63,47 @@ pub struct Hour {
 pub const TIMED: [Reason; 5] =
     [Reason::TakenOff, Reason::GroundStationLost, Reason::SetpointsLost, Reason::PoseLost, Reason::BatteryLow];
 
+/// What the parameters that were changed before a mission did in it, of all missions with the same choice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Obeyed {
+    /// What was chosen: m, or m/s.
+    pub chosen: f32,
+    /// The least and the greatest of what came of it: m above the ground in hover, or m/s downwards while landing.
+    pub found: (f64, f64),
+    /// The shortest and the longest time that it took, ticks: from the take-off's command to its height; of a landing, nothing is said.
+    pub took: (u64, u64),
+}
+
+impl Obeyed {
+    fn nothing(chosen: f32) -> Self {
+        Self { chosen, found: (f64::INFINITY, f64::NEG_INFINITY), took: (u64::MAX, 0) }
+    }
+
+    fn find(&mut self, value: f64) {
+        let (least, most) = self.found;
+        self.found = (least.min(value), most.max(value));
+    }
+
+    fn take(&mut self, ticks: u64) {
+        self.took = widened(self.took, ticks);
+    }
+}
+
+fn widened((least, most): (u64, u64), value: u64) -> (u64, u64) {
+    (least.min(value), most.max(value))
+}
+
 /// What all of them showed.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Hours {
     /// Hour by hour.
     pub hours: Vec<Hour>,
     /// The shortest and longest of each of the delays, ticks.
     pub extremes: [(u64, u64); TIMED.len()],
+    /// What became of each height of a take-off, and of each speed of a landing, that were chosen.
+    pub heights: [Obeyed; HEIGHTS.len()],
+    /// See [`Self::heights`].
+    pub speeds: [Obeyed; SPEEDS.len()],
     /// Missions flown.
     pub missions: u64,
     /// How often the frame of the poses has moved.
@@ -175,69 +209,135 @@ pub fn fly(
     mut tell: impl FnMut(&Hour),
 ) -> Result<Hours, Ended> {
     let mut place = Place::new(certified.configuration());
-    let settings = FlightSettings { take_off_height: script::HEIGHT, ..FlightSettings::DEFAULT };
     let mut scenario = scenario.clone();
     scenario.reality.estimator.get_or_insert(Estimator { imu_noise: 0.5, ..Estimator::default() });
-    let mut vehicle = PilotedVehicle::new(&scenario, Ok(certified), &settings, &mut place, plan.start)?;
-    let mass = f64::from(certified.configuration().vehicle().mass);
-    let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
-    let mut world = World { poses: true, ..World::default() };
-    let mut shown = Hours { extremes: [(u64::MAX, 0); TIMED.len()], ..Hours::default() };
-    let (mut heard, mut up) = (None, 0);
+    let settings = FlightSettings::DEFAULT;
+    let mut campaign = Campaign {
+        vehicle: PilotedVehicle::new(&scenario, Ok(certified), &settings, &mut place, plan.start)?,
+        mass: f64::from(certified.configuration().vehicle().mass),
+        random: ChaCha8Rng::seed_from_u64(plan.seed),
+        world: World { poses: true, ..World::default() },
+        heard: None,
+        shown: Hours::nothing(),
+    };
     for _ in 0..plan.hours {
         let mut sums = Sums::default();
         for _ in 0..plan.missions {
-            let number = shown.missions;
-            let script = Script::new(number, &mut random);
-            let wind = random.random_range(0.0..std::f64::consts::TAU);
-            world.push = Vector3::new(wind.cos(), wind.sin(), 0.0) * (mass * random.random_range(0.0..0.8));
-            let mut reasons = Vec::new();
-            for tick in 0..MISSION {
-                world.poses = !script.is_dark(tick);
-                if script.moves_frame(tick) {
-                    world.moves += 1;
-                    world.offset = Vector3::from_fn(|_, _| random.random_range(-2.0..2.0));
-                }
-                let given = script.given(tick, vehicle.pilot().mode(), vehicle.now(), &mut heard);
-                let (outcome, _) = vehicle.tick(&given, &mut world)?;
-                match outcome.answer {
-                    // A pose in a thousand is beyond its gates, and then there is a second to wait.
-                    Some(Err(Refusal::PosesUnsettled)) => shown.refusals += 1,
-                    Some(Err(refusal)) => return Err(Ended::Refused(number, refusal)),
-                    _ => {}
-                }
-                if HOVER.contains(&tick) {
-                    sums.hover(&outcome, &vehicle.vehicle().state().position, &world.offset);
-                }
-                let Some(transition) = outcome.transition else { continue };
-                if !matches!(transition.reason, Reason::Started | Reason::Ready | Reason::NotReady) {
-                    reasons.push(transition.reason);
-                    shown.taken.push((number * MISSION + tick, transition.reason));
-                }
-                if transition.reason == Reason::TakeOffCommanded {
-                    up = tick;
-                }
-                if let Some(which) = TIMED.iter().position(|reason| *reason == transition.reason) {
-                    let since =
-                        if transition.reason == Reason::TakenOff { up } else { script.cause(transition.reason) };
-                    let took = tick - since;
-                    let (least, most) = shown.extremes[which];
-                    shown.extremes[which] = (least.min(took), most.max(took));
-                    sums.delays[which].0 += took as f64;
-                    sums.delays[which].1 += 1.0;
-                }
-            }
-            if reasons != script.wanted() {
-                return Err(Ended::Mission(number, reasons));
-            }
-            shown.missions += 1;
+            campaign.mission(&mut sums)?;
         }
         let hour = sums.hour();
         tell(&hour);
-        shown.hours.push(hour);
+        campaign.shown.hours.push(hour);
     }
+    let Campaign { vehicle, world, mut shown, .. } = campaign;
     (shown.moves, shown.position) = (world.moves, vehicle.vehicle().state().position);
     Ok(shown)
+}
+
+/// Everything that goes on from mission to mission.
+struct Campaign<'m> {
+    vehicle: PilotedVehicle<'m>,
+    /// kg.
+    mass: f64,
+    random: ChaCha8Rng,
+    world: World,
+    /// When the ground station was heard last, us.
+    heard: Option<u64>,
+    shown: Hours,
+}
+
+/// What is remembered within a mission.
+#[derive(Default)]
+struct Course {
+    /// The transitions that are told.
+    reasons: Vec<Reason>,
+    /// When the take-off was commanded, ticks.
+    up: u64,
+    /// The greatest speed downwards while landing, m/s.
+    sinking: f64,
+}
+
+impl Campaign<'_> {
+    /// One mission, into the hour's `sums` and what is shown.
+    fn mission(&mut self, sums: &mut Sums) -> Result<(), Ended> {
+        let number = self.shown.missions;
+        let script = Script::new(number, &mut self.random);
+        self.wind();
+        let mut course = Course::default();
+        for tick in 0..MISSION {
+            // As control does, in every tick; what is armed keeps what it was armed with.
+            self.vehicle.choose(&script.settings());
+            self.meddle(&script, tick);
+            let mode = self.vehicle.pilot().mode();
+            let given = script.given(tick, mode, self.vehicle.now(), &mut self.heard);
+            let (outcome, _) = self.vehicle.tick(&given, &mut self.world)?;
+            self.measure(&script, tick, &outcome, sums, &mut course);
+            match outcome.answer {
+                // A pose in a thousand is beyond its gates, and then there is a second to wait.
+                Some(Err(Refusal::PosesUnsettled)) => self.shown.refusals += 1,
+                Some(Err(refusal)) => return Err(Ended::Refused(number, refusal)),
+                _ => {}
+            }
+            if let Some(transition) = outcome.transition {
+                self.note(&script, tick, transition.reason, sums, &mut course);
+            }
+        }
+        if course.reasons != script.wanted() {
+            return Err(Ended::Mission(number, course.reasons));
+        }
+        self.shown.speeds[script.choice().1].find(course.sinking);
+        self.shown.missions += 1;
+        Ok(())
+    }
+
+    /// Another wind, from somewhere.
+    fn wind(&mut self) {
+        let from = self.random.random_range(0.0..std::f64::consts::TAU);
+        let force = self.mass * self.random.random_range(0.0..0.8);
+        self.world.push = Vector3::new(from.cos(), from.sin(), 0.0) * force;
+    }
+
+    /// What is done to the poses in this tick.
+    fn meddle(&mut self, script: &Script, tick: u64) {
+        self.world.poses = !script.is_dark(tick);
+        if script.moves_frame(tick) {
+            self.world.moves += 1;
+            self.world.offset = Vector3::from_fn(|_, _| self.random.random_range(-2.0..2.0));
+        }
+    }
+
+    /// How well it hovers, how high, and how fast it comes down.
+    fn measure(&mut self, script: &Script, tick: u64, outcome: &Outcome, sums: &mut Sums, course: &mut Course) {
+        let state = self.vehicle.vehicle().state();
+        if HOVER.contains(&tick) {
+            sums.hover(outcome, &state.position, &self.world.offset);
+            // It stands on the ground at the origin.
+            self.shown.heights[script.choice().0].find(state.position.z);
+        }
+        if outcome.mode == Mode::Landing {
+            course.sinking = course.sinking.max(-state.velocity.z);
+        }
+    }
+
+    /// A transition, with what it took.
+    fn note(&mut self, script: &Script, tick: u64, reason: Reason, sums: &mut Sums, course: &mut Course) {
+        if !matches!(reason, Reason::Started | Reason::Ready | Reason::NotReady) {
+            course.reasons.push(reason);
+            self.shown.taken.push((self.shown.missions * MISSION + tick, reason));
+        }
+        if reason == Reason::TakeOffCommanded {
+            course.up = tick;
+        }
+        let Some(which) = TIMED.iter().position(|timed| *timed == reason) else { return };
+        let since = if reason == Reason::TakenOff { course.up } else { script.cause(reason) };
+        let took = tick - since;
+        if reason == Reason::TakenOff {
+            self.shown.heights[script.choice().0].take(took);
+        }
+        self.shown.extremes[which] = widened(self.shown.extremes[which], took);
+        sums.delays[which].0 += took as f64;
+        sums.delays[which].1 += 1.0;
+    }
 }
 
 /// How much the last hour may differ from the first, relative: means over 300 s of noise that takes about half a second to forget.
@@ -246,15 +346,45 @@ const ALIKE: f64 = 0.15;
 /// How far apart two delays of one kind may be, ticks.
 const SPREAD: u64 = 1;
 
+/// How far from the height that was chosen a hover may be, m, and how far from the speed, m/s: gusts and the estimate's noise, and a landing that
+/// begins out of a climb or with the ground's cushion.
+const HEIGHT_OFF: f64 = 0.02;
+const SPEED_OFF: f64 = 0.1;
+
 impl Hours {
-    /// Whether every delay was the same all the time, and the last hour as good as the first.
+    fn nothing() -> Self {
+        Self {
+            hours: Vec::new(),
+            extremes: [(u64::MAX, 0); TIMED.len()],
+            heights: HEIGHTS.map(Obeyed::nothing),
+            speeds: SPEEDS.map(Obeyed::nothing),
+            missions: 0,
+            moves: 0,
+            refusals: 0,
+            taken: Vec::new(),
+            position: Vector3::zeros(),
+        }
+    }
+
+    /// Whether every delay was the same all the time, the last hour as good as the first, and every parameter obeyed.
     ///
     /// # Errors
     /// Says what was not.
     pub fn check(&self) -> Result<(), String> {
-        for (reason, (least, most)) in TIMED.iter().zip(self.extremes) {
+        // How long a take-off takes depends on its height: they are compared by it.
+        let delays = TIMED.iter().zip(self.extremes).filter(|(reason, _)| **reason != Reason::TakenOff);
+        let rises = self.heights.iter().map(|height| (&Reason::TakenOff, height.took));
+        for (reason, (least, most)) in delays.chain(rises) {
             if most.checked_sub(least).is_none_or(|apart| apart > SPREAD) {
                 return Err(format!("{reason:?}: after {least} to {most} ticks, not more than {SPREAD} apart"));
+            }
+        }
+        for (what, obeyed, off) in [("height", &self.heights, HEIGHT_OFF), ("speed", &self.speeds, SPEED_OFF)] {
+            for Obeyed { chosen, found: (least, most), .. } in obeyed {
+                let chosen = f64::from(*chosen);
+                if !(chosen - off..=chosen + off).contains(least) || !(chosen - off..=chosen + off).contains(most) {
+                    return Err(format!("{what}: {chosen} chosen, {least:.3} to {most:.3} found"));
+                }
             }
         }
         let (Some(first), Some(last)) = (self.hours.first(), self.hours.last()) else {

@@ -97,7 +97,7 @@ impl Outcome {
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
         if self.final_error > NEAR {
-            self.settled = Some((tick.time_us + period_us) as f64 * 1e-6);
+            self.settled = Some((tick.time_us + period_us) as f64 / 1e6);
         }
     }
 

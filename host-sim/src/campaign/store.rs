@@ -6,7 +6,7 @@
 //! | `scenario.toml` | the text they were read from |
 //! | `parts/000012.arrow` | the flights of a chunk, while the campaign is under way |
 //! | `campaign.arrow` | all flights, one record batch a chunk, in the order of their numbers ([`super::rows`]) |
-//! | `summary.txt` | what they showed |
+//! | `summary.txt`, `report.html` | what they showed |
 //!
 //! Each file appears whole or not at all, and is on the disk before it has its name. So whatever ends a campaign, chunks that were
 //! finished are there when it goes on. A part that cannot be read is flown again.
@@ -31,6 +31,8 @@ pub const RESULT: &str = "campaign.arrow";
 pub const SCENARIO: &str = "scenario.toml";
 /// What they showed.
 pub const SUMMARY: &str = "summary.txt";
+/// The same as a page.
+pub const REPORT: &str = "report.html";
 const PARTS: &str = "parts";
 
 /// A directory and what it is to hold.

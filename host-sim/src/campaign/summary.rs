@@ -18,7 +18,8 @@ const LISTED: usize = 5;
 /// What a campaign showed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    title: String,
+    /// What was flown, in a line.
+    pub title: String,
     /// Flights.
     pub flights: u64,
     /// Flights that recovered and tracked.
@@ -47,11 +48,7 @@ impl Summary {
     #[must_use]
     pub fn of(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
-        let verdicts: Vec<&str> = flown
-            .iter()
-            .filter_map(|batch| batch.column_by_name("verdict"))
-            .flat_map(|column| column.as_string::<i32>().iter().flatten())
-            .collect();
+        let verdicts = verdicts(flown);
         let figure =
             |what: &str, unit, column: &str| Figure { what: what.to_owned(), unit, values: floats(flown, column) };
         let mut figures = vec![
@@ -171,14 +168,23 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
     listed.join(", ")
 }
 
+/// Each flight's verdict.
+#[must_use]
+pub fn verdicts(flown: &[RecordBatch]) -> Vec<&str> {
+    let columns = flown.iter().filter_map(|batch| batch.column_by_name("verdict"));
+    columns.flat_map(|column| column.as_string::<i32>().iter().flatten()).collect()
+}
+
 /// A column of whole numbers.
-fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
+#[must_use]
+pub fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     columns.flat_map(|column| column.as_primitive::<UInt64Type>().values().to_vec()).collect()
 }
 
 /// A column of numbers; infinite where there is none.
-fn floats(flown: &[RecordBatch], column: &str) -> Vec<f64> {
+#[must_use]
+pub fn floats(flown: &[RecordBatch], column: &str) -> Vec<f64> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     let value = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
     columns.flat_map(|column| column.as_primitive::<Float64Type>().iter().map(value).collect::<Vec<_>>()).collect()

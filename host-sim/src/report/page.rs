@@ -88,7 +88,7 @@ impl Page {
         let mut body = String::new();
         for section in &self.sections {
             let (title, place) = (escaped(&section.title), anchor(&section.title));
-            let _ = write!(body, "<section aria-labelledby=\"{place}\"><h2 id=\"{place}\">{title}</h2>\n");
+            let _ = writeln!(body, "<section aria-labelledby=\"{place}\"><h2 id=\"{place}\">{title}</h2>");
             section.blocks.iter().for_each(|block| self.write_block(&mut body, &mut figures, block));
             body += "</section>\n";
         }

@@ -47,13 +47,18 @@ impl Cell {
     fn html(&self) -> String {
         match self {
             Self::Text(text) => format!("<td>{}</td>", escaped(text)),
-            Self::Number(text) => format!("<td class=\"number\">{}</td>", escaped(text)),
+            Self::Number(text) => format!("<td class=\"number\">{}</td>", escaped(&unbroken(text))),
             Self::Verdict(verdict) => {
                 let (class, word) = verdict_words(*verdict);
                 format!("<td><span class=\"verdict {class}\">{word}</span></td>")
             }
         }
     }
+}
+
+/// A number stays beside its unit where a line is short.
+fn unbroken(text: &str) -> String {
+    text.split(", ").map(|part| part.replace(' ', "\u{a0}")).collect::<Vec<_>>().join(", ")
 }
 
 /// How a verdict looks and what it says. Its sign is the style sheet's, so that colour never stands alone.

@@ -43,6 +43,18 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Of a candidate that passed every test, or the one that it failed: how many tests it had left, by how much it missed, and
+    /// which it was.
+    #[must_use]
+    pub fn after(self, tests: Result<(), (u8, f64, String)>) -> Self {
+        let Err((tests_left, missed, what)) = tests else {
+            return self;
+        };
+        // Squeezed into (0, 1), so that a later test is always nearer to acceptance than an earlier one.
+        let violation = f64::from(tests_left) + missed.max(1e-9) / (1.0 + missed.max(1e-9));
+        Self { violation, failed: Some(what), ..self }
+    }
+
     /// Of a candidate that nobody judged.
     #[must_use]
     pub fn missing() -> Self {
@@ -55,6 +67,15 @@ impl Verdict {
     pub fn accepted(&self) -> bool {
         self.violation == 0.0
     }
+}
+
+/// Whoever judges points of a search space.
+pub trait Judging: Sync {
+    /// Where the search starts.
+    fn start(&self) -> Point;
+
+    /// Puts `point` through its tests.
+    fn judge(&self, point: &Point) -> Verdict;
 }
 
 /// What no trial showed.
@@ -86,29 +107,10 @@ impl Judge {
         Self { scenario: scenario.clone(), space, requirements }
     }
 
-    /// The file's own constants as a point: where the search starts.
-    #[must_use]
-    pub fn start(&self) -> Point {
-        self.space.start()
-    }
-
     /// The scenario with the gains of `point`, if the law is defined for them.
     #[must_use]
     pub fn scenario(&self, point: &Point) -> Option<Scenario> {
         Some(Scenario { configuration: self.space.configuration(point)?, ..self.scenario.clone() })
-    }
-
-    /// Puts `point` through the tests.
-    #[must_use]
-    pub fn judge(&self, point: &Point) -> Verdict {
-        let mut verdict = Verdict { violation: 0.0, failed: None, ..Verdict::missing() };
-        let Err((tests_left, missed, what)) = self.run(point, &mut verdict) else {
-            return verdict;
-        };
-        // Squeezed into (0, 1), so that a later test is always nearer to acceptance than an earlier one.
-        verdict.violation = f64::from(tests_left) + missed.max(1e-9) / (1.0 + missed.max(1e-9));
-        verdict.failed = Some(what);
-        verdict
     }
 
     fn run(&self, point: &Point, verdict: &mut Verdict) -> Result<(), (u8, f64, String)> {
@@ -178,7 +180,8 @@ impl Judge {
         let mut costs = Vec::new();
         for model in &MODELS {
             let lost = (1, 1e3, format!("a trial was not flown to its end: {model:?}"));
-            costs.push(show(scenario, certified, model, recovery).ok_or(lost)?);
+            let start = |real: &Scenario| Flight::certified(real, certified).ok();
+            costs.push(show(scenario, start, model, recovery).ok_or(lost)?);
         }
         verdict.shown = costs[0];
         verdict.cost = costs.iter().map(Shown::cost).sum::<f64>() / costs.len() as f64;
@@ -191,6 +194,19 @@ impl Judge {
             return Err((1, verdict.shown.offset / OFFSET - 1.0, "gust: an offset is left".to_owned()));
         }
         Ok(())
+    }
+}
+
+impl Judging for Judge {
+    /// The file's own constants.
+    fn start(&self) -> Point {
+        self.space.start()
+    }
+
+    fn judge(&self, point: &Point) -> Verdict {
+        let mut verdict = Verdict { violation: 0.0, failed: None, ..Verdict::missing() };
+        let tests = self.run(point, &mut verdict);
+        verdict.after(tests)
     }
 }
 

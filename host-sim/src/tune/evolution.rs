@@ -5,7 +5,7 @@
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not the
 //! one nearer to acceptance wins, of two that are the one of less cost.
 
-use super::candidate::{Judge, Verdict};
+use super::candidate::{Judging, Verdict};
 use super::effort::Effort;
 use super::frontier::Frontier;
 use super::space::Point;
@@ -34,7 +34,7 @@ pub struct Evolution {
 impl Evolution {
     /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
     #[must_use]
-    pub fn new(judge: &Judge, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
+    pub fn new(judge: &impl Judging, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
         let mut points = vec![start.clone()];
@@ -49,7 +49,7 @@ impl Evolution {
     }
 
     /// One generation; accepted candidates go into `frontier` as well.
-    pub fn generation(&mut self, judge: &Judge, frontier: &mut Frontier, interrupt: &Interrupt) {
+    pub fn generation(&mut self, judge: &impl Judging, frontier: &mut Frontier, interrupt: &Interrupt) {
         let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
         let (trials, judged) = judge_all(judge, trials, interrupt);
@@ -106,7 +106,7 @@ impl Evolution {
 }
 
 /// Judges all points, or as many as an interrupt leaves time for; and how many those were.
-fn judge_all(judge: &Judge, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(Point, Verdict)>, u64) {
+fn judge_all(judge: &impl Judging, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(Point, Verdict)>, u64) {
     let judged = |point: Point| {
         let verdict = interrupt.signal().is_none().then(|| judge.judge(&point));
         (point, verdict)

@@ -1,5 +1,6 @@
 //! A small search from beginning to end, and each requirement on its own.
 
+use super::candidate::Judging;
 use super::*;
 use scenario::PAPER;
 use scenario::stability::LoopMargin;

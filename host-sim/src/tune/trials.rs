@@ -12,7 +12,6 @@
 
 use crate::course::Course;
 use crate::flight::Flight;
-use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::reference::hover::Hover;
@@ -100,30 +99,31 @@ impl Shown {
     }
 }
 
-/// The course of a flight of what is certified in the circumstances of `scenario`.
-fn course(scenario: &Scenario, certified: &Certified) -> Option<Course> {
-    Course::over(scenario, Flight::certified(scenario, certified).ok()?, NEAR).ok()
-}
-
-/// All trials of what is certified, in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; none if one
-/// of them cannot be flown to its end.
+/// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a flight of what is
+/// judged in the circumstances that it is given. None if one of them cannot be flown to its end.
 #[must_use]
-pub fn show(scenario: &Scenario, certified: &Certified, model: &Model, recovery: f64) -> Option<Shown> {
+pub fn show(
+    scenario: &Scenario,
+    start: impl Fn(&Scenario) -> Option<Flight>,
+    model: &Model,
+    recovery: f64,
+) -> Option<Shown> {
+    let course = |scenario: &Scenario| Course::over(scenario, start(scenario)?, NEAR).ok();
     let real = really(scenario, model);
     let hovering = |position, duration| hover(&real, position, duration).ok();
 
-    let recovered = course(&turned_over(&hovering(Vector3::zeros(), recovery)?), certified)?;
+    let recovered = course(&turned_over(&hovering(Vector3::zeros(), recovery)?))?;
     let mut gusty = hovering(Vector3::zeros(), GUST_TIME)?;
     let mass = f64::from(scenario.configuration.vehicle().mass);
     gusty.reality.drag =
         scenario.reality.drag.or(Some(Drag { linear: Vector3::repeat(GUST_DRAG * mass), ..Drag::default() }));
     let gust = Gust { shape: Shape::Step, start: GUST_AT, velocity: Vector3::new(GUST, 0.0, 0.0) };
     gusty.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-    let gusty = course(&gusty, certified)?;
-    let step = course(&hovering(Vector3::new(-1.0, 0.0, 0.0), STEP_TIME)?, certified)?;
+    let gusty = course(&gusty)?;
+    let step = course(&hovering(Vector3::new(-1.0, 0.0, 0.0), STEP_TIME)?)?;
     let mut noisy = hovering(Vector3::zeros(), NOISE_TIME)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
-    let noisy = course(&noisy, certified)?;
+    let noisy = course(&noisy)?;
 
     Some(Shown {
         height_lost: recovered.height_lost,

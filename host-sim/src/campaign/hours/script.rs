@@ -1,6 +1,6 @@
 //! What happens in one mission, and when.
 
-use controller_core::flight::{Battery, Inputs, Mode, Reason, Request};
+use controller_core::flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
@@ -8,8 +8,9 @@ use rand::{Rng, RngExt};
 /// Ticks of a mission: ten minutes.
 pub const MISSION: u64 = 60_000;
 
-/// How high it takes off, m.
-pub const HEIGHT: f32 = 1.5;
+/// How high it takes off, m, and how fast it lands, m/s: each mission's choice, made on the ground before it.
+pub const HEIGHTS: [f32; 3] = [1.5, 2.0, 3.0];
+pub const SPEEDS: [f32; 3] = [0.4, 0.5, 0.7];
 
 /// Ticks between heartbeats, and between setpoints.
 const HEARTBEAT: u64 = 100;
@@ -39,6 +40,8 @@ pub struct Script {
     land: u64,
     /// Whether a low battery makes it land.
     runs_down: bool,
+    /// Which of the heights and speeds.
+    choice: (usize, usize),
     /// Points to fly to, m, of the frame of the poses.
     points: Vec<Vector3<f32>>,
 }
@@ -61,8 +64,20 @@ impl Script {
             go: about(34_000),
             land: about(36_000),
             runs_down: number.is_multiple_of(4),
+            choice: ((number % 3) as usize, (number / 3 % 3) as usize),
             points: (0..12).map(|_| point(random)).collect(),
         }
+    }
+
+    /// What was chosen for this mission: which height, and which speed.
+    pub fn choice(&self) -> (usize, usize) {
+        self.choice
+    }
+
+    /// The flight settings of this mission.
+    pub fn settings(&self) -> FlightSettings {
+        let (height, speed) = self.choice;
+        FlightSettings { take_off_height: HEIGHTS[height], landing_speed: SPEEDS[speed], ..FlightSettings::DEFAULT }
     }
 
     /// Whether no pose comes.

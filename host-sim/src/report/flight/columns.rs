@@ -15,6 +15,10 @@ use scenario::Scenario;
 use scenario::body::BodyState;
 
 type Columns = Vec<(String, Kept, Read)>;
+/// The length of a vector that the law goes through.
+type Norm = fn(&Diagnostics) -> f32;
+/// How far what the law was told is from the truth.
+type Distance = fn(&State, &BodyState) -> f64;
 
 /// The columns of a flight of `scenario`.
 #[must_use]
@@ -67,7 +71,7 @@ fn law(columns: &mut Columns) {
     three(columns, ["mrp_x", "mrp_y", "mrp_z"], |tick| tick.diagnostics.mrp.cast());
     add(columns, "lift_sign", |tick| tick.diagnostics.lift_sign.into());
     add(columns, "clipped", |tick| f64::from(u8::from(tick.clipped)));
-    let norms: [(&str, fn(&Diagnostics) -> f32); 7] = [
+    let norms: [(&str, Norm); 7] = [
         ("position_error", |d| d.position_error.norm()),
         ("mrp_error", |d| d.mrp.norm()),
         ("s_theta", |d| d.attitude_feedback.norm()),
@@ -97,7 +101,7 @@ fn estimates(columns: &mut Columns) {
 
 /// How far what the law was told is from the truth.
 fn told(columns: &mut Columns) {
-    let distances: [(&str, fn(&State, &BodyState) -> f64); 4] = [
+    let distances: [(&str, Distance); 4] = [
         ("told_position", |told, state| (told.position.cast::<f64>() - state.position).norm()),
         ("told_velocity", |told, state| (told.velocity.cast::<f64>() - state.velocity).norm()),
         ("told_attitude", |told, state| {

@@ -117,7 +117,7 @@ fn headings_labels_and_tables_say_what_the_figures_show() {
         assert_eq!(html.matches(verdict).count(), count, "{verdict}");
     }
     let plot = within(&html, "data-plot=\"0\"", "</figure>");
-    for words in ["-2.5 structure", "1 structure", "1.5 structure"] {
+    for words in ["-2.5\u{a0}structure", "1\u{a0}structure", "1.5\u{a0}structure"] {
         assert!(plot.contains(words), "{words}: {plot}");
     }
 }

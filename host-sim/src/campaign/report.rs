@@ -1,0 +1,135 @@
+//! The page of a campaign: how its figures are spread, the worst flights by number, and what was flown.
+
+use super::manifest::Manifest;
+use super::rows::{HOLDS, share_of_rotor};
+use super::summary::{Summary, counts, floats, verdicts};
+use crate::report::distribution::Distribution;
+use crate::report::document;
+use crate::report::page::{Block, Page, Section};
+use crate::report::prose::{Cell, Fact, Table};
+use crate::table::{percent, short};
+use arrow_array::RecordBatch;
+
+/// How many of the worst a list holds.
+const LISTED: usize = 20;
+
+/// A figure of every flight.
+struct Figure {
+    title: String,
+    unit: &'static str,
+    /// What no flight may exceed.
+    bound: Option<f64>,
+    values: Vec<f64>,
+}
+
+/// The page of what was `flown` of a scenario, read from `text`.
+#[must_use]
+pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordBatch]) -> Page {
+    let figure = |title: &str, unit, column: &str| {
+        let bound = column.starts_with("share").then_some(1.0);
+        Figure { title: title.to_owned(), unit, bound, values: floats(flown, column) }
+    };
+    let mut shares = vec![figure("Share of the thrust's proven bound", "", "share_thrust")];
+    for axis in ["x", "y", "z"] {
+        shares.push(figure(&format!("Share of the bound on torque {axis}"), "", &format!("share_torque_{axis}")));
+    }
+    for rotor in 1..=manifest.rotors as usize {
+        shares.push(figure(&format!("Share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor)));
+    }
+    let figures = vec![
+        figure("On the reference for good after", "s", "settled"),
+        figure("Height lost", "m", "height_lost"),
+        figure("Rise above start and reference", "m", "rise"),
+        figure("Distance from the reference at the end", "m", "final_error"),
+    ];
+    let numbers = counts(flown, "number");
+    let greatest =
+        |flight: usize| shares.iter().filter_map(|share| share.values.get(flight)).copied().fold(0.0, f64::max);
+    let greatest = Figure {
+        title: "Greatest share of any proven bound".to_owned(),
+        unit: "",
+        bound: Some(1.0),
+        values: (0..numbers.len()).map(greatest).collect(),
+    };
+    let words = verdicts(flown);
+    let worst = figures.iter().chain([&greatest]).map(|figure| Block::Table(worst(figure, &numbers, &words)));
+    let spread: Vec<Distribution> = figures.iter().chain([&greatest]).chain(&shares).map(distribution).collect();
+    let sections = [
+        ("Distributions", vec![Block::Distributions(spread)]),
+        ("Worst flights", std::iter::once(Block::Text(REPLAY.to_owned())).chain(worst).collect()),
+        (
+            "Scenario",
+            vec![
+                Block::Folded(
+                    "Vehicle, gains and all else, section by section".into(),
+                    document::tables(text, "scenario"),
+                ),
+                Block::Listing("The file as it was read".into(), text.to_owned()),
+            ],
+        ),
+    ];
+    let sentence =
+        if summary.holds { "Every flight recovers and tracks within its bounds" } else { "Not every flight holds" };
+    Page {
+        title: manifest.name.clone(),
+        kind: "campaign".into(),
+        verdict: Some((summary.holds, sentence.into())),
+        lead: summary
+            .refusal
+            .as_ref()
+            .map_or(summary.title.clone(), |refusal| format!("{}. Not certified: {refusal}", summary.title)),
+        highlights: vec![
+            Fact::new("Flights", summary.flights.to_string()),
+            Fact::new("Recover and track", share(summary.tracking, summary.flights)),
+            Fact::new("Beyond a certified bound", summary.beyond.to_string()),
+            Fact::new("Asked a rotor for more than it has", summary.clipped.to_string()),
+        ],
+        tracks: Vec::new(),
+        sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
+    }
+}
+
+const REPLAY: &str =
+    "Any flight is flown again, with its own log and report, by the campaign's command and --replay NUMBER.";
+
+fn share(part: u64, whole: u64) -> String {
+    format!("{part}, {}", percent(part as f64 / whole.max(1) as f64))
+}
+
+fn distribution(figure: &Figure) -> Distribution {
+    let Figure { title, unit, bound, values } = figure;
+    let groups = vec![("all flights".to_owned(), values.clone())];
+    Distribution { title: title.clone(), unit: (*unit).to_owned(), logarithmic: false, bound: *bound, groups }
+}
+
+/// The flights with the greatest values, greatest first.
+fn worst(figure: &Figure, numbers: &[u64], verdicts: &[&str]) -> Table {
+    let mut table = Table::new(format!("{}: the greatest", figure.title), &["flight", "value", "verdict"]);
+    let mut places: Vec<usize> = (0..numbers.len().min(figure.values.len()).min(verdicts.len())).collect();
+    places.sort_by(|&a, &b| figure.values[b].total_cmp(&figure.values[a]).then(numbers[a].cmp(&numbers[b])));
+    for place in places.into_iter().take(LISTED) {
+        let value = figure.values[place];
+        let value = if value.is_finite() { format!("{} {}", short(value), figure.unit) } else { "never".to_owned() };
+        let verdict = Cell::Verdict(Some(verdicts[place] == HOLDS));
+        table.rows.push(vec![Cell::text(numbers[place].to_string()), Cell::number(value.trim_end()), verdict]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_flights_stand_first_and_those_that_never_came_before_all_others() {
+        let values = vec![1.0, f64::INFINITY, 3.0, 3.0];
+        let figure = Figure { title: "t".into(), unit: "s", bound: None, values };
+        let table = worst(&figure, &[10, 11, 13, 12], &[HOLDS, "away", HOLDS, HOLDS]);
+        let row = |number: &str, value: &str, holds| {
+            vec![Cell::text(number), Cell::number(value), Cell::Verdict(Some(holds))]
+        };
+        let expected =
+            [row("11", "never", false), row("12", "3 s", true), row("13", "3 s", true), row("10", "1 s", true)];
+        assert_eq!(table.rows, expected);
+    }
+}

@@ -1,0 +1,147 @@
+//! The `compare` command: our law and its rivals on one set of scenes.
+//!
+//! Every law flies the same [`scenes`] and the same random flights ([`crate::campaign::draw`]): same vehicle, allocation, sensors and
+//! clock. The table has every figure, less is better, and marks the rows that ours loses; `compare.csv` has them in full, two
+//! pictures the courses. What is claimed of ours, and decides the exit status: every random flight settles, and no command of it is cut or
+//! leaves its certified bounds.
+
+pub mod flier;
+pub mod pictures;
+pub mod rows;
+pub mod scenes;
+pub mod shown;
+
+use crate::interrupt::Interrupt;
+use crate::plots::canvas::PlotError;
+use crate::progress::Progress;
+use crate::rivals::gains::Set;
+use crate::whole_file::WholeFile;
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::error::ParameterError;
+use flier::Flier;
+use scenario::Scenario;
+use shown::Thrown;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What came of a comparison.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// The table.
+    pub text: String,
+    /// Whether what is claimed of ours holds.
+    pub holds: bool,
+    /// compare.csv and the pictures, by name.
+    pub files: Vec<(&'static str, String)>,
+}
+
+/// Why there is no comparison.
+#[derive(Debug)]
+pub enum CompareError {
+    /// The scenario's law is undefined.
+    Parameter(ParameterError),
+    /// Its certificate fails: this inequality is the tightest.
+    NotCertified(&'static str),
+    /// A picture could not be drawn.
+    Plot(PlotError),
+    /// A file or directory could not be written.
+    Output(PathBuf, io::Error),
+    /// Somebody sent this signal.
+    Interrupted(u8),
+}
+
+impl fmt::Display for CompareError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(error) => write!(f, "{error}"),
+            Self::NotCertified(inequality) => {
+                write!(f, "not certified ({inequality}): ours flies in a comparison as boards fly it, or not at all")
+            }
+            Self::Plot(error) => write!(f, "{error}"),
+            Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
+            Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
+        }
+    }
+}
+
+impl std::error::Error for CompareError {}
+
+impl From<ParameterError> for CompareError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl From<PlotError> for CompareError {
+    fn from(error: PlotError) -> Self {
+        Self::Plot(error)
+    }
+}
+
+/// Flies all laws of `set`, and ours, in all scenes and in `flights` random flights.
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare(file: &Scenario, set: &Set, flights: u64, interrupt: &Interrupt) -> Result<Comparison, CompareError> {
+    let certified = Certified::new(file.configuration.clone()).map_err(|refused| match refused {
+        Refused::Undefined(error) => CompareError::Parameter(error),
+        Refused::Fails(certificate) => {
+            CompareError::NotCertified(certificate.tightest().map_or("", |tightest| tightest.name))
+        }
+    })?;
+    let certificate = certified.certificate().clone();
+    let fliers = flier::all(certified, set);
+    let names: Vec<&str> = fliers.iter().map(Flier::name).collect();
+    let scenes = scenes::all(file)?;
+    let work = (scenes.len() + 1) * fliers.len();
+    let mut progress = Progress::new("comparing", work as u64);
+    let mut done = 0;
+    let mut next = || {
+        progress.show(done);
+        done += 1;
+        interrupt.signal().map_or(Ok(()), |signal| Err(CompareError::Interrupted(signal)))
+    };
+    let mut shown = Vec::new();
+    for scene in &scenes {
+        let mut of_scene = Vec::new();
+        for flier in &fliers {
+            next()?;
+            of_scene.push(shown::show(flier, file, scene));
+        }
+        shown.push((scene.name, of_scene));
+    }
+    let drawn = (&file.campaign.ranges, file.campaign.seed);
+    let mut thrown = Vec::new();
+    for flier in &fliers {
+        next()?;
+        thrown.push(shown::throw(flier, file, &certificate, drawn, flights));
+    }
+    drop(progress);
+    let rows = rows::all(&shown, &thrown);
+    let files = vec![
+        ("compare.csv", rows::csv(&names, &rows)),
+        ("scenes.svg", pictures::scenes(&names, &shown)?),
+        ("random.svg", pictures::random(&names, &thrown, &shown)?),
+    ];
+    let clean = |thrown: &Thrown| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
+    let holds = thrown.first().and_then(Option::as_ref).is_some_and(clean);
+    Ok(Comparison { text: rows::table(&names, &rows), holds, files })
+}
+
+/// Writes all files of `comparison` into `directory`, after all of them were written in full.
+///
+/// # Errors
+/// [`CompareError::Output`].
+pub fn write(comparison: &Comparison, directory: &Path) -> Result<(), CompareError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        |error| CompareError::Output(path, error)
+    };
+    std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    for (name, text) in &comparison.files {
+        let path = directory.join(name);
+        WholeFile::write(&path, text).map_err(failed(&path))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! The rows of a comparison: one figure of every law each, and where ours is not the best.
+
+use super::shown::{Shown, Thrown};
+use crate::table::{aligned, short};
+use std::fmt::Write;
+
+/// By which part another law must be better than ours for a row to be lost.
+const CLOSE: f64 = 0.01;
+
+/// One figure of every law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// In which scene.
+    pub scene: &'static str,
+    /// What.
+    pub figure: &'static str,
+    /// In which unit.
+    pub unit: &'static str,
+    /// Of each law, in the fliers' order; less is better, infinite is never or not flown to its end.
+    pub values: Vec<f64>,
+    /// The least difference that matters, in the unit.
+    pub grain: f64,
+}
+
+impl Row {
+    /// Whether another law shows clearly less than ours, the first.
+    #[must_use]
+    pub fn lost(&self) -> bool {
+        let Some((ours, rivals)) = self.values.split_first() else { return false };
+        let best = rivals.iter().copied().fold(f64::INFINITY, f64::min);
+        best < ours * (1.0 - CLOSE) && ours - best > self.grain
+    }
+}
+
+/// A figure of one law in one scene.
+type Get = fn(&Shown) -> f64;
+
+/// Figures of scenes: scene, figure, unit, which, and what is too little to matter.
+const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
+    ("own", "position error, last half, RMS", "mm", |s| 1e3 * s.rms, 0.1),
+    ("own", "rotor command's change a tick, RMS", "mN", |s| 1e3 * s.activity, 0.1),
+    ("step", "within 0.1 m for good after", "s", settled, 0.02),
+    ("step", "ticks clipped", "%", clipped, 0.0),
+    ("far step", "within 0.1 m for good after", "s", settled, 0.02),
+    ("far step", "height lost", "m", |s| s.height_lost, 0.01),
+    ("far step", "ticks clipped", "%", clipped, 0.0),
+    ("upside down", "height lost", "m", |s| s.height_lost, 0.01),
+    ("upside down", "within 0.1 m for good after", "s", settled, 0.02),
+    ("upside down", "ticks clipped", "%", clipped, 0.0),
+    ("gust", "deepest excursion", "m", |s| s.excursion, 0.001),
+    ("gust", "offset left", "m", |s| s.end_error, 0.001),
+    ("gust", "ticks clipped", "%", clipped, 0.0),
+    ("storm", "deepest excursion", "m", |s| s.excursion, 0.001),
+    ("storm", "offset at the end", "m", |s| s.end_error, 0.001),
+    ("storm", "ticks clipped", "%", clipped, 0.0),
+    ("noise", "position error, RMS", "mm", |s| 1e3 * s.rms, 0.1),
+    ("noise", "rotor command's change a tick, RMS", "mN", |s| 1e3 * s.activity, 0.1),
+    ("weak rotors", "within 0.1 m for good after", "s", settled, 0.02),
+    ("weak rotors", "deepest excursion", "m", |s| s.excursion, 0.001),
+    ("heavy", "height lost", "m", |s| s.height_lost, 0.01),
+    ("heavy", "within 0.1 m for good after", "s", settled, 0.02),
+];
+
+fn settled(shown: &Shown) -> f64 {
+    shown.settled.unwrap_or(f64::INFINITY)
+}
+
+fn clipped(shown: &Shown) -> f64 {
+    100.0 * shown.clipped
+}
+
+/// All rows: of `scenes`, each with what every law showed there, and of what every law showed in the random flights.
+#[must_use]
+pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>]) -> Vec<Row> {
+    let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {
+        let (_, shown) = scenes.iter().find(|(scene, _)| *scene == name)?;
+        let values = shown.iter().map(|shown| shown.as_ref().map_or(f64::INFINITY, get)).collect();
+        Some(Row { scene: name, figure, unit, values, grain })
+    };
+    let mut rows: Vec<Row> = FIGURES.iter().filter_map(of_scene).collect();
+    let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&Thrown) -> f64| {
+        let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
+        rows.push(Row { scene: "random", figure, unit, values, grain });
+    };
+    random("flights that never settle", "%", 0.0, &|all| 100.0 * all.share(|one| !one.tracks()));
+    random("flights that end in no number", "%", 0.0, &|all| 100.0 * all.share(|one| one.height_lost.is_infinite()));
+    random("height lost, median", "m", 0.01, &|all| all.height(0.5));
+    random("height lost, 99 of 100", "m", 0.01, &|all| all.height(0.99));
+    random("height lost, worst", "m", 0.01, &|all| all.height(1.0));
+    random("within 0.2 m for good after, median", "s", 0.02, &|all| all.settled(0.5));
+    random("within 0.2 m for good after, slowest", "s", 0.02, &|all| all.settled(1.0));
+    random("ticks clipped", "%", 0.0, &|all| 100.0 * all.ticks(|one| one.clipped));
+    random("ticks beyond our certified bounds", "%", 0.0, &|all| 100.0 * all.ticks(|one| one.beyond));
+    rows
+}
+
+fn cell(value: f64) -> String {
+    if value.is_finite() { short(significant(value)) } else { "never".to_owned() }
+}
+
+/// Three significant digits.
+fn significant(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// A table for a terminal; rows that ours loses begin with a star.
+#[must_use]
+pub fn table(names: &[&str], rows: &[Row]) -> String {
+    let mut cells = vec![["", "scene", "figure", "unit"].iter().chain(names).map(|&name| name.to_owned()).collect()];
+    let mut before = "";
+    for row in rows {
+        let scene = if row.scene == before { "" } else { row.scene };
+        before = row.scene;
+        let star = if row.lost() { "*" } else { "" };
+        let head = [star, scene, row.figure, row.unit].map(str::to_owned);
+        cells.push(head.into_iter().chain(row.values.iter().map(|value| cell(*value))).collect::<Vec<_>>());
+    }
+    aligned(&cells)
+}
+
+/// The same as CSV, in full; `inf` is never.
+#[must_use]
+pub fn csv(names: &[&str], rows: &[Row]) -> String {
+    let mut text = format!("scene,figure,unit,{},ours_loses\n", names.join(","));
+    for row in rows {
+        let _ = write!(text, "{},\"{}\",{}", row.scene, row.figure, row.unit);
+        for value in &row.values {
+            let _ = write!(text, ",{value}");
+        }
+        let _ = writeln!(text, ",{}", row.lost());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(values: &[f64]) -> Row {
+        Row { scene: "s", figure: "f", unit: "m", values: values.to_vec(), grain: 0.01 }
+    }
+
+    #[test]
+    fn a_row_is_lost_where_another_law_is_clearly_better() {
+        assert!(row(&[2.0, 3.0, 1.9]).lost());
+        assert!(row(&[f64::INFINITY, 3.0]).lost());
+        assert!(!row(&[2.0, 1.995]).lost() && !row(&[0.02, 0.011]).lost() && !row(&[2.0, f64::INFINITY]).lost());
+    }
+
+    #[test]
+    fn the_table_marks_lost_rows_and_says_never() {
+        let text = table(&["ours", "lee"], &[row(&[2.0, 1.0]), row(&[1.0, f64::INFINITY])]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[1].starts_with('*') && lines[1].ends_with("2     1"), "{text}");
+        assert!(!lines[2].starts_with('*') && lines[2].ends_with("never"), "{text}");
+        assert!(csv(&["ours", "lee"], &[row(&[1.0, f64::INFINITY])]).ends_with("s,\"f\",m,1,inf,false\n"));
+    }
+}

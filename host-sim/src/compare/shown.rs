@@ -1,0 +1,147 @@
+//! What one law showed in one scene, and in the random flights.
+
+use super::flier::Flier;
+use super::scenes::Scene;
+use crate::campaign::draw::circumstances;
+use crate::campaign::outcome::Outcome;
+use crate::campaign::quantile;
+use crate::flight::{Flight, FlightError, Tick};
+use controller_core::certificate::Certificate;
+use rayon::prelude::*;
+use scenario::Scenario;
+use scenario::campaign::Ranges;
+
+/// How near its reference a vehicle must stay to be there, m: as in the trials of a search.
+const NEAR: f64 = 0.1;
+/// Every so many ticks a point of a picture.
+const THINNED: u64 = 2;
+
+/// One law in one scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// Start minus lowest height, m.
+    pub height_lost: f64,
+    /// Since when within 0.1 m, s; none if it was away at the end.
+    pub settled: Option<f64>,
+    /// Greatest distance from the reference, and that at the end, m.
+    pub excursion: f64,
+    /// m.
+    pub end_error: f64,
+    /// Distance from the reference over the last half, RMS, m.
+    pub rms: f64,
+    /// Change of a rotor's command from one tick to the next over the last half, RMS, N.
+    pub activity: f64,
+    /// Share of ticks at which a command was cut.
+    pub clipped: f64,
+    /// (s, m): distance from the reference, and height above the start.
+    pub error: Vec<(f64, f64)>,
+    /// Likewise.
+    pub height: Vec<(f64, f64)>,
+}
+
+/// Flies `scene`; none if it cannot be flown to its end.
+#[must_use]
+pub fn show(flier: &Flier, file: &Scenario, scene: &Scene) -> Option<Shown> {
+    let scenario = &scene.scenario;
+    let flight = flier.flight(file, scenario)?;
+    over(scenario, flight).ok()
+}
+
+fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
+    let ticks = scenario.timing.ticks;
+    let mut shown = Shown {
+        height_lost: 0.0,
+        settled: Some(0.0),
+        excursion: 0.0,
+        end_error: 0.0,
+        rms: 0.0,
+        activity: 0.0,
+        clipped: 0.0,
+        error: Vec::new(),
+        height: Vec::new(),
+    };
+    let (mut squares, mut changes, mut changed, mut before) = (0.0, 0.0, 0_u64, None::<Tick>);
+    for number in 0..ticks {
+        let tick = flight.tick()?;
+        let (position, time) = (&tick.state.position, tick.time_us as f64 * 1e-6);
+        let rise = position.z - scenario.initial.position.z;
+        let error = (position - tick.reference.position.map(f64::from)).norm();
+        shown.height_lost = shown.height_lost.max(-rise);
+        shown.excursion = shown.excursion.max(error);
+        shown.end_error = error;
+        shown.clipped += f64::from(u8::from(tick.clipped)) / ticks as f64;
+        if error > NEAR {
+            shown.settled = Some(time + scenario.timing.period());
+        }
+        if number % THINNED == 0 {
+            shown.error.push((time, error));
+            shown.height.push((time, rise));
+        }
+        if 2 * number >= ticks {
+            squares += error * error;
+            for (now, then) in tick.rotor_thrusts.iter().zip(before.iter().flat_map(|tick| &tick.rotor_thrusts)) {
+                changes += f64::from(now - then).powi(2);
+                changed += 1;
+            }
+        }
+        before = Some(tick);
+    }
+    shown.settled = shown.settled.filter(|_| shown.end_error <= NEAR);
+    shown.rms = (squares / (ticks - ticks / 2) as f64).sqrt();
+    shown.activity = (changes / changed.max(1) as f64).sqrt();
+    Ok(shown)
+}
+
+/// One law in all random flights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thrown {
+    /// What each flight showed, by its number.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// Flies the flights 0 to `count` - 1 of the campaign of `file` with this `seed`: the same circumstances for every law.
+#[must_use]
+pub fn throw(
+    flier: &Flier,
+    file: &Scenario,
+    certificate: &Certificate,
+    (ranges, seed): (&Ranges, u64),
+    count: u64,
+) -> Option<Thrown> {
+    let fly = |number| {
+        let scenario = circumstances(file, ranges, seed, number);
+        Some(Outcome::of(&scenario, flier.flight(file, &scenario)?, certificate))
+    };
+    Some(Thrown { outcomes: (0..count).into_par_iter().map(fly).collect::<Option<_>>()? })
+}
+
+impl Thrown {
+    /// Share of the flights of which `holds` is true.
+    #[must_use]
+    pub fn share(&self, holds: impl Fn(&Outcome) -> bool) -> f64 {
+        let count = self.outcomes.iter().filter(|outcome| holds(outcome)).count();
+        count as f64 / self.outcomes.len().max(1) as f64
+    }
+
+    /// The height lost that so large a part of the flights do not exceed, m.
+    #[must_use]
+    pub fn height(&self, part: f64) -> f64 {
+        let heights: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.height_lost).collect();
+        quantile(&heights, part).unwrap_or(f64::INFINITY)
+    }
+
+    /// The time until within 0.2 m for good that so large a part of the flights do not exceed, s; infinite where it is never.
+    #[must_use]
+    pub fn settled(&self, part: f64) -> f64 {
+        let times: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.settled.unwrap_or(f64::INFINITY)).collect();
+        quantile(&times, part).unwrap_or(f64::INFINITY)
+    }
+
+    /// Share of all ticks for which `count` counts.
+    #[must_use]
+    pub fn ticks(&self, count: impl Fn(&Outcome) -> u64) -> f64 {
+        let (counted, all) =
+            self.outcomes.iter().fold((0, 0), |(counted, all), one| (counted + count(one), all + one.ticks));
+        counted as f64 / all.max(1) as f64
+    }
+}

@@ -1,0 +1,59 @@
+//! What flies a simulated vehicle: our law, or a rival to compare it with.
+
+use crate::rivals::pilot::RivalPilot;
+use controller_core::controller::Diagnostics;
+use controller_core::error::InputError;
+use controller_core::extended::controller::Estimates;
+use controller_core::law::Law;
+use controller_core::reference::Reference;
+use controller_core::state::{State, Wrench};
+
+/// A controller in a flight.
+#[allow(clippy::large_enum_variant)] // ours flies by the million: nothing stands between it and the flight
+#[derive(Debug, Clone)]
+pub enum Controller {
+    /// The law of this project.
+    Ours(Law),
+    /// Another one.
+    Rival(Box<RivalPilot>),
+}
+
+impl Controller {
+    /// One tick, with what it went through; of that, a rival knows errors and desired attitude only.
+    ///
+    /// # Errors
+    /// Names the field of `state` or `reference` that cannot be used.
+    #[inline(always)]
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        match self {
+            Self::Ours(law) => law.step(state, reference),
+            Self::Rival(rival) => rival.step(state, reference),
+        }
+    }
+
+    /// What the rotors deliver of what is commanded, as far as the controller knows.
+    #[must_use]
+    pub fn thrust_scale(&self) -> f32 {
+        match self {
+            Self::Ours(law) => law.thrust_scale(),
+            Self::Rival(_) => 1.0,
+        }
+    }
+
+    /// For every tick in which nothing can be learnt from the motion. A rival knows by itself what its rotors cannot deliver.
+    pub fn hold_estimates(&mut self) {
+        match self {
+            Self::Ours(law) => law.hold_estimates(),
+            Self::Rival(_) => {}
+        }
+    }
+
+    /// What has been estimated, if anything is.
+    #[must_use]
+    pub fn estimates(&self) -> Option<Estimates> {
+        match self {
+            Self::Ours(law) => law.estimates(),
+            Self::Rival(_) => None,
+        }
+    }
+}

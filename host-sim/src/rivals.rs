@@ -1,0 +1,41 @@
+//! Other laws, to compare ours with: in the same simulator, through the same allocation, limits, sensors, estimator and clock.
+//!
+//! They are references for comparison, written from what their papers say, in double precision; nothing about them is proven or meant to
+//! fly. What the papers leave to the reader, or lack where ours has it (feed-forward, gains of their own for tilt and yaw), each
+//! module says. Their gains are found by the cost that ours are tuned by ([`tuning`]).
+//!
+//! | module | law |
+//! |---|---|
+//! | [`lee`] | geometric tracking on SE(3): Lee, Leok, McClamroch, 2010 |
+//! | [`cascade`] | P and PID loops around a quaternion law: PX4; Brescianini, Hehn, D'Andrea, 2013 |
+//! | [`mellinger`] | Mellinger, Kumar, 2011 |
+//! | [`indi`] | incremental nonlinear dynamic inversion: Smeur, 2016; Tal, Karaman, 2021 |
+//! | [`nested`] | nested saturations around a saturated hybrid attitude law: Martins, 2024 |
+//! | [`continuous`] | continuous quaternion feedback, which unwinds: Wie, 1989; Bhat, Bernstein, 2000 |
+//! | [`memoryless`] | discontinuous without memory, which chatters: Fjellstad, Fossen, 1994 |
+//! | [`rival`], [`pilot`] | what a rival is told and asked; how it comes into a flight |
+//! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | what several of them are made of |
+//! | [`kind`], [`gains`] | the list of them; their gains, from a file |
+//! | [`tuning`] | the search for them |
+//! | [`half_turn`] | what laws do about the half turn, with noise against them: unwinding and chattering |
+
+pub mod cascade;
+pub mod continuous;
+pub mod frame;
+pub mod gains;
+pub mod half_turn;
+pub mod indi;
+pub mod jet;
+pub mod kind;
+pub mod lee;
+pub mod low_pass;
+pub mod mellinger;
+pub mod memoryless;
+pub mod nested;
+pub mod pilot;
+pub mod quaternion_feedback;
+pub mod rival;
+pub mod tuning;
+
+#[cfg(test)]
+mod tests;

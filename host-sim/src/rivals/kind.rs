@@ -1,0 +1,105 @@
+//! The list of rivals: their names, the names of their gains, and how each is built from them.
+
+use super::cascade::{self, Cascade};
+use super::continuous::{self, Continuous};
+use super::indi::{self, Indi};
+use super::lee::{self, Lee};
+use super::mellinger::{self, Mellinger};
+use super::memoryless::{self, Memoryless};
+use super::nested::{self, Nested};
+use super::pilot::model;
+use super::quaternion_feedback::QuaternionFeedback;
+use super::rival::Rival;
+use crate::flight::Flight;
+use scenario::Scenario;
+
+/// A rival.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// [`lee`].
+    Lee,
+    /// [`cascade`].
+    Cascade,
+    /// [`mellinger`].
+    Mellinger,
+    /// [`indi`].
+    Indi,
+    /// [`nested`].
+    Nested,
+    /// [`continuous`].
+    Continuous,
+    /// [`memoryless`].
+    Memoryless,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Lee, Self::Cascade, Self::Mellinger, Self::Indi, Self::Nested, Self::Continuous, Self::Memoryless];
+
+    /// Its name in tables and in the file of gains.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lee => "lee",
+            Self::Cascade => "px4",
+            Self::Mellinger => "mellinger",
+            Self::Indi => "indi",
+            Self::Nested => "nested",
+            Self::Continuous => "continuous",
+            Self::Memoryless => "memoryless",
+        }
+    }
+
+    /// Its gains' names.
+    #[must_use]
+    pub fn gains(self) -> &'static [&'static str] {
+        match self {
+            Self::Lee => &lee::NAMES,
+            Self::Cascade => &cascade::NAMES,
+            Self::Mellinger => &mellinger::NAMES,
+            Self::Indi => &indi::NAMES,
+            Self::Nested => &nested::NAMES,
+            Self::Continuous => &continuous::NAMES,
+            Self::Memoryless => &memoryless::NAMES,
+        }
+    }
+
+    /// Where a search for its gains starts.
+    #[must_use]
+    pub fn start(self) -> &'static [f64] {
+        match self {
+            Self::Lee => &lee::START,
+            Self::Cascade => &cascade::START,
+            Self::Mellinger => &mellinger::START,
+            Self::Indi => &indi::START,
+            Self::Nested => &nested::START,
+            Self::Continuous => &continuous::START,
+            Self::Memoryless => &memoryless::START,
+        }
+    }
+
+    /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; none if there are too many or too few of
+    /// them, or the law is undefined.
+    #[must_use]
+    pub fn build(self, scenario: &Scenario, gains: &[f64]) -> Option<Box<dyn Rival>> {
+        let model = model(scenario);
+        let feedback = |gains: &[f64]| Some(QuaternionFeedback::new(model, gains.try_into().ok()?));
+        Some(match self {
+            Self::Lee => Box::new(Lee::new(model, gains.try_into().ok()?)),
+            Self::Cascade => Box::new(Cascade::new(model, gains.try_into().ok()?)),
+            Self::Mellinger => Box::new(Mellinger::new(model, gains.try_into().ok()?)),
+            Self::Indi => Box::new(Indi::new(model, gains.try_into().ok()?)),
+            Self::Nested => Box::new(Nested::new(model, scenario.configuration.vehicle(), gains.try_into().ok()?)?),
+            Self::Continuous => Box::new(Continuous::new(feedback(gains)?)),
+            Self::Memoryless => Box::new(Memoryless(feedback(gains)?)),
+        })
+    }
+
+    /// A flight of it in the circumstances of `scenario`; none as in [`Self::build`]. What it knows of the vehicle is what `knowledge`
+    /// says: rotor lag and delay may differ in the circumstances.
+    #[must_use]
+    pub fn flight(self, knowledge: &Scenario, scenario: &Scenario, gains: &[f64]) -> Option<Flight> {
+        Some(Flight::of_rival(scenario, self.build(knowledge, gains)?))
+    }
+}

@@ -1,0 +1,161 @@
+//! A rival at the controls of a flight: what it is told, and what is made of what it commands.
+//!
+//! It is told what ours is told, in double precision: the measured state; the reference; and as a part of the reference's acceleration the drag
+//! that `[estimates] drag_across` knows of, c v_d across, which ours feeds forward as well. Its wrench goes the way of ours, through
+//! the same allocation; what of it the rotors can deliver, it is told at once.
+
+use super::jet::Jet;
+use super::rival::{Commanded, Model, Rival, Seen, Wanted};
+use controller_core::allocation::Mixer;
+use controller_core::certificate::configuration::LawParameters;
+use controller_core::controller::Diagnostics;
+use controller_core::error::InputError;
+use controller_core::reference::Reference;
+use controller_core::state::{State, Wrench};
+use nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
+use scenario::Scenario;
+
+/// A rival and its surroundings.
+#[derive(Debug)]
+pub struct RivalPilot {
+    rival: Box<dyn Rival>,
+    mixer: Option<Box<Mixer>>,
+    /// Where there are no rotors: N, and N m.
+    thrust_max: f32,
+    torque_max: Vector3<f32>,
+    /// Known drag across, 1/s.
+    drag: f64,
+}
+
+impl Clone for RivalPilot {
+    fn clone(&self) -> Self {
+        Self { rival: self.rival.boxed(), mixer: self.mixer.clone(), ..*self }
+    }
+}
+
+/// What a rival knows of the vehicle of `scenario`.
+#[must_use]
+pub fn model(scenario: &Scenario) -> Model {
+    let (configuration, timing) = (&scenario.configuration, &scenario.timing);
+    let vehicle = configuration.vehicle();
+    let limit = f64::from(configuration.limits().thrust_max);
+    let rotors = configuration.rotors();
+    let together = rotors.map(|rotors| rotors.iter().map(|rotor| f64::from(rotor.thrust_max)).sum::<f64>());
+    Model {
+        mass: vehicle.mass.into(),
+        inertia: vehicle.inertia.map(f64::from),
+        gravity: vehicle.gravity.into(),
+        period: timing.period(),
+        lag: if rotors.is_some() { scenario.rotor_lag } else { 0.0 },
+        delay: scenario.delay_steps as f64 * timing.step(),
+        thrust_max: together.map_or(limit, |together| together.min(limit)),
+    }
+}
+
+impl RivalPilot {
+    /// `rival` on the vehicle of `scenario`.
+    #[must_use]
+    pub fn new(scenario: &Scenario, rival: Box<dyn Rival>) -> Self {
+        let configuration = &scenario.configuration;
+        let limits = configuration.limits();
+        let drag = match configuration.law() {
+            LawParameters::Paper(_) => 0.0,
+            LawParameters::Extended(law) => law.parameters.estimates.drag_across.into(),
+        };
+        Self {
+            rival,
+            mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
+            thrust_max: limits.thrust_max,
+            torque_max: limits.torque_max,
+            drag,
+        }
+    }
+
+    /// One tick.
+    ///
+    /// # Errors
+    /// [`InputError`] if the state or what the rival makes of it is not finite.
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        let seen = Seen {
+            position: state.position.map(f64::from),
+            velocity: state.velocity.map(f64::from),
+            attitude: UnitQuaternion::new_normalize(Quaternion::from(state.attitude.coords.map(f64::from))),
+            rate: state.angular_velocity.map(f64::from),
+        };
+        let wanted = self.wanted(reference);
+        let commanded = self.rival.step(&seen, &wanted);
+        let wrench =
+            Wrench { thrust: commanded.thrust as f32, torque: commanded.torque.map(|component| component as f32) };
+        let (delivered, cut) = self.deliverable(&wrench)?;
+        self.rival.delivered(delivered.thrust.into(), &delivered.torque.map(f64::from), cut);
+        Ok((wrench, diagnostics(&seen, reference, &commanded)))
+    }
+
+    fn wanted(&self, reference: &Reference) -> Wanted {
+        let [velocity, acceleration, jerk, snap] =
+            [reference.velocity, reference.acceleration, reference.jerk, reference.snap].map(|v| v.map(f64::from));
+        let drag = Vector3::new(self.drag, self.drag, 0.0);
+        let with_drag = |v: &Vector3<f64>, rate: &Vector3<f64>| rate + v.component_mul(&drag);
+        let flat = |v: Vector2<f32>| Vector3::new(f64::from(v.x), f64::from(v.y), 0.0);
+        let heading = &reference.heading;
+        Wanted {
+            position: reference.position.map(f64::from),
+            velocity,
+            motion: acceleration,
+            acceleration: Jet([
+                with_drag(&velocity, &acceleration),
+                with_drag(&acceleration, &jerk),
+                with_drag(&jerk, &snap),
+            ]),
+            heading: Jet([
+                flat(heading.direction()),
+                flat(heading.first_derivative()),
+                flat(heading.second_derivative()),
+            ]),
+        }
+    }
+
+    /// What of `wrench` can be delivered, and whether that is less than all.
+    fn deliverable(&self, wrench: &Wrench) -> Result<(Wrench, bool), InputError> {
+        let not_finite = InputError::NotFinite { field: "wrench" };
+        if let Some(mixer) = &self.mixer {
+            let allocation = mixer.allocate(wrench)?;
+            return Ok((allocation.achieved, !allocation.is_exact()));
+        }
+        if !(wrench.thrust + wrench.torque.sum()).is_finite() {
+            return Err(not_finite);
+        }
+        let torque = wrench.torque.zip_map(&self.torque_max, |torque, limit| torque.clamp(-limit, limit));
+        let delivered = Wrench { thrust: wrench.thrust.clamp(0.0, self.thrust_max), torque };
+        Ok((delivered, delivered != *wrench))
+    }
+}
+
+/// The paper's quantities as far as any law has them; the rest is zero.
+fn diagnostics(seen: &Seen, reference: &Reference, commanded: &Commanded) -> Diagnostics {
+    let single = |v: Vector3<f64>| v.map(|component| component as f32);
+    let quaternion = |q: &UnitQuaternion<f64>| Quaternion::from(q.coords.map(|component| component as f32));
+    let error = commanded.desired.inverse() * seen.attitude;
+    let error = if error.w < 0.0 { UnitQuaternion::new_unchecked(-error.into_inner()) } else { error };
+    let rate = error.inverse() * commanded.desired_rate;
+    let zero = Vector3::zeros();
+    Diagnostics {
+        position_error: single(seen.position) - reference.position,
+        velocity_error: single(seen.velocity) - reference.velocity,
+        z_1: zero,
+        z_2: zero,
+        feedback: zero,
+        filtered: zero,
+        intermediate: zero,
+        acceleration_command: zero,
+        desired_attitude: quaternion(&commanded.desired),
+        desired_angular_velocity: single(commanded.desired_rate),
+        desired_angular_acceleration: zero,
+        attitude_error: quaternion(&error),
+        mrp: single(error.imag() / (1.0 + error.w)),
+        lift_sign: 1.0,
+        angular_velocity_error: single(seen.rate - rate),
+        attitude_feedback: zero,
+        rate_feedback: zero,
+    }
+}

@@ -1,0 +1,67 @@
+//! What the continuous and the memoryless law share: quaternion feedback under a saturated position loop.
+//!
+//! ```text
+//! u = -s(k_p p~ + k_v v~) + g e3 + p_d'',  T = m u . R e3
+//! tau = J (w_ref' - 2 k_q q_v - k_w (w - w_ref)) + w x J w
+//! ```
+//!
+//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part: which of the two is all that the two laws
+//! differ in. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis: *Quaternion feedback regulator for
+//! spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12, 1989.
+
+use super::frame::{Frame, HeadingRule};
+use super::jet::Jet;
+use super::rival::{Commanded, Model, Seen, Wanted, gyroscopic, paired};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// The gains' names.
+pub const NAMES: [&str; 7] = ["k_p", "k_v", "level", "k_q_tilt", "k_w_tilt", "k_q_yaw", "k_w_yaw"];
+/// Where a search starts.
+pub const START: [f64; 7] = [5.0, 3.8, 5.0, 150.0, 20.0, 8.0, 5.0];
+
+/// The shared part.
+#[derive(Debug, Clone)]
+pub struct QuaternionFeedback {
+    model: Model,
+    k_p: f64,
+    k_v: f64,
+    level: f64,
+    k_q: Vector3<f64>,
+    k_w: Vector3<f64>,
+}
+
+impl QuaternionFeedback {
+    /// With gains as in [`NAMES`].
+    #[must_use]
+    pub fn new(model: Model, [k_p, k_v, level, q_t, w_t, q_y, w_y]: [f64; 7]) -> Self {
+        Self { model, k_p, k_v, level: level.min(0.9 * model.gravity), k_q: paired(q_t, q_y), k_w: paired(w_t, w_y) }
+    }
+
+    /// One tick; `choose` picks the error's quaternion, given one of the two.
+    pub fn step(
+        &self,
+        seen: &Seen,
+        wanted: &Wanted,
+        choose: impl FnOnce(Quaternion<f64>) -> Quaternion<f64>,
+    ) -> Commanded {
+        let needed = wanted.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
+        let asked = (seen.position - wanted.position) * self.k_p + (seen.velocity - wanted.velocity) * self.k_v;
+        let share = self.level / (self.level * self.level + asked.norm_squared()).sqrt();
+        let force = needed.0[0] - asked * share;
+        let (force_jet, heading) = (Jet::constant(force), Jet::constant(wanted.heading.0[0]));
+        let desired: UnitQuaternion<f64> = Frame::new(&force_jet, &heading, HeadingRule::Horizontal).attitude;
+        let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);
+        let back = seen.attitude.inverse() * reference.attitude;
+        let error = choose((desired.inverse() * seen.attitude).into_inner());
+        let feedback =
+            self.k_q.component_mul(&error.imag()) * 2.0 + self.k_w.component_mul(&(seen.rate - back * reference.rate));
+        let inertia = &self.model.inertia;
+        Commanded {
+            thrust: self.model.mass * force.dot(&(seen.attitude * Vector3::z())),
+            torque: inertia.component_mul(&(back * reference.acceleration - feedback))
+                + gyroscopic(inertia, &seen.rate),
+            desired,
+            desired_rate: reference.rate,
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What a rival is told, and what it is asked for.
+//!
+//! World frame z up; body x forward, y left, z up; attitudes are body to world; SI units; double precision.
+
+use super::jet::Jet;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// What a rival knows of its vehicle: what ours knows, rotor lag and delay included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Model {
+    /// kg.
+    pub mass: f64,
+    /// Diagonal of J, kg m^2.
+    pub inertia: Vector3<f64>,
+    /// m/s^2.
+    pub gravity: f64,
+    /// Between ticks, s.
+    pub period: f64,
+    /// Of the rotors, s.
+    pub lag: f64,
+    /// Between a tick and its command's effect, s.
+    pub delay: f64,
+    /// Greatest thrust, N.
+    pub thrust_max: f64,
+}
+
+/// The vehicle's state, as measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// m, world.
+    pub position: Vector3<f64>,
+    /// m/s, world.
+    pub velocity: Vector3<f64>,
+    /// R.
+    pub attitude: UnitQuaternion<f64>,
+    /// omega, rad/s, body.
+    pub rate: Vector3<f64>,
+}
+
+/// The reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// m.
+    pub position: Vector3<f64>,
+    /// m/s.
+    pub velocity: Vector3<f64>,
+    /// The reference's own acceleration, m/s^2.
+    pub motion: Vector3<f64>,
+    /// The same with the known drag of the reference's velocity added, and its derivatives: what the rotors must make besides gravity.
+    pub acceleration: Jet,
+    /// Unit vector of the heading, its z zero.
+    pub heading: Jet,
+}
+
+/// What a rival commands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Commanded {
+    /// N, along body z; negative is clipped.
+    pub thrust: f64,
+    /// N m, body.
+    pub torque: Vector3<f64>,
+    /// R_d.
+    pub desired: UnitQuaternion<f64>,
+    /// omega_d, rad/s, axes of the desired body frame.
+    pub desired_rate: Vector3<f64>,
+}
+
+/// A control law to compare with.
+pub trait Rival: std::fmt::Debug + Send + Sync {
+    /// One tick.
+    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded;
+
+    /// What of the tick's command the rotors can deliver: thrust, N, and torque, N m. Laws without memory of it ignore it.
+    fn delivered(&mut self, _thrust: f64, _torque: &Vector3<f64>, _cut: bool) {}
+
+    /// Itself, elsewhere.
+    fn boxed(&self) -> Box<dyn Rival>;
+}
+
+/// omega x J omega: the torque that keeps a spinning body turning about where it turns.
+#[must_use]
+pub fn gyroscopic(inertia: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
+    rate.cross(&inertia.component_mul(rate))
+}
+
+/// (across, across, along): a gain across and one along the third axis.
+#[must_use]
+pub fn paired(across: f64, along: f64) -> Vector3<f64> {
+    Vector3::new(across, across, along)
+}
