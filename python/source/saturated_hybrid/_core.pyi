@@ -400,7 +400,7 @@ def campaign(
     *,
     flights: int | None = None,
     seed: int | None = None,
-    shard: tuple[int, int] = (1, 1),
+    shard: tuple[int, int] = ...,
     plant_step: float | None = None,
 ) -> Campaign:
     """Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
