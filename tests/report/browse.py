@@ -93,8 +93,9 @@ class Reader:
         self.expect(requested == [self.report.resolve().as_uri()], f"requested {requested}")
 
     def fits(self):
-        width = self.script("return [document.documentElement.scrollWidth, innerWidth]")
-        self.expect(width[0] <= width[1], f"the page is {width[0]} pixels wide on a screen of {width[1]}")
+        # A phone's browser widens its window to what a page asks for: the screen counts.
+        width, screen = self.script("return document.documentElement.scrollWidth"), SIZES[self.size][0]
+        self.expect(width <= screen, f"the page is {width} pixels wide on a screen of {screen}")
         small = self.script("""return [...document.querySelectorAll("button, select, input")].filter((e) => e.offsetParent)
             .filter((e) => e.offsetHeight < 24).map((e) => e.outerHTML)""")
         self.expect(not small, f"too small for a finger: {small[:3]}")
@@ -125,6 +126,9 @@ class Reader:
         while self.time() < start + 0.3 and time.monotonic() < until:
             self.frames()
         self.seen(".play").click()
+        # A busy machine takes its time to hear a click.
+        while "Pause" in self.element(".play").text and time.monotonic() < until + 10:
+            self.frames()
         played, at = self.picture(), self.time()
         self.expect(played != first and at >= start + 0.3, f"the replay does not play: from {start} s to {at} s in 10 s")
         self.frames()
@@ -175,15 +179,18 @@ class Reader:
         keys(".")
         self.expect(0 < self.time() < 1, "a full stop does not step")
         keys(Keys.SPACE)
-        for _ in range(20):
+        until = time.monotonic() + 10
+        while self.time() < 0.05 and time.monotonic() < until:
             self.frames()
         keys(Keys.SPACE)
-        self.expect(self.time() > 0.02, "Space does not play")
+        self.expect(self.time() >= 0.05, "Space does not play")
         for _ in range(80):
             if focused() == "chart":
                 break
             keys(Keys.TAB)
         self.expect(focused() == "chart", "Tab does not reach a plot")
+        # However long a busy machine has played.
+        keys(Keys.HOME)
         before, shown = self.time(), self.element(".range").text
         keys(Keys.ARROW_RIGHT)
         self.expect(self.time() > before, "the cursor of a plot does not move")
