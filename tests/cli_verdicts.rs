@@ -59,7 +59,7 @@ fn fly_flies_an_unstable_loop_reports_it_and_fails() {
     assert!(failing.iter().any(|line| line.starts_with("sampled loops") && line.contains("roll: unstable")), "{text}");
     assert!(failing.iter().any(|line| line.starts_with("within 0.2 m") && line.contains("never")), "{text}");
     assert!(text.contains("NOT every claim holds") && text.contains("not certified: sampled loop roll"), "{text}");
-    assert_eq!(files(&directory.join("out")).len(), 6);
+    assert_eq!(files(&directory.join("out")).len(), 7);
     assert!(std::fs::read_to_string(directory.join("out/report.md")).unwrap().contains("Not every claim holds."));
 }
 

@@ -15,7 +15,7 @@ pub struct CompareArguments {
     /// Directory for table, pictures and gains [default: flights/<name>-compared]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// File with the rivals' gains [default: those that were found for the files in vehicles/ and for the paper's, built in]
+    /// File with the rivals' gains [default: those that were found for vehicles/hummingbird.toml, built in; other vehicles need --tune]
     #[arg(long, value_name = "FILE", conflicts_with = "tune")]
     pub gains: Option<PathBuf>,
     /// Search the rivals' gains first, in so many generations, and write them to rivals.toml
