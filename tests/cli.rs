@@ -61,7 +61,7 @@ fn a_flight_whose_claims_fail_exits_with_1_and_still_writes_everything() {
     let output = host_sim(&directory, &["fly", "weak.toml", "--out", "results"]);
     assert_eq!(status(&output), 1, "{}", stderr(&output));
     assert!(stdout(&output).contains("FAILS"));
-    assert_eq!(files(&directory.join("results")).len(), 6);
+    assert_eq!(files(&directory.join("results")).len(), 7);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::super::manifest::{CHUNK, MANIFEST};
 use super::super::step::longest;
-use super::super::store::{RESULT, SCENARIO};
+use super::super::store::{REPORT, RESULT, SCENARIO};
 use super::*;
 use std::fs;
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ fn any_number_of_threads_and_shards_gives_the_same_bytes() {
     let whole = directory("whole");
     let summary = fly_on(1, &orders(1, 1), &whole);
     assert_eq!((summary.flights, summary.beyond, summary.holds), (FLIGHTS, 0, false), "{summary}");
-    assert_eq!(names(&whole), [RESULT, MANIFEST, SCENARIO, SUMMARY]);
+    assert_eq!(names(&whole), [RESULT, MANIFEST, REPORT, SCENARIO, SUMMARY]);
     let expected = files(&whole);
     for threads in [2, 3] {
         let again = directory("threads");
