@@ -12,7 +12,7 @@
 //!
 //! omega_d and omega_d' need u' and u'', and these v~' and v~'': the model's under the thrust commanded. R_d keeps the nose to the
 //! heading's projection. The attitude law is the paper's, with its path lifting, from the core. xi is held while a command is cut, and
-//! its level is part of the law: it winds up no further than [`INTEGRAL_SPAN`] times it. The article's integral in the attitude loop is left out.
+//! its level is part of the law: it winds up no further than `INTEGRAL_SPAN` times it. The article's integral in the attitude loop is left out.
 //!
 //! Home: limits on thrust and torque that must be promised; any attitude.
 
