@@ -119,3 +119,6 @@ fn before(state: &BodyState, seconds: f64) -> BodyState {
         ..*state
     }
 }
+
+#[cfg(test)]
+mod tests;

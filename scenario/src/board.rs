@@ -1,11 +1,15 @@
 //! What the firmware can fly of all scenarios: 100 Hz, four rotors, and sampled loops with margin.
 //!
+//! On a board the law is told body rates by the estimator, which are late ([`rates_delay`]); they are in the loops judged here, whether the
+//! scenario has `[estimator]` or not.
+//!
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice of factors is judged here.
 //!
 //! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built for a board.
 
 use crate::file::Scenario;
-use crate::sampled_loop::{Axis, LoopModel};
+use crate::reality::estimator::rates_delay;
+use crate::sampled_loop::{Axis, LoopModel, Timing};
 use crate::stability::LoopMargin;
 use crate::verdict::Verdict;
 use controller_core::certificate::configuration::LawParameters;
@@ -37,10 +41,23 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
         return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
     }
     let verdict = Verdict::of(scenario).map_err(|error| format!("{name}: {error}"))?;
-    if let Some(lack) = verdict.lacking() {
-        return Err(format!("{name}: {lack}; what cannot be flown is not built"));
+    let law = scenario.configuration.law();
+    let loops = LoopModel::new(scenario.configuration.vehicle(), law, timing(scenario));
+    let loops = loops.map_err(|error| format!("{name}: {error}"))?.reports();
+    if let Some(lack) = verdict.lacking().or_else(|| LoopMargin::LEAST.first_lacking(&loops)) {
+        let late = rates_delay() * 1e3;
+        return Err(format!(
+            "{name}: {lack}; what cannot be flown is not built (a board's body rates are up to {late:.1} ms late)"
+        ));
     }
     Ok(verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
+}
+
+/// The scenario's timing on a board.
+fn timing(scenario: &Scenario) -> Timing {
+    let timing = scenario.loop_timing();
+    let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay() };
+    Timing { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
 /// The loops that only the attitude's factors change, and those that these and the position's across change; under the paper's law, whose
@@ -73,7 +90,7 @@ pub fn judged(scenario: &Scenario) -> JudgedLoops {
 fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
     let configuration = &scenario.configuration;
     let Ok(law) = factors.law(configuration.law(), configuration.vehicle()) else { return false };
-    let loops = LoopModel::new(configuration.vehicle(), &law, scenario.loop_timing());
+    let loops = LoopModel::new(configuration.vehicle(), &law, timing(scenario));
     loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
 }
 
@@ -81,7 +98,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
     // FNV-1a, 32 bits, over everything that the configuration and its loops are made of.
-    let text = format!("{:?} {:?}", scenario.configuration, scenario.loop_timing());
+    let text = format!("{:?} {:?}", scenario.configuration, timing(scenario));
     let hash = text.bytes().fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
     (hash >> 24) ^ (hash & 0x00FF_FFFF)
 }
@@ -100,7 +117,7 @@ mod tests {
         let held = |factors: &Factors| {
             let configuration = &study.configuration;
             let law = factors.law(configuration.law(), configuration.vehicle()).unwrap();
-            let loops = LoopModel::new(configuration.vehicle(), &law, study.loop_timing()).unwrap();
+            let loops = LoopModel::new(configuration.vehicle(), &law, timing(&study)).unwrap();
             LoopMargin::LEAST.first_lacking(&loops.reports()).is_none()
         };
         let (mut good, mut bad) = (0, 0);

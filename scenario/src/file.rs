@@ -139,11 +139,11 @@ impl Scenario {
         self.delay_steps as f64 * self.timing.step()
     }
 
-    /// By how much what is measured is late, s: with an estimator, the body rates by their low-pass.
+    /// By how much what is measured is late, s: with an estimator, the body rates.
     #[must_use]
     pub fn input_delay(&self) -> f64 {
         let sensors = self.reality.sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * self.timing.period());
-        sensors + self.reality.estimator.map_or(0.0, |_| estimator::low_pass_delay())
+        sensors + self.reality.estimator.map_or(0.0, |_| estimator::rates_delay())
     }
 
     /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together.

@@ -13,7 +13,7 @@
 //! | [`[estimator]`](estimator) | an IMU and late poses, from which the core's estimator makes the state | no `[sensors]` |
 //!
 //! All may be left out. The certificate, the controller and the boards know nothing of them: they are what a flight is
-//! flown *in*. `[sensors] delay` and the delay of the estimator's low-pass alone are part of the sampled loops.
+//! flown *in*. `[sensors] delay` and the delay of the estimator's body rates alone are part of the sampled loops.
 
 pub mod battery;
 pub mod disturbance;

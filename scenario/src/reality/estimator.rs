@@ -19,8 +19,8 @@ use super::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use controller_core::estimator::EstimatorParameters;
-use controller_core::imu::ImuParameters;
 use controller_core::imu::low_pass::LowPass;
+use controller_core::imu::{INCREMENT, ImuParameters};
 
 /// Samples of the IMU each second.
 pub const IMU_RATE: f64 = 1e3;
@@ -88,11 +88,11 @@ impl Estimator {
     }
 }
 
-/// By how much the body rates that the law is told are late, s.
+/// By how much the body rates that the law is told are late at most, s: by their low-pass, and by an increment that has just not ended.
 #[must_use]
-pub fn low_pass_delay() -> f64 {
+pub fn rates_delay() -> f64 {
     let ImuParameters { cutoff, rate, .. } = ImuParameters::BMI088;
-    f64::from(LowPass::new(cutoff.into(), rate.into()).delay())
+    f64::from(LowPass::new(cutoff.into(), rate.into()).delay()) + INCREMENT as f64 * 1e-6
 }
 
 /// Reads `[estimator]`.

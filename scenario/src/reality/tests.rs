@@ -256,7 +256,7 @@ fn a_section_that_needs_another_says_which() {
 }
 
 #[test]
-fn an_estimator_has_defaults_and_its_low_pass_counts_in_the_loops() {
+fn an_estimator_has_defaults_and_its_delay_counts_in_the_loops() {
     let with = |text: &str| read(text).unwrap();
     let plain = with("[estimator]\n");
     let estimator = plain.reality.estimator.unwrap();
@@ -264,7 +264,7 @@ fn an_estimator_has_defaults_and_its_low_pass_counts_in_the_loops() {
     assert_eq!((estimator.position_noise, estimator.attitude_noise), (1e-3, 0.3_f64.to_radians()));
     assert_eq!((estimator.dropout, estimator.outage, estimator.seed), (0.0, None, 0));
     assert!(plain.reality.is_model() && plain.reality.sections() == ["estimator"]);
-    assert!((3e-3..4e-3).contains(&plain.input_delay()), "{}", plain.input_delay());
+    assert!((8e-3..9e-3).contains(&plain.input_delay()), "{}", plain.input_delay());
     let roll = |scenario: &Scenario| scenario.loops().unwrap().reports()[0].margins.unwrap().delay;
     let lost = roll(&with("")) - roll(&plain);
     assert!((lost - plain.input_delay()).abs() < 1e-4, "{lost}");
