@@ -63,7 +63,7 @@ class MAVProxy:
 def fly(flown, proxy):
     proxy.wait_for("Detected vehicle 1:1", 20)
     flown.wait_for("ready", 20)
-    proxy.wait_for("Received 38 parameters", 20)
+    proxy.wait_for("Received 58 parameters", 20)
     proxy.ask("param show TKO_ALT", "TKO_ALT          1.5")
     proxy.type("param set TKO_ALT 2.0")
     flown.rest(1.0)
