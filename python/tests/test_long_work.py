@@ -10,7 +10,10 @@ import time
 import pytest
 import saturated_hybrid as sh
 
+# A shell ignores Ctrl-C for what it starts in the background, and that is handed down.
 LONG = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import saturated_hybrid as sh
 print("begun", flush=True)
 try:

@@ -125,8 +125,9 @@ fn serve(mut line: TcpStream, mut clients: Port, heard: &Mutex<Heard>, over: &At
         match line.read(&mut chunk) {
             Ok(0) => break,
             Ok(count) => frames.take(chunk.get(..count).unwrap_or(&chunk), |bytes, frame| {
-                clients.send(bytes);
+                // First: who has received it may ask what was said.
                 overhear(frame, heard);
+                clients.send(bytes);
             }),
             Err(error) if is_a_pause(&error) => {}
             Err(_) => break,
