@@ -13,6 +13,7 @@ import struct
 
 RAM = 0x2000_0000
 ALLOCATED, NOBITS, SYMTAB, FUNCTION = 2, 8, 2, 2
+LOAD = 1
 
 
 def path(symbol):
@@ -88,6 +89,18 @@ class Image:
     def ram(self):
         """Bytes of memory that are spoken for, without the stack."""
         return sum(section[5] for section in self._allocated() if section[3] >= RAM)
+
+    def binary(self):
+        """Where it is loaded to, and its bytes from there on; what lies between its parts is zero."""
+        offset, = struct.unpack_from("<I", self.data, 28)
+        size, count = struct.unpack_from("<HH", self.data, 42)
+        parts = [struct.unpack_from("<8I", self.data, offset + size * i) for i in range(count)]
+        loaded = sorted((part[3], part[1], part[4]) for part in parts if part[0] == LOAD and part[4])
+        begin = loaded[0][0]
+        image = bytearray(max(address + length for address, _, length in loaded) - begin)
+        for address, place, length in loaded:
+            image[address - begin : address - begin + length] = self.data[place : place + length]
+        return begin, bytes(image)
 
     def is_code(self, address):
         """Whether `address` lies behind a $t."""

@@ -1,6 +1,7 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
-//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository.
+//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. `BOOTLOADER=kept` leaves the first
+//! flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
 mod embed;
@@ -18,6 +19,10 @@ const MEMORY: [(&str, &str); 4] = [
     ("MPS2", "memory/mps2.x"),
     ("PROBE", "memory/mps2.x"),
 ];
+
+/// The same for who builds with `BOOTLOADER=kept`: behind the bootloader that the board came with.
+const KEPT: [(&str, &str); 2] =
+    [("MICOAIR_H743", "memory/micoair-h743-kept.x"), ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x")];
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -59,6 +64,15 @@ fn link(out: &Path) -> Result<(), String> {
         let names: Vec<_> = MEMORY.iter().map(|(board, _)| board.to_lowercase().replace('_', "-")).collect();
         let names = names.join(", ");
         return Err(format!("exactly one board's feature must be on, found {}; boards: {names}", boards.len()));
+    };
+    println!("cargo::rerun-if-env-changed=BOOTLOADER");
+    let memory = match env::var("BOOTLOADER").as_deref() {
+        Err(_) => memory,
+        Ok("kept") => {
+            let kept = KEPT.iter().find(|(board, _)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some());
+            kept.map(|(_, memory)| memory).ok_or("BOOTLOADER: this board has none")?
+        }
+        Ok(other) => return Err(format!("BOOTLOADER: found {other:?}, allowed is \"kept\", or nothing at all")),
     };
     fs::copy(memory, out.join("board-memory.x")).map_err(|error| format!("{memory}: {error}"))?;
     // The runtime asks every board with interrupts of its own for this file; those of the emulated boards need no names.

@@ -11,6 +11,7 @@
 //! | [`sector`] | messages in a sector, whole or torn |
 //! | [`log`] | a flight's file, made before the flight |
 //! | [`copy`] | the recording that a reset left, as a file |
+//! | [`library`] | the files for whoever asks over the link |
 //! | [`volume`] | numbered files in a FAT file system |
 //! | [`geometry`] | whether a card's file system can be used |
 //!
@@ -24,6 +25,7 @@
 
 pub mod copy;
 pub mod geometry;
+pub mod library;
 pub mod log;
 pub mod sector;
 pub mod volume;
@@ -34,6 +36,7 @@ use crate::shared::{CardState, Event, Severity, Shared};
 use core::convert::Infallible;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Deque;
+use library::Library;
 use log::Log;
 use volume::{Trouble, Volume};
 
@@ -110,6 +113,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
                 shared.announce(Event::new(Severity::Information, format_args!("Last recording: REC{number:05}.ULG")));
             }
         }
+        let mut library = Library::default();
         loop {
             let mut log = Log::prepare(&volume)?;
             let number = log.number();
@@ -117,7 +121,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
             if self.told.take().is_some() || !log.has_begun() {
                 shared.announce(Event::new(Severity::Information, format_args!("Card: next log {number:05}")));
             }
-            if let Err(trouble) = self.fill(&volume, &mut log).await {
+            if let Err(trouble) = self.fill(&volume, &mut log, &mut library).await {
                 // What is not on the card goes into the next file.
                 self.follower.go_back(log.pending());
                 return Err(trouble);
@@ -130,14 +134,21 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
     }
 
-    /// Fills a file with a flight, as much of it as a file holds; makes it longer until the flight begins.
-    async fn fill<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<(), Trouble> {
+    /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, somebody may read other files; while
+    /// nobody does, this one is made longer.
+    async fn fill<C: Card>(
+        &mut self,
+        volume: &Volume<'_, C>,
+        log: &mut Log,
+        library: &mut Library,
+    ) -> Result<(), Trouble> {
         let mut may_grow = true;
         loop {
             self.shared.card.set(CardState::Ready, self.clock.now());
             match self.write(volume, log)? {
                 Flight::Ended => return Ok(()),
                 Flight::Recording if log.is_full() => return Ok(()),
+                Flight::None if self.serve(volume, log, library) => {}
                 Flight::None if may_grow && log.size() < self.prepared => match log.grow(volume) {
                     Ok(()) => {}
                     // It is as long as it can be, and will do for a shorter flight.
@@ -151,6 +162,19 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
             }
             self.clock.until(self.clock.now().saturating_add(PACE)).await;
         }
+    }
+
+    /// Answers what the link asks of the files; whether somebody is reading.
+    fn serve<C: Card>(&self, volume: &Volume<'_, C>, log: &Log, library: &mut Library) -> bool {
+        let (shared, now) = (self.shared, self.clock.now());
+        if let Some(question) = shared.library.asked() {
+            let answer = library.answer(question, now, volume, log.number(), &shared.recorder);
+            shared.library.answer(question, answer);
+            shared.outgoing.signal(());
+        } else if !library.is_busy(now) {
+            library.close(volume);
+        }
+        library.is_busy(now)
     }
 
     /// Writes what there is to be written.

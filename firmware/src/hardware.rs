@@ -132,8 +132,20 @@ pub trait Watchdog {
 
 /// What starts the whole firmware anew.
 pub trait Restart {
-    /// Starts it anew. On a board this does not return.
+    /// Whether there is a bootloader that it can start in the firmware's place.
+    const HAS_BOOTLOADER: bool;
+
+    /// Starts the firmware anew. On a board this does not return.
     fn restart(&mut self);
+
+    /// Starts the bootloader, which waits for an image. On a board this does not return.
+    fn start_bootloader(&mut self);
+}
+
+/// A port that a computer's programs open and close.
+pub trait Port {
+    /// Whether one has it open.
+    fn is_open(&self) -> bool;
 }
 
 /// The battery's voltage, where a board can measure it.

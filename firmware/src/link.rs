@@ -10,7 +10,8 @@
 //! | [`streams`] | which messages go out by the clock, and how often |
 //! | [`telemetry`] | what the vehicle knows as messages |
 //! | [`origin`] | a local frame on the globe |
-//! | [`download`] | a recording, part by part |
+//! | [`download`] | the list of logs, and a log, part by part |
+//! | [`port`] | which of two lines it is on |
 //! | [`plans`], [`files`] | answers to clients that ask for missions and files |
 //! | [`writer`] | messages as frames |
 //!
@@ -27,6 +28,7 @@ pub mod files;
 pub mod frame;
 pub mod origin;
 pub mod plans;
+pub mod port;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;

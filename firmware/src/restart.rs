@@ -1,4 +1,4 @@
-//! The restart that a command asked for.
+//! The restart that a command asked for, into the firmware or into a bootloader.
 //!
 //! The link refuses one while a motor turns or parameters are written; from its yes on nobody arms. The restart waits for the answer to go
 //! out, and for what was set just before to be saved.
@@ -14,8 +14,11 @@ const LOOK: u64 = 100_000;
 pub const GRACE: u64 = 500_000;
 
 /// Restarts when that was asked for, for ever where it does not end the program.
-pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, machine: &mut impl Restart) -> ! {
+pub async fn run<M: RawMutex, R: Restart>(shared: &Shared<M>, clock: &impl Clock, machine: &mut R) -> ! {
     shared.can_restart.raise();
+    if R::HAS_BOOTLOADER {
+        shared.has_bootloader.raise();
+    }
     loop {
         clock.until(clock.now().saturating_add(LOOK)).await;
         if !shared.restarting.is_raised() {
@@ -26,6 +29,8 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, machine: &
         if shared.is_turning() || shared.saving.is_raised() {
             shared.restarting.lower();
             shared.announce(Event::new(Severity::Warning, "Restart: not now"));
+        } else if shared.into_bootloader.is_raised() {
+            machine.start_bootloader();
         } else {
             machine.restart();
         }

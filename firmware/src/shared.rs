@@ -20,14 +20,16 @@
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
 //! | board | [`Shared::clock_doubtful`] | control | until reboot |
+//! | port | [`Shared::on_port`] | link, both halves | until it moves |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
 //! | link | [`Shared::judging`] | control | while it lasts |
-//! | link | [`Shared::restarting`] | control, restart | until the restart |
-//! | restart | [`Shared::can_restart`] | link | for ever |
+//! | link | [`Shared::restarting`], [`Shared::into_bootloader`] | control, restart | until the restart |
+//! | restart | [`Shared::can_restart`], [`Shared::has_bootloader`] | link | for ever |
 //! | control | [`Shared::recorder`] | link | until the next flight |
 //! | control | [`Shared::recorder`] | card | as long as the ring holds it |
 //! | any | [`Shared::announce`] | card, while it is ready | until logged |
 //! | card | [`Shared::card`] | link, status | [`CARD_SILENCE`] |
+//! | link, and back | [`Shared::library`]: what is on the card | card, and back | until the next question |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
@@ -37,6 +39,7 @@ mod card;
 mod event;
 mod flag;
 mod latest;
+mod library;
 mod queue;
 mod reply;
 mod report;
@@ -45,6 +48,7 @@ pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
+pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
 pub use reply::{Asked, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
@@ -100,8 +104,14 @@ pub struct Shared<M: RawMutex> {
     pub judging: Flag,
     /// Raised by a command to restart: nothing begins to turn any more.
     pub restarting: Flag,
+    /// Raised with it where a bootloader is to start and not the firmware.
+    pub into_bootloader: Flag,
     /// Raised where somebody can restart the vehicle.
     pub can_restart: Flag,
+    /// Raised where there is a bootloader to start.
+    pub has_bootloader: Flag,
+    /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
+    pub on_port: Flag,
     /// Raised at boot where the clock's crystal does not run: nobody arms.
     pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
@@ -136,6 +146,8 @@ pub struct Shared<M: RawMutex> {
     pub recorder: Recorder<M>,
     /// The memory card, where the board has one.
     pub card: CardStatus<M>,
+    /// What the link wants to know of the card's files.
+    pub library: Library<M>,
     /// Events that found one of the queues full.
     lost: AtomicU32,
     lost_increments: AtomicU32,
@@ -156,7 +168,10 @@ impl<M: RawMutex> Shared<M> {
             saving: Flag::new(),
             judging: Flag::new(),
             restarting: Flag::new(),
+            into_bootloader: Flag::new(),
             can_restart: Flag::new(),
+            has_bootloader: Flag::new(),
+            on_port: Flag::new(),
             clock_doubtful: Flag::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
@@ -174,6 +189,7 @@ impl<M: RawMutex> Shared<M> {
             parameters: Parameters::new(),
             recorder: Recorder::new(),
             card: CardStatus::new(),
+            library: Library::new(),
             lost: AtomicU32::new(0),
             lost_increments: AtomicU32::new(0),
         }

@@ -15,6 +15,7 @@ use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
 use crate::hardware::{Battery, Card, Fault, SECTOR};
@@ -23,12 +24,15 @@ use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3};
+use embassy_stm32::peripherals::{
+    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3, USB_OTG_FS,
+};
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
+use embassy_stm32::usb::Driver;
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
 
 bind_interrupts!(
@@ -41,6 +45,7 @@ bind_interrupts!(
         DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         USART2 => usart::InterruptHandler<USART2>;
         USART3 => usart::BufferedInterruptHandler<USART3>;
     }
@@ -122,6 +127,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let uart = uart.expect("USART3's clock makes no 921,600 baud");
     let (simulator_receiver, simulator_transmitter) = link::simulator_halves(uart);
 
+    let usb = Driver::new_fs(p.USB_OTG_FS, Interrupts, p.PA12, p.PA11, usb::packets(), usb::config());
+
     Board {
         imu,
         motors,
@@ -130,6 +137,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         light: Lamp::new(Output::new(p.PD2, Level::Low, Speed::Low), Level::High),
         receiver,
         transmitter,
+        usb: Some(usb),
         simulator_receiver,
         simulator_transmitter,
         radio: None,
@@ -152,7 +160,7 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         prediv,
         mul: PllMul::MUL168,
         divp: Some(PllPDiv::DIV2), // core: 168 MHz
-        divq: Some(PllQDiv::DIV7), // 48 MHz
+        divq: Some(PllQDiv::DIV7), // 48 MHz, for USB
         divr: None,
     });
     rcc.sys = rcc::Sysclk::PLL1_P;

@@ -17,6 +17,7 @@ use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
@@ -29,7 +30,7 @@ use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, SDMMC1, TIM1, USART1,
-    USART2, USART6,
+    USART2, USART6, USB_OTG_FS,
 };
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
 use embassy_stm32::sdmmc::{self, Sdmmc};
@@ -37,6 +38,7 @@ use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
+use embassy_stm32::usb::Driver;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
 
 bind_interrupts!(
@@ -52,6 +54,7 @@ bind_interrupts!(
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         SDMMC1 => sdmmc::InterruptHandler<SDMMC1>;
         USART1 => usart::InterruptHandler<USART1>;
         USART2 => usart::BufferedInterruptHandler<USART2>;
@@ -136,6 +139,9 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let uart = BufferedUart::new(p.USART6, p.PC7, p.PC6, to, from, Interrupts, link::radio_config());
     let (radio, _) = link::simulator_halves(uart.expect("USART6's clock makes no 420,000 baud"));
 
+    let usb = usb::has_supply()
+        .then(|| Driver::new_fs(p.USB_OTG_FS, Interrupts, p.PA12, p.PA11, usb::packets(), usb::config()));
+
     let (clock, command) = (p.PC12, p.PD2);
     let card = sdmmc::Config::default();
     let card = Sdmmc::new_4bit(p.SDMMC1, Interrupts, clock, command, p.PC8, p.PC9, p.PC10, p.PC11, card);
@@ -148,6 +154,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
         receiver,
         transmitter,
+        usb,
         simulator_receiver,
         simulator_transmitter,
         radio: Some(radio),
@@ -174,6 +181,17 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
         divr: None,
     });
+    // The same 8 MHz times 24, for the port: the crystal is more exact than USB asks for.
+    rcc.pll3 = Some(rcc::Pll {
+        source,
+        prediv,
+        mul: PllMul::MUL24,
+        fracn: None,
+        divp: None,
+        divq: Some(PllDiv::DIV4), // 48 MHz
+        divr: None,
+    });
+    rcc.mux.usbsel = rcc::mux::Usbsel::PLL3_Q;
     rcc.sys = rcc::Sysclk::PLL1_P;
     rcc.ahb_pre = AHBPrescaler::DIV2; // 200 MHz
     rcc.apb1_pre = APBPrescaler::DIV2; // 100 MHz; timers 200 MHz

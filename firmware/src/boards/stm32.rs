@@ -1,12 +1,14 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
 pub mod board;
+mod bootloader;
 #[cfg(feature = "micoair-h743")]
 pub mod card;
 pub mod clock;
 pub mod crystal;
 pub mod executors;
 mod fault;
+mod handover;
 pub mod imu;
 pub mod light;
 pub mod link;
@@ -14,4 +16,5 @@ pub mod motors;
 pub mod restart;
 pub mod storage;
 pub mod tasks;
+pub mod usb;
 pub mod watchdog;

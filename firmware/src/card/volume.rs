@@ -263,6 +263,14 @@ impl<'c, C: Card> Volume<'c, C> {
         Ok(File(self.manager.open_file_in_dir(self.root, name, Mode::ReadWriteAppend)?))
     }
 
+    /// Opens a file that is there, for reading only.
+    ///
+    /// # Errors
+    /// If it cannot be opened.
+    pub fn open_to_read(&self, kind: Kind, number: u32) -> Result<File, Trouble> {
+        Ok(File(self.manager.open_file_in_dir(self.root, name(kind, number)?, Mode::ReadOnly)?))
+    }
+
     /// Reads from `offset` on; how many bytes there were.
     ///
     /// # Errors

@@ -9,7 +9,7 @@
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 311 CONFIGURE_ACTUATOR | asks the flight rules to let one motor (parameter 5, 1 to 4) beep (1), or turn as it is wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
-//! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning. Anything else is not done here |
+//! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning; 3: into the chip's bootloader. Anything else is not done here |
 //! | 192 DO_REPOSITION | by COMMAND_INT: asks to fly to a latitude, longitude and altitude and to hold there |
 //! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
 //! | any other | is answered as unsupported |
@@ -56,6 +56,8 @@ pub enum Action {
     EnterHil,
     /// Restart the vehicle.
     Restart,
+    /// Restart it into a bootloader.
+    StartBootloader,
     /// Say this, and that the command is not supported.
     Unsupported(&'static str),
     /// Calibrate, or end a calibration; the IMU task answers.
@@ -211,8 +213,8 @@ fn restart(call: &Call) -> Action {
         _ if companion != 0.0 || component != 0.0 => Action::Unsupported("Restart: there is only the autopilot"),
         0.0 => Action::Answer(MavResult::MAV_RESULT_ACCEPTED),
         1.0 => Action::Restart,
-        3.0 => Action::Unsupported("Restart: not into a bootloader"),
-        _ => Action::Unsupported("Restart: parameter 1 is 1, nothing else"),
+        3.0 => Action::StartBootloader,
+        _ => Action::Unsupported("Restart: parameter 1 is 1 or 3, nothing else"),
     }
 }
 

@@ -1,71 +1,221 @@
-//! What is still to be sent of a recording, a message at a time.
+//! The logs that somebody wants, a message at a time: their list, or one of them.
+//!
+//! Where a card is ready its task answers ([`Library`](crate::shared::Library)): what it offers is asked for chunk by chunk, the next one while
+//! the last goes out. Nobody waits for it: what it does not say within [`ANSWER_WITHIN`] ends the download. Elsewhere there is the flight
+//! recorder's recording, which is at hand. Nothing goes out while the vehicle is armed.
 
-use mavlink::dialects::common::LOG_DATA_DATA;
+use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, Shared};
+use core::fmt::Display;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA};
 
 /// Time between messages, us: 45 KB/s at most, half of a fast line.
 pub const INTERVAL: u64 = 2_000;
 
+/// The longest that the card may take over an answer, us: it also finishes a flight meanwhile, two seconds of it, and begins the next one's file.
+pub const ANSWER_WITHIN: u64 = 6_000_000;
+
 /// Bytes of a message.
 const PART: usize = 90;
 
-/// A part of a recording that somebody wants.
+const _: () = assert!(CHUNK.is_multiple_of(PART));
+
+/// A message.
+pub enum Message {
+    /// Of the list.
+    Entry(LOG_ENTRY_DATA),
+    /// Of a log.
+    Data(LOG_DATA_DATA),
+}
+
+/// What somebody wants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Job {
+    /// The entries from one number to another; as soon as it is known also how many there are.
+    Entries { next: u16, last: u16, count: Option<u16> },
+    /// The bytes of a log from one to another, which is not wanted.
+    Data { id: u16, next: u32, end: u32 },
+}
+
+/// What is being sent. The newest wish replaces the one before.
+#[derive(Debug)]
 pub struct Download {
-    offset: u32,
-    /// The first byte that is not wanted.
-    end: u32,
+    job: Option<Job>,
+    /// Whether the card is asked, or the recorder.
+    from_card: bool,
     /// When the next message may go out, us.
-    pub due: u64,
+    due: u64,
+    /// What the card was asked, and until when it may take, us.
+    asked: Option<(Question, u64)>,
+    /// Whether nothing can go out before it answers.
+    is_waiting: bool,
+    /// Where the chunk at hand begins.
+    offset: u32,
+    chunk: Option<Bytes>,
 }
 
 impl Download {
-    /// From `offset` on, `count` bytes, at once.
+    /// Nothing is wanted.
     #[must_use]
-    pub fn new(offset: u32, count: u32, now: u64) -> Self {
-        Self { offset, end: offset.saturating_add(count), due: now }
+    pub const fn new() -> Self {
+        Self { job: None, from_card: false, due: 0, asked: None, is_waiting: false, offset: 0, chunk: None }
     }
 
-    /// The next message of what `read` reads at an offset, and what is left then, at `now`, us. A message that is not full is the
-    /// last: what ends with a full one is followed by an empty one.
-    pub fn next(mut self, now: u64, read: impl Fn(u32, &mut [u8]) -> usize) -> (LOG_DATA_DATA, Option<Self>) {
-        let mut data = [0; PART];
-        let wanted = self.end.saturating_sub(self.offset).min(PART as u32) as usize;
-        let count = data.get_mut(..wanted).map_or(0, |part| read(self.offset, part));
-        let message = LOG_DATA_DATA { ofs: self.offset, id: 0, count: count as u8, data };
-        self.offset = self.offset.saturating_add(count as u32);
+    /// Entries of the list, by their numbers, at `now`, us.
+    pub fn list<M: RawMutex>(&mut self, first: u16, last: u16, now: u64, shared: &Shared<M>) {
+        self.begin(Job::Entries { next: first, last, count: None }, now, shared);
+    }
+
+    /// So many bytes of a log, from `offset` on, at `now`, us.
+    pub fn read<M: RawMutex>(&mut self, id: u16, offset: u32, count: u32, now: u64, shared: &Shared<M>) {
+        self.begin(Job::Data { id, next: offset, end: offset.saturating_add(count) }, now, shared);
+    }
+
+    /// No more of it.
+    pub fn end(&mut self) {
+        *self = Self::new();
+    }
+
+    fn begin<M: RawMutex>(&mut self, job: Job, now: u64, shared: &Shared<M>) {
+        let from_card = shared.card.state() == CardState::Ready;
+        *self = Self { job: Some(job), from_card, due: now, ..Self::new() };
+    }
+
+    /// When something is due, us: a message, or the end of the patience with the card.
+    #[must_use]
+    pub fn due(&self) -> u64 {
+        match (self.job, self.asked) {
+            (None, _) => u64::MAX,
+            (Some(_), Some((_, until))) if self.is_waiting => until,
+            (Some(_), _) => self.due,
+        }
+    }
+
+    /// The next message at `now`, us, if there is one.
+    pub fn next<M: RawMutex>(&mut self, now: u64, shared: &Shared<M>) -> Option<Message> {
+        let job = self.job.filter(|_| now >= self.due)?;
+        if shared.is_armed() {
+            self.give_up(shared, "Log: not while armed");
+            return None;
+        }
+        let message = match job {
+            Job::Entries { next, last, count: None } => {
+                let Answer::Count(count) = self.answer(Question::Count, now, shared)? else { return None };
+                // Whoever wants what is beyond the end learns where that is.
+                let end = count.saturating_sub(1);
+                self.job = Some(Job::Entries { next: next.min(end), last: last.min(end), count: Some(count) });
+                self.job = self.job.filter(|_| count > 0);
+                return (count == 0).then_some(Message::Entry(LOG_ENTRY_DATA::DEFAULT));
+            }
+            Job::Entries { next, last, count: Some(count) } => {
+                let answer = self.answer(Question::Size(next), now, shared)?;
+                let size = if let Answer::Size(size) = answer { size } else { 0 };
+                let job = Job::Entries { next: next.saturating_add(1), last, count: Some(count) };
+                self.job = (next < last).then_some(job);
+                Message::Entry(LOG_ENTRY_DATA {
+                    id: next,
+                    num_logs: count,
+                    last_log_num: count.saturating_sub(1),
+                    size,
+                    ..LOG_ENTRY_DATA::DEFAULT
+                })
+            }
+            Job::Data { id, next, end } => {
+                let wanted = end.saturating_sub(next).min(PART as u32) as usize;
+                let (data, count) = self.part(id, next, wanted, end, now, shared)?;
+                let after = next.saturating_add(count as u32);
+                // A message that is not full is the last: what ends with a full one is followed by an empty one.
+                self.job = (count == PART && after < end).then_some(Job::Data { id, next: after, end });
+                Message::Data(LOG_DATA_DATA { ofs: next, id, count: count as u8, data })
+            }
+        };
         self.due = now.saturating_add(INTERVAL);
-        let all_sent = count < PART || self.offset == self.end;
-        (message, (!all_sent).then_some(self))
+        Some(message)
+    }
+
+    /// The next bytes of a log, and how many of those that are wanted there are, if they are at hand.
+    fn part<M: RawMutex>(
+        &mut self,
+        id: u16,
+        next: u32,
+        wanted: usize,
+        end: u32,
+        now: u64,
+        shared: &Shared<M>,
+    ) -> Option<([u8; PART], usize)> {
+        let begin = next.checked_sub(self.offset).unwrap_or(u32::MAX) as usize;
+        // A chunk that is not full ends where the log does.
+        let is_there = |chunk: &Bytes| begin <= chunk.len() && (begin + wanted <= chunk.len() || !chunk.is_full());
+        let is_at_hand = self.chunk.as_ref().is_some_and(is_there);
+        if !is_at_hand {
+            match self.answer(Question::Bytes { id, offset: next }, now, shared)? {
+                Answer::Bytes(chunk) => {
+                    let behind = next.saturating_add(chunk.len() as u32);
+                    if chunk.is_full() && behind < end {
+                        self.ask(Question::Bytes { id, offset: behind }, now, shared);
+                    }
+                    (self.offset, self.chunk) = (next, Some(chunk));
+                }
+                Answer::Unknown => {
+                    self.give_up(shared, format_args!("Log {id}: there is none"));
+                    return None;
+                }
+                _ => {
+                    self.give_up(shared, format_args!("Log {id}: cannot be read"));
+                    return None;
+                }
+            }
+        }
+        let begin = next.saturating_sub(self.offset) as usize;
+        let bytes = self.chunk.as_ref().and_then(|chunk| chunk.get(begin..)).unwrap_or_default();
+        let mut data = [0; PART];
+        let count = data.iter_mut().zip(bytes.iter().take(wanted)).map(|(to, from)| *to = *from).count();
+        Some((data, count))
+    }
+
+    /// What the recorder says, or the card; asks the card, and gives up where it says nothing.
+    fn answer<M: RawMutex>(&mut self, question: Question, now: u64, shared: &Shared<M>) -> Option<Answer> {
+        if self.from_card != (shared.card.state() == CardState::Ready) {
+            // What the numbers stand for has changed.
+            self.give_up(shared, "Log: the card has come or gone, list again");
+            return None;
+        }
+        if !self.from_card {
+            return Some(Answer::of_recorder(&shared.recorder, question));
+        }
+        let Some((_, until)) = self.asked.filter(|(asked, _)| *asked == question) else {
+            self.ask(question, now, shared);
+            self.is_waiting = true;
+            return None;
+        };
+        let answer = shared.library.fetch(question);
+        self.is_waiting = answer.is_none();
+        if answer.is_some() {
+            self.asked = None;
+        } else if now >= until {
+            self.give_up(shared, "Log: the card does not answer");
+        }
+        answer
+    }
+
+    fn ask<M: RawMutex>(&mut self, question: Question, now: u64, shared: &Shared<M>) {
+        if self.from_card {
+            shared.library.ask(question, now);
+            self.asked = Some((question, now.saturating_add(ANSWER_WITHIN)));
+        }
+    }
+
+    fn give_up<M: RawMutex>(&mut self, shared: &Shared<M>, words: impl Display) {
+        self.end();
+        shared.announce(Event::new(Severity::Warning, words));
+    }
+}
+
+impl Default for Download {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Counts of the messages that a request for `wanted` bytes of `size` from `offset` on leads to.
-    fn counts(size: u32, offset: u32, wanted: u32) -> Vec<u8> {
-        let read = |offset: u32, out: &mut [u8]| out.len().min(size.saturating_sub(offset) as usize);
-        let mut counts = vec![];
-        let mut download = Some(Download::new(offset, wanted, 0));
-        while let Some(current) = download {
-            let (message, left) = current.next(5, read);
-            assert_eq!(message.ofs, offset + counts.iter().map(|count| u32::from(*count)).sum::<u32>());
-            assert!(left.is_none_or(|left| left.due == 5 + INTERVAL));
-            counts.push(message.count);
-            download = left;
-        }
-        counts
-    }
-
-    #[test]
-    fn what_is_wanted_comes_in_parts_and_the_end_is_told() {
-        assert_eq!(counts(200, 0, u32::MAX), [90, 90, 20]);
-        assert_eq!(counts(180, 0, u32::MAX), [90, 90, 0]);
-        assert_eq!(counts(1_000, 100, 180), [90, 90]);
-        assert_eq!(counts(1_000, 100, 100), [90, 10]);
-        assert_eq!(counts(0, 0, 90), [0]);
-        assert_eq!(counts(200, 500, 90), [0]);
-        assert_eq!(counts(200, u32::MAX, u32::MAX), [0]);
-    }
-}
+mod tests;

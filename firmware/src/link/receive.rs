@@ -91,6 +91,7 @@ pub struct Receiver<'a, M: RawMutex> {
     pose_refused: Occasionally,
     setpoint_refused: Occasionally,
     stranger_refused: Occasionally,
+    log_refused: Occasionally,
     /// When the time may be told again, us.
     next_time_told: u64,
     traffic: Traffic,
@@ -108,6 +109,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             pose_refused: Occasionally::default(),
             setpoint_refused: Occasionally::default(),
             stranger_refused: Occasionally::default(),
+            log_refused: Occasionally::default(),
             next_time_told: 0,
             traffic: Traffic::default(),
         }

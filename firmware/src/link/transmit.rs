@@ -2,7 +2,7 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::download::Download;
+use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::origin::Origin;
 use super::plans::About;
@@ -58,8 +58,8 @@ struct Speaker<'a, M: RawMutex> {
     schedule: Schedule,
     /// The next of a list of parameters, and when it is due, us.
     list: Option<(usize, u64)>,
-    /// What is still to be sent of a recording.
-    download: Option<Download>,
+    /// What is still to be sent of the logs.
+    download: Download,
     writer: Writer,
     /// Lost events that were told of.
     told: u32,
@@ -67,7 +67,14 @@ struct Speaker<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
     fn new(shared: &'a Shared<M>, now: u64) -> Self {
-        Self { shared, schedule: Schedule::new(now), list: None, download: None, writer: Writer::new(), told: 0 }
+        Self {
+            shared,
+            schedule: Schedule::new(now),
+            list: None,
+            download: Download::new(),
+            writer: Writer::new(),
+            told: 0,
+        }
     }
 
     fn system(&self) -> u8 {
@@ -86,8 +93,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// When something is due, us.
     fn next(&self) -> u64 {
         let list = self.list.map_or(u64::MAX, |(_, time)| time);
-        let download = self.download.map_or(u64::MAX, |download| download.due);
-        self.schedule.next(self.telemetry()).min(list).min(download)
+        self.schedule.next(self.telemetry()).min(list).min(self.download.due())
     }
 
     /// Writes the first message that is due; whether there is one.
@@ -111,13 +117,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    /// Writes the next part of a recording, if somebody wants one and it is due.
+    /// Writes the next message about the logs, if somebody wants one and it is due.
     fn downloaded(&mut self, now: u64) -> bool {
-        let Some(download) = self.download.filter(|download| now >= download.due) else { return false };
-        let shared = self.shared;
-        let (message, left) = download.next(now, |offset, out| shared.recorder.read(offset, out));
-        self.download = left;
-        self.say(&message);
+        match self.download.next(now, self.shared) {
+            Some(Message::Entry(entry)) => self.say(&entry),
+            Some(Message::Data(data)) => self.say(&data),
+            None => return false,
+        }
         true
     }
 
@@ -184,20 +190,17 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                     message_id: kind.number() as u16,
                 });
             }
-            Reply::Recording => {
-                let size = self.shared.recorder.size();
-                self.say(&LOG_ENTRY_DATA {
-                    size: size.unwrap_or(0),
-                    num_logs: u16::from(size.is_some()),
-                    ..LOG_ENTRY_DATA::DEFAULT
-                });
-            }
-            Reply::RecordingData { count: 0, .. } => {
-                self.download = None;
+            Reply::NoLogs => self.say(&LOG_ENTRY_DATA::DEFAULT),
+            Reply::Logs { first, last } => {
+                self.download.list(first, last, now, self.shared);
                 return false;
             }
-            Reply::RecordingData { offset, count } => {
-                self.download = Some(Download::new(offset, count, now));
+            Reply::LogData { id, offset, count } => {
+                self.download.read(id, offset, count, now, self.shared);
+                return false;
+            }
+            Reply::LogEnd => {
+                self.download.end();
                 return false;
             }
             Reply::Interval { kind, interval } => {

@@ -77,15 +77,26 @@ pub enum Reply {
     },
     /// MESSAGE_INTERVAL of a message.
     IntervalOf(Kind),
-    /// LOG_ENTRY: the last recording, or that there is none.
-    Recording,
-    /// LOG_DATA of the last recording, from this offset on, so many bytes; of none, and what is sent ends.
-    RecordingData {
+    /// LOG_ENTRY of the logs with these numbers.
+    Logs {
+        /// The first.
+        first: u16,
+        /// The last; there may be fewer.
+        last: u16,
+    },
+    /// LOG_ENTRY: there is none.
+    NoLogs,
+    /// LOG_DATA of a log.
+    LogData {
+        /// Its number.
+        id: u16,
         /// Bytes from its beginning.
         offset: u32,
         /// Bytes.
         count: u32,
     },
+    /// No more LOG_DATA and LOG_ENTRY.
+    LogEnd,
     /// MISSION_COUNT: there is nothing in that list.
     NoMission(MissionList),
     /// MISSION_ACK.

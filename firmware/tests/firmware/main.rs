@@ -4,6 +4,7 @@
 
 mod card;
 mod card_cuts;
+mod card_link;
 mod control;
 mod embedded;
 mod hil_answers;
@@ -23,6 +24,7 @@ mod link_setpoints;
 mod link_tasks;
 mod link_telemetry;
 mod parameters;
+mod port;
 mod radio;
 mod recorder;
 mod repeat;

@@ -12,6 +12,7 @@ use firmware::recorder::ulog;
 use firmware::shared::Report;
 use mavlink::dialects::common::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
+    STATUSTEXT_DATA,
 };
 
 const ROOM: usize = 500;
@@ -104,6 +105,10 @@ fn a_ground_station_lists_it_fetches_it_and_erases_it() {
 
     // There is no other recording, and those of other vehicles are theirs.
     fed.message(&LOG_REQUEST_DATA_DATA { id: 1, ..part(0, 90) }, 0);
+    let unknown = transmitted(&shared, 50_000);
+    assert!(sent::<LOG_DATA_DATA>(&unknown).is_empty());
+    let texts: Vec<STATUSTEXT_DATA> = sent(&unknown);
+    assert_eq!(texts[0].text.to_str(), Ok("Log 1: there is none"));
     fed.message(&LOG_REQUEST_DATA_DATA { target_system: 2, ..part(0, 90) }, 0);
     fed.message(&LOG_ERASE_DATA { target_system: 2, target_component: 1 }, 0);
     assert!(sent::<LOG_DATA_DATA>(&transmitted(&shared, 50_000)).is_empty());

@@ -4,6 +4,7 @@ use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::restart::Cause;
 use super::storage::ParameterFlash;
+use super::usb::Controller;
 
 /// Everything on the board, each part ready for the task that will own it.
 pub struct Board<Imu, Motors, Watchdog, Battery, Card> {
@@ -21,6 +22,8 @@ pub struct Board<Imu, Motors, Watchdog, Battery, Card> {
     pub receiver: Receiver,
     /// What the link sends.
     pub transmitter: Transmitter,
+    /// The USB port, where it has its supply.
+    pub usb: Option<Controller>,
     /// What a simulator sends.
     pub simulator_receiver: SimulatorReceiver,
     /// What a simulator receives.

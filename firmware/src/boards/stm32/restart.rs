@@ -1,5 +1,6 @@
 //! Why the chip started, the first thing to read after something went wrong; and starting it anew.
 
+use super::bootloader;
 use crate::hardware::Restart;
 
 /// What made the chip start.
@@ -20,30 +21,42 @@ pub enum Cause {
 /// The chip, which can start itself anew.
 pub struct Chip;
 
+/// The motors have been told to stop, a hundred times a second, since the vehicle was disarmed.
 impl Restart for Chip {
-    /// The motors have been told to stop, a hundred times a second, since the vehicle was disarmed.
+    const HAS_BOOTLOADER: bool = true;
+
     fn restart(&mut self) {
+        cortex_m::peripheral::SCB::sys_reset();
+    }
+
+    fn start_bootloader(&mut self) {
+        bootloader::wish();
         cortex_m::peripheral::SCB::sys_reset();
     }
 }
 
 /// Reads the flags and clears them, so that the next start tells its own.
-#[cfg(feature = "micoair-h743")]
 #[must_use]
 pub fn cause() -> Cause {
-    let register = embassy_stm32::pac::RCC.rsr();
-    let flags = register.read();
-    register.modify(|w| w.set_rmvf(true));
+    let cause = flags();
+    #[cfg(feature = "micoair-h743")]
+    embassy_stm32::pac::RCC.rsr().modify(|w| w.set_rmvf(true));
+    #[cfg(feature = "crazyflie-bolt")]
+    embassy_stm32::pac::RCC.csr().modify(|w| w.set_rmvf(true));
+    cause
+}
+
+/// Reads the flags.
+#[cfg(feature = "micoair-h743")]
+pub(super) fn flags() -> Cause {
+    let flags = embassy_stm32::pac::RCC.rsr().read();
     first(flags.iwdg1rstf(), flags.sftrstf(), flags.porrstf() || flags.borrstf(), flags.pinrstf())
 }
 
-/// Reads the flags and clears them, so that the next start tells its own.
+/// Reads the flags.
 #[cfg(feature = "crazyflie-bolt")]
-#[must_use]
-pub fn cause() -> Cause {
-    let register = embassy_stm32::pac::RCC.csr();
-    let flags = register.read();
-    register.modify(|w| w.set_rmvf(true));
+pub(super) fn flags() -> Cause {
+    let flags = embassy_stm32::pac::RCC.csr().read();
     first(flags.wdgrstf(), flags.sftrstf(), flags.porrstf() || flags.borrstf(), flags.padrstf())
 }
 

@@ -7,8 +7,10 @@ use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::{Cause, Chip};
+use super::restart::{Cause, Chip, flags};
 use super::storage::ParameterFlash;
+use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
+use super::{bootloader, handover};
 use crate::boards::chosen::{
     self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
     SERVICES_INTERRUPT,
@@ -16,6 +18,7 @@ use crate::boards::chosen::{
 use crate::boards::recorder;
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
+use crate::link::port::Line;
 use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
 use crate::recorder::ring::Ring;
@@ -23,7 +26,7 @@ use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
 use crate::{boot, card, imu, link, radio, restart, status};
 use controller_core::flight::Pilot;
-use embassy_executor::Executor;
+use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use static_cell::StaticCell;
@@ -34,6 +37,8 @@ type Repeated = repeat::Repeated<CriticalSectionRawMutex>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
+    handover::begin_anew();
+    bootloader::enter_if_wished(flags() == Cause::Software);
     let board = chosen::take();
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
@@ -65,8 +70,7 @@ pub fn run() -> ! {
 
     SERVICES_INTERRUPT.set_priority(Priority::P8);
     let spawner = SERVICES.start(SERVICES_INTERRUPT);
-    spawner.spawn(receive(shared, board.receiver).unwrap());
-    spawner.spawn(transmit(shared, board.transmitter).unwrap());
+    spawner.spawn(carry_link(shared, board.receiver, board.transmitter, board.usb).unwrap());
     spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
     spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
     if let Some(radio) = board.radio {
@@ -108,14 +112,42 @@ async fn sample(shared: &'static Shared, mut sensor: BoardImu) {
     imu::run(shared, &SystemClock, &mut sensor).await;
 }
 
+/// Starts what the link consists of. The port's parts are for one executor, so they are made in it.
 #[embassy_executor::task]
-async fn receive(shared: &'static Shared, line: Receiver) {
+async fn carry_link(shared: &'static Shared, receiver: Receiver, transmitter: Transmitter, usb: Option<Controller>) {
+    // SAFETY: this is a task, and Embassy's executors run it.
+    let spawner = unsafe { Spawner::for_current_executor().await };
+    let (mut port_receiver, mut port_transmitter) = (None, None);
+    if let Some(Usb { device, receiver, transmitter, port }) = usb.map(|usb| Usb::new(usb, chosen::NAME)) {
+        (port_receiver, port_transmitter) = (Some(receiver), Some(transmitter));
+        spawner.spawn(answer_host(device).unwrap());
+        spawner.spawn(watch_port(shared, port).unwrap());
+    } else {
+        shared.announce(Event::new(Severity::Warning, "USB has no supply: the port stays off"));
+    }
+    let on_port = &shared.on_port;
+    spawner.spawn(receive(shared, Line { serial: receiver, port: port_receiver, on_port }).unwrap());
+    spawner.spawn(transmit(shared, Line { serial: transmitter, port: port_transmitter, on_port }).unwrap());
+}
+
+#[embassy_executor::task]
+async fn receive(shared: &'static Shared, line: Line<'static, Receiver, PortReceiver>) {
     link::receive::receive(line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn transmit(shared: &'static Shared, line: Transmitter) {
+async fn transmit(shared: &'static Shared, line: Line<'static, Transmitter, PortTransmitter>) {
     link::transmit::transmit(line, &SystemClock, shared).await;
+}
+
+#[embassy_executor::task]
+async fn answer_host(mut device: Device) {
+    device.run().await;
+}
+
+#[embassy_executor::task]
+async fn watch_port(shared: &'static Shared, port: UsbPort) {
+    link::port::watch(&port, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]

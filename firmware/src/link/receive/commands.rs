@@ -78,7 +78,8 @@ impl<M: RawMutex> Receiver<'_, M> {
             }
             Action::ForceDisarm => self.shared.request_disarm(),
             Action::EnterHil => self.shared.hil.raise(),
-            Action::Restart => return Some(self.restart()),
+            Action::Restart => return Some(self.restart(false)),
+            Action::StartBootloader => return Some(self.restart(true)),
             Action::Unsupported(words) => {
                 self.shared.announce(Event::new(Severity::Warning, words));
                 return Some(MavResult::MAV_RESULT_UNSUPPORTED);
@@ -91,13 +92,20 @@ impl<M: RawMutex> Receiver<'_, M> {
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }
 
-    /// Has the vehicle restarted, once this answer is out.
-    fn restart(&mut self) -> MavResult {
+    /// Has the vehicle restarted, into its bootloader or not, once this answer is out.
+    fn restart(&mut self, into_bootloader: bool) -> MavResult {
         let shared = self.shared;
+        if into_bootloader {
+            shared.into_bootloader.raise();
+        } else {
+            shared.into_bootloader.lower();
+        }
         // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
         shared.restarting.raise();
         let (refused, result) = if !shared.can_restart.is_raised() {
             ("Restart: nobody here can do that", MavResult::MAV_RESULT_UNSUPPORTED)
+        } else if into_bootloader && !shared.has_bootloader.is_raised() {
+            ("Restart: there is no bootloader", MavResult::MAV_RESULT_UNSUPPORTED)
         } else if shared.is_turning() {
             ("Restart: only disarmed, and no motor turning", MavResult::MAV_RESULT_DENIED)
         } else if shared.saving.is_raised() {

@@ -1,36 +1,51 @@
-//! The flight recorder, asked for its last recording: listed, read in any order, erased. There is never more than number 0.
+//! Logs, asked for: listed, read in any order, erased. Only while disarmed, and who asks otherwise is told so.
 
 use super::Receiver;
 use crate::link::frame::Frame;
-use crate::shared::Reply;
+use crate::shared::{CardState, Event, Reply, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA};
 
 impl<M: RawMutex> Receiver<'_, M> {
-    pub(super) fn list_recordings(&mut self, _: &Frame<'_>, message: &LOG_REQUEST_LIST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::Recording);
+    /// Whether logs may be handed out; says so if not.
+    fn may_read(&mut self, frame: &Frame<'_>) -> bool {
+        let is_armed = self.shared.is_armed();
+        if is_armed {
+            self.refused();
+            self.log_refused.warn(self.shared, frame.time, "Log: not while armed");
         }
+        !is_armed
     }
 
-    pub(super) fn read_recording(&mut self, _: &Frame<'_>, message: &LOG_REQUEST_DATA_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            match message.id {
-                0 => self.shared.reply(Reply::RecordingData { offset: message.ofs, count: message.count }),
-                _ => self.refused(),
-            }
+    pub(super) fn list_recordings(&mut self, frame: &Frame<'_>, message: &LOG_REQUEST_LIST_DATA) {
+        if !self.is_addressed(message.target_system, message.target_component) {
+            return;
+        }
+        // Who hears that there is none asks no more; who wants a part and hears nothing asks again, and gets it after landing.
+        let list = Reply::Logs { first: message.start, last: message.end };
+        self.shared.reply(if self.may_read(frame) { list } else { Reply::NoLogs });
+    }
+
+    pub(super) fn read_recording(&mut self, frame: &Frame<'_>, message: &LOG_REQUEST_DATA_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) && self.may_read(frame) {
+            self.shared.reply(Reply::LogData { id: message.id, offset: message.ofs, count: message.count });
         }
     }
 
     pub(super) fn end_reading(&mut self, _: &Frame<'_>, message: &LOG_REQUEST_END_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::RecordingData { offset: 0, count: 0 });
+            self.shared.reply(Reply::LogEnd);
         }
     }
 
-    pub(super) fn erase_recordings(&mut self, _: &Frame<'_>, message: &LOG_ERASE_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
+    /// The recorder's recording goes; files stay, because nothing on a vehicle deletes a file.
+    pub(super) fn erase_recordings(&mut self, frame: &Frame<'_>, message: &LOG_ERASE_DATA) {
+        if self.is_addressed(message.target_system, message.target_component) && self.may_read(frame) {
             self.shared.recorder.erase();
+            if self.shared.card.state() == CardState::Ready {
+                let words = "Log: files stay on the card; delete them there";
+                self.shared.announce(Event::new(Severity::Information, words));
+            }
         }
     }
 }

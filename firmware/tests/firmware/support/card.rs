@@ -26,6 +26,8 @@ pub struct Medium {
     pub is_absent: bool,
     /// Whether writes fail.
     pub fails: bool,
+    /// What the sector that cannot be read holds.
+    pub worn: Option<Vec<u8>>,
     /// How long the card keeps its task at a write, us, by the number of the write.
     pub takes: Option<fn(usize) -> u64>,
 }
@@ -56,7 +58,8 @@ impl Card for Simulation<'_> {
     fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> core::result::Result<(), Fault> {
         let medium = self.medium.borrow();
         *data = medium.image.get(&sector).copied().unwrap_or([0; SECTOR]);
-        if medium.is_absent || sector >= medium.sectors { Err(Fault) } else { Ok(()) }
+        let is_worn = medium.worn.as_deref() == Some(data.as_slice());
+        if medium.is_absent || is_worn || sector >= medium.sectors { Err(Fault) } else { Ok(()) }
     }
 
     fn write(&mut self, sector: u32, data: &[u8; SECTOR]) -> core::result::Result<(), Fault> {

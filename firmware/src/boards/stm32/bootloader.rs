@@ -1,0 +1,69 @@
+//! The chip's own bootloader, which takes an image over USB (DFU): asked for before a restart, entered right after it.
+//!
+//! It has to begin as after a reset: clocks as they come up, no peripheral at work, the watchdog, which nothing but a reset stops, not
+//! started. So the wish is kept in memory that no start clears, behind the flight recorder's, and looked at first of all.
+
+use core::cell::UnsafeCell;
+use core::sync::atomic::{Ordering, fence};
+
+unsafe extern "C" {
+    /// Where the wish is: firmware/memory/ sets it.
+    static _bootloader_wish: UnsafeCell<[u64; 4]>;
+}
+
+/// The wish. Said four times: a write to memory that has error-correcting codes may wait in the chip for the next one, and be lost if a reset
+/// comes first.
+const WISH: [u64; 4] = [0x4446_5520_706C_6561; 4];
+
+/// Where the bootloader's vector table is.
+#[cfg(feature = "micoair-h743")]
+const BOOTLOADER: u32 = 0x1FF0_9800;
+
+/// Where the bootloader's vector table is.
+#[cfg(feature = "crazyflie-bolt")]
+const BOOTLOADER: u32 = 0x1FFF_0000;
+
+/// Has the next start enter the bootloader.
+pub fn wish() {
+    set(WISH);
+}
+
+/// Enters the bootloader if that was wished for before the restart, which was the firmware's own or not. Before anything is turned on.
+pub fn enter_if_wished(is_own_restart: bool) {
+    // After another start the memory may have been without power, and hold nothing that may be read.
+    let is_wished = is_own_restart && {
+        // SAFETY: this part of the memory is nobody else's, has been written to since power came, and any bits are numbers.
+        let wish = unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).read_volatile() };
+        wish.iter().zip(&WISH).filter(|(wish, expected)| wish == expected).count() >= WISH.len() - 1
+    };
+    set([0; 4]);
+    if is_wished {
+        enter();
+    }
+}
+
+fn set(value: [u64; 4]) {
+    // SAFETY: this part of the memory is nobody else's, and one thing at a time sets it.
+    unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).write_volatile(value) };
+    fence(Ordering::SeqCst);
+    cortex_m::asm::dsb();
+}
+
+fn enter() -> ! {
+    // It expects to be where the core looks for vectors, as where the boot pin has chosen it.
+    #[cfg(feature = "crazyflie-bolt")]
+    {
+        use embassy_stm32::pac::{RCC, SYSCFG};
+        RCC.apb2enr().modify(|w| w.set_syscfgen(true));
+        cortex_m::asm::dsb();
+        SYSCFG.memrm().modify(|w| w.set_mem_mode(1));
+    }
+    // SAFETY: one register, nothing else runs; the address is that of ST's bootloader in this chip's system memory, where a
+    // valid vector table is (application note AN2606), and nothing of this firmware is in use any more.
+    unsafe {
+        (*cortex_m::peripheral::SCB::PTR).vtor.write(BOOTLOADER);
+        cortex_m::asm::dsb();
+        cortex_m::asm::isb();
+        cortex_m::asm::bootload(BOOTLOADER as *const u32)
+    }
+}

@@ -1,0 +1,71 @@
+//! Two lines, one link: the serial line, or a computer's USB port while a program there has it open.
+//!
+//! One at a time. So there is one receiver, which knows who commands, and one place where answers go; whoever is on the line that is not the
+//! link is not heard, poses included. The link moves when the port is opened or closed, never while a motor turns: who flies over one
+//! line keeps it, and a cable that is pulled is a ground station that falls silent. Every move is told, on the line that it leads to.
+
+use crate::hardware::{Clock, Port};
+use crate::shared::{Event, Flag, Severity, Shared};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use embedded_io_async::{Error, ErrorKind, ErrorType, Read, Write};
+
+/// How often somebody looks whether the port is open, us.
+pub const LOOK: u64 = 100_000;
+
+/// One direction of the link, on whichever line it is.
+pub struct Line<'a, S, P> {
+    /// The serial line.
+    pub serial: S,
+    /// The port, where there is one.
+    pub port: Option<P>,
+    /// Whether the link is on the port: [`Shared::on_port`].
+    pub on_port: &'a Flag,
+}
+
+impl<S, P> ErrorType for Line<'_, S, P> {
+    type Error = ErrorKind;
+}
+
+impl<S: Read, P: Read> Read for Line<'_, S, P> {
+    /// Who waits on one line does not hear of a move to the other, and has to ask again within bounded time, as the link does.
+    async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
+        match self.port.as_mut().filter(|_| self.on_port.is_raised()) {
+            Some(port) => port.read(bytes).await.map_err(|error| error.kind()),
+            None => self.serial.read(bytes).await.map_err(|error| error.kind()),
+        }
+    }
+}
+
+impl<S: Write, P: Write> Write for Line<'_, S, P> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        match self.port.as_mut().filter(|_| self.on_port.is_raised()) {
+            Some(port) => port.write(bytes).await.map_err(|error| error.kind()),
+            None => self.serial.write(bytes).await.map_err(|error| error.kind()),
+        }
+    }
+
+    async fn flush(&mut self) -> Result<(), ErrorKind> {
+        match self.port.as_mut().filter(|_| self.on_port.is_raised()) {
+            Some(port) => port.flush().await.map_err(|error| error.kind()),
+            None => self.serial.flush().await.map_err(|error| error.kind()),
+        }
+    }
+}
+
+/// Moves the link to the port while that is open, and back, for ever.
+pub async fn watch<M: RawMutex>(port: &impl Port, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    loop {
+        let is_open = port.is_open();
+        if is_open != shared.on_port.is_raised() && !shared.is_turning() {
+            let words = if is_open {
+                shared.on_port.raise();
+                "Link: on USB, the serial line is not heard"
+            } else {
+                shared.on_port.lower();
+                "Link: on the serial line"
+            };
+            shared.announce(Event::new(Severity::Information, words));
+        }
+        clock.until(clock.now().saturating_add(LOOK)).await;
+    }
+}
