@@ -11,7 +11,8 @@
 //! | references from setpoints | [`governor_campaign`] |
 //! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
-//! | the program and the pages | [`cli`], [`cli_certify`], [`cli_verdicts`], [`cli_output`], [`cli_campaign`], [`documentation`] |
+//! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_certify`], [`cli_compare`], [`cli_identify`], [`cli_output`], [`cli_verdicts`], |
+//! |  | [`documentation`] |
 
 mod adversary;
 mod attitude_sign;
@@ -22,6 +23,8 @@ mod certified_flights;
 mod cli;
 mod cli_campaign;
 mod cli_certify;
+mod cli_compare;
+mod cli_identify;
 mod cli_output;
 mod cli_verdicts;
 mod documentation;

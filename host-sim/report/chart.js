@@ -155,6 +155,19 @@ class Chart {
     this.context.stroke();
   }
 
+  /** An upright line at a horizontal value, on the layer of what moves; says where that is. */
+  cursor(context, value) {
+    const x = this.x(value);
+    context.strokeStyle = color("ink");
+    context.globalAlpha = 0.55;
+    context.beginPath();
+    context.moveTo(x, 4);
+    context.lineTo(x, this.height - this.margin.bottom);
+    context.stroke();
+    context.globalAlpha = 1;
+    return x;
+  }
+
   /** Draws within the axes only. */
   clipped(draw) {
     const { context, margin, width, height } = this;

@@ -2,23 +2,17 @@
 
 class Spread {
   constructor(figure, distribution) {
-    Object.assign(this, distribution, { cumulative: false, at: null });
+    // Bars of several groups hide each other.
+    Object.assign(this, distribution, { cumulative: distribution.groups.length > 1, at: null });
     this.groups = distribution.groups.map((group) => ({ ...group, quantiles: group.quantiles ? decode(group.quantiles) : new Float32Array() }));
     const place = figure.querySelector(".drawing");
-    const list = make("ul", { class: "legend" });
-    for (const group of this.groups) {
-      group.reading = make("span", { class: "reading" });
-      const swatch = make("span", { class: "swatch" });
-      swatch.style.borderColor = `var(--${group.color})`;
-      list.append(make("li", {}, make("span", { class: "entry" }, swatch, group.label, group.reading)));
-    }
-    const toggle = make("button", { type: "button", class: "fit", "aria-pressed": "false", click: () => {
+    const toggle = make("button", { type: "button", class: "fit", "aria-pressed": String(this.cumulative), click: () => {
       this.cumulative = !this.cumulative;
       toggle.setAttribute("aria-pressed", this.cumulative);
       this.chart.draw();
     } }, "Cumulative");
     figure.querySelector("h3").append(toggle);
-    place.append(list);
+    place.append(legend(this.groups, () => this.chart.draw()));
     this.chart = new Chart(place, 230, () => this.paint(), (context) => this.mark(context));
     const { box } = this.chart;
     box.tabIndex = 0;
@@ -32,8 +26,12 @@ class Spread {
       event.preventDefault();
       const { chart } = this;
       this.read(chart.at(chart.x(this.at ?? this.least) + 6 * way));
-      tell(`${measure(this.at, this.unit)}: ${this.groups.map(({ label, reading }) => `${label} ${reading.textContent}`).join(", ")}`);
+      tell(`${measure(this.at, this.unit)}: ${this.shown().map(({ label, reading }) => `${label} ${reading.textContent}`).join(", ")}`);
     });
+  }
+
+  shown() {
+    return this.groups.filter(({ on }) => on);
   }
 
   read(value) {
@@ -57,12 +55,12 @@ class Spread {
   paint() {
     const { chart } = this;
     const { context } = chart;
-    const greatest = this.cumulative ? 1 : 1.05 * Math.max(1e-6, ...this.groups.map(({ bins, count }) => Math.max(...bins) / Math.max(count, 1)));
+    const greatest = this.cumulative ? 1 : 1.05 * Math.max(1e-6, ...this.shown().map(({ bins, count }) => Math.max(...bins) / Math.max(count, 1)));
     chart.range({ least: this.least, greatest: this.greatest, logarithmic: this.logarithmic }, { least: 0, greatest });
     context.clearRect(0, 0, chart.width, chart.height);
     chart.axes(this.unit);
     chart.clipped(() => {
-      for (const group of this.groups) (this.cumulative ? this.paintShare(context, group) : this.paintBars(context, group));
+      for (const group of this.shown()) (this.cumulative ? this.paintShare(context, group) : this.paintBars(context, group));
       if (this.bound !== null) {
         const x = chart.x(this.bound);
         context.strokeStyle = color("ink");
@@ -83,7 +81,7 @@ class Spread {
     return this.logarithmic ? this.least * (this.greatest / this.least) ** part : this.least + part * (this.greatest - this.least);
   }
 
-  paintBars(context, { bins, count, color: name }) {
+  paintBars(context, { bins, count, color: name, dashed }) {
     const { chart } = this;
     const outline = [[chart.x(this.least), chart.y(0)]];
     bins.forEach((bin, place) => {
@@ -93,18 +91,22 @@ class Spread {
     outline.push([chart.x(this.greatest), chart.y(0)]);
     context.strokeStyle = context.fillStyle = color(name);
     context.lineWidth = 1.5;
+    context.setLineDash(dashed ? [5, 4] : []);
     chart.line(outline);
+    context.setLineDash([]);
     context.globalAlpha = 0.18;
     context.fill();
     context.globalAlpha = 1;
   }
 
-  paintShare(context, { quantiles, finite, count, color: name }) {
+  paintShare(context, { quantiles, finite, count, color: name, dashed }) {
     const { chart } = this;
     context.strokeStyle = color(name);
     context.lineWidth = 1.75;
     const points = [...quantiles].map((value, place) => [chart.x(value), chart.y(((place / (quantiles.length - 1)) * finite) / Math.max(count, 1))]);
+    context.setLineDash(dashed ? [5, 4] : []);
     if (points.length > 0) chart.line([...points, [chart.x(this.greatest), points[points.length - 1][1]]]);
+    context.setLineDash([]);
   }
 
   mark(context) {
@@ -113,14 +115,7 @@ class Spread {
       group.reading.textContent = this.at === null ? `${group.count} flights` : `${short(100 * this.share(group, this.at))} % up to ${measure(this.at, this.unit)}`;
     }
     if (this.at === null) return;
-    const x = chart.x(this.at);
-    context.strokeStyle = color("ink");
-    context.globalAlpha = 0.55;
-    context.beginPath();
-    context.moveTo(x, 4);
-    context.lineTo(x, chart.height - chart.margin.bottom);
-    context.stroke();
-    context.globalAlpha = 1;
+    chart.cursor(context, this.at);
   }
 }
 

@@ -35,6 +35,7 @@ class Plot {
   constructor(figure, { title, unit, logarithmic, curves, bounds }) {
     Object.assign(this, { title, unit, logarithmic, bounds, fit: false, drag: null });
     this.curves = curves.map((curve) => ({ ...curve, source: tracks[curve.track], on: true }));
+    this.end = Math.max(0, ...this.curves.map(({ source }) => source.end));
     this.reach = this.extremes(0, flightEnd);
     const place = figure.querySelector(".drawing");
     place.append(this.legend(figure));
@@ -48,19 +49,7 @@ class Plot {
   }
 
   legend(figure) {
-    const list = make("ul", { class: "legend" });
-    for (const curve of this.curves) {
-      curve.reading = make("span", { class: "reading" });
-      const swatch = make("span", { class: `swatch ${curve.dashed ? "dashed" : ""}` });
-      swatch.style.borderColor = `var(--${curve.color})`;
-      const press = () => {
-        curve.on = !curve.on;
-        toggle.setAttribute("aria-pressed", curve.on);
-        this.chart.draw();
-      };
-      const toggle = make("button", { type: "button", "aria-pressed": "true", click: press }, swatch, curve.label, curve.reading);
-      list.append(make("li", {}, toggle));
-    }
+    const list = legend(this.curves, () => this.chart.draw());
     if (this.bounds.length > 0) {
       const press = () => {
         this.fit = !this.fit;
@@ -116,7 +105,8 @@ class Plot {
   paint() {
     const { chart } = this;
     const { context } = chart;
-    chart.range({ least: view.from, greatest: view.to }, this.axis());
+    // Of several recordings a shorter one ends its plot where it ends itself.
+    chart.range({ least: view.from, greatest: view.from < this.end ? Math.min(view.to, this.end) : view.to }, this.axis());
     context.clearRect(0, 0, chart.width, chart.height);
     chart.axes("s");
     chart.clipped(() => {
@@ -182,15 +172,8 @@ class Plot {
       const [from, to] = [chart.x(this.drag.from), chart.x(this.drag.to)];
       context.fillRect(from, chart.margin.top - 6, to - from, chart.height - chart.margin.bottom - chart.margin.top + 6);
     }
-    if (time < view.from || time > view.to) return;
-    const x = chart.x(time);
-    context.strokeStyle = color("ink");
-    context.globalAlpha = 0.55;
-    context.beginPath();
-    context.moveTo(x, 4);
-    context.lineTo(x, chart.height - chart.margin.bottom);
-    context.stroke();
-    context.globalAlpha = 1;
+    if (time < view.from || time > chart.horizontal.greatest) return;
+    const x = chart.cursor(context, time);
     for (const { source, column, color: name, on } of this.curves) {
       const value = source.value(column, time);
       const y = chart.y(value);

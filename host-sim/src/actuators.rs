@@ -75,13 +75,19 @@ impl Actuators {
         self.rotors.as_ref().map_or_else(Vec::new, |(_, rotors)| rotors.thrusts())
     }
 
+    /// Whether a wrench acts at once.
+    #[must_use]
+    pub fn are_ideal(&self) -> bool {
+        self.rotors.is_none() && self.delay_steps == 0
+    }
+
     /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].
     pub fn hold(&mut self, plant: &mut Plant, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
-        if self.rotors.is_none() && self.delay_steps == 0 {
+        if self.are_ideal() {
             return Ok((plant.hold(wrench, steps)?, Thrusts::new()));
         }
         self.waiting.push_back((self.now + self.delay_steps, *wrench));

@@ -2,12 +2,15 @@
 
 mod campaign;
 mod compare;
+mod identify;
 mod sessions;
 
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
 pub use compare::CompareArguments;
 use host_sim::tune::requirements::Requirements;
+use identify::IDENTIFY_HELP;
+pub use identify::IdentifyArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
 use std::path::PathBuf;
@@ -31,6 +34,8 @@ Examples:
   host-sim fly mine.toml --out results       choose where the results go
   host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
   host-sim tune mine.toml --out tuned.toml   search gains that certify and make the most of the vehicle
+  host-sim identify log.csv --scenario mine.toml --bench bench.toml --out found.toml
+                                             mass, inertia, lag, centre of mass and drag of a real vehicle
   host-sim campaign mine.toml --flights 1000 thrown into the air a thousand times, in every way, in wind and noise
   host-sim compare vehicles/hummingbird.toml ours beside other laws, in the same flights
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
@@ -87,6 +92,9 @@ pub enum Command {
     /// Search gains: everything certifies; then the least cost of what a pilot feels: height lost, gusts, steps, noise.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
+    /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
+    #[command(after_help = IDENTIFY_HELP)]
+    Identify(IdentifyArguments),
     /// Fly a scenario thousands of times in circumstances drawn at random; the same to the bit however it is split.
     #[command(after_help = campaign::HELP)]
     Campaign(CampaignArguments),
@@ -163,7 +171,7 @@ nothing yet, it writes nothing.";
 
 const COMPARE_HELP: &str = "\
 Each figure is better the less it is; rows that begin with a star are those where another law does better than ours. docs/rivals.md says
-what the laws are and what is fair about it. Random flights are those of [campaign], the same for every law.
+what the laws are and what is fair about it. Random flights are those of `campaign --law NAME`, the same for every law.
 
 Exit status 0: every random flight of ours settles, and no command of it is cut or leaves its certified bounds; 1: one does not, or the
 scenario is not certified.";

@@ -6,7 +6,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`draw`] | the circumstances of a flight, from seed and number |
+//! | [`draw`], [`throw`] | the circumstances of a flight, from seed and number; that flight under a law |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
 //! | [`manifest`], [`store`] | what a directory holds; its files |
@@ -24,6 +24,7 @@ pub mod rows;
 pub mod step;
 pub mod store;
 pub mod summary;
+pub mod throw;
 
 use crate::flight::Flight;
 use arrow_schema::ArrowError;

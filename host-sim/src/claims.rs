@@ -82,6 +82,16 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
     claims
 }
 
+/// The claims about a flight of `scenario` under another law: that it reached its position. What is proven of ours, and what ours must
+/// not ask for, stand beside what was flown, without a verdict.
+#[must_use]
+pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
+    let duration = scenario.timing.duration();
+    let own = near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration);
+    let reported = claims(scenario, verdict, flown).into_iter().skip(2).map(|claim| Claim { holds: None, ..claim });
+    std::iter::once(own).chain(reported).collect()
+}
+
 /// Whether small motions die out, with something to spare.
 fn loops(verdict: &Verdict) -> Claim {
     let LoopMargin { gain, delay } = LoopMargin::LEAST;

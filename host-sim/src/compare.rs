@@ -1,16 +1,18 @@
 //! The `compare` command: our law and its rivals on one set of scenes.
 //!
-//! Every law flies the same [`scenes`] and the same random flights ([`crate::campaign::draw`]): same vehicle, allocation, sensors and
+//! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle, allocation, sensors and
 //! clock. The table has every figure, less is better, and marks the rows that ours loses; `compare.csv` has them in full, two
-//! pictures the courses. What is claimed of ours, and decides the exit status: every random flight settles, and no command of it is cut or
+//! pictures the courses, `report.html` all of it. What is claimed of ours, and decides the exit status: every random flight settles, and no command of it is cut or
 //! leaves its certified bounds.
 
-pub mod flier;
+pub mod page;
 pub mod pictures;
 pub mod rows;
 pub mod scenes;
 pub mod shown;
 
+use crate::campaign::step;
+use crate::flier::{Flier, LawChoice};
 use crate::interrupt::Interrupt;
 use crate::plots::canvas::PlotError;
 use crate::progress::Progress;
@@ -18,7 +20,6 @@ use crate::rivals::gains::Set;
 use crate::whole_file::WholeFile;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::ParameterError;
-use flier::Flier;
 use scenario::Scenario;
 use shown::Thrown;
 use std::fmt;
@@ -32,7 +33,7 @@ pub struct Comparison {
     pub text: String,
     /// Whether what is claimed of ours holds.
     pub holds: bool,
-    /// compare.csv and the pictures, by name.
+    /// compare.csv, report.html and the pictures, by name.
     pub files: Vec<(&'static str, String)>,
 }
 
@@ -43,6 +44,8 @@ pub enum CompareError {
     Parameter(ParameterError),
     /// Its certificate fails: this inequality is the tightest.
     NotCertified(&'static str),
+    /// The law of this name is undefined for its gains.
+    Undefined(&'static str),
     /// A picture could not be drawn.
     Plot(PlotError),
     /// A file or directory could not be written.
@@ -58,6 +61,7 @@ impl fmt::Display for CompareError {
             Self::NotCertified(inequality) => {
                 write!(f, "not certified ({inequality}): ours flies in a comparison as boards fly it, or not at all")
             }
+            Self::Undefined(law) => write!(f, "the law {law} is undefined for its gains"),
             Self::Plot(error) => write!(f, "{error}"),
             Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
@@ -79,20 +83,29 @@ impl From<PlotError> for CompareError {
     }
 }
 
-/// Flies all laws of `set`, and ours, in all scenes and in `flights` random flights.
+/// Flies all laws of `set`, and ours, in all scenes of `file`, which was read from `text`, and in `flights` random flights.
 ///
 /// # Errors
 /// [`CompareError`].
-pub fn compare(file: &Scenario, set: &Set, flights: u64, interrupt: &Interrupt) -> Result<Comparison, CompareError> {
+pub fn compare(
+    file: &Scenario,
+    text: &str,
+    set: &Set,
+    flights: u64,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CompareError> {
     let certified = Certified::new(file.configuration.clone()).map_err(|refused| match refused {
         Refused::Undefined(error) => CompareError::Parameter(error),
         Refused::Fails(certificate) => {
             CompareError::NotCertified(certificate.tightest().map_or("", |tightest| tightest.name))
         }
     })?;
-    let certificate = certified.certificate().clone();
-    let fliers = flier::all(certified, set);
-    let names: Vec<&str> = fliers.iter().map(Flier::name).collect();
+    let certificate = certified.certificate();
+    let fliers: Vec<Flier> = std::iter::once(LawChoice::Ours)
+        .chain(set.laws())
+        .map(|law| Flier::new(&law, file, Some(&certified)).ok_or(CompareError::Undefined(law.name())))
+        .collect::<Result<_, _>>()?;
+    let names: Vec<&'static str> = fliers.iter().map(Flier::name).collect();
     let scenes = scenes::all(file)?;
     let work = (scenes.len() + 1) * fliers.len();
     let mut progress = Progress::new("comparing", work as u64);
@@ -107,25 +120,39 @@ pub fn compare(file: &Scenario, set: &Set, flights: u64, interrupt: &Interrupt) 
         let mut of_scene = Vec::new();
         for flier in &fliers {
             next()?;
-            of_scene.push(shown::show(flier, file, scene));
+            of_scene.push(shown::show(flier, scene));
         }
         shown.push((scene.name, of_scene));
     }
-    let drawn = (&file.campaign.ranges, file.campaign.seed);
+    let stepped = step::longest(file);
     let mut thrown = Vec::new();
     for flier in &fliers {
         next()?;
-        thrown.push(shown::throw(flier, file, &certificate, drawn, flights));
+        thrown.push(shown::throw_all(flier, &stepped, certificate, flights, interrupt));
     }
+    next()?;
     drop(progress);
-    let rows = rows::all(&shown, &thrown);
+    let rows = rows::all(&shown, &thrown, file.configuration.rotors().is_some());
+    let clean = |thrown: &Thrown| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
+    let holds = thrown.first().and_then(Option::as_ref).is_some_and(clean);
+    let compared = page::Compared {
+        file,
+        text,
+        set,
+        names: &names,
+        rows: &rows,
+        scenes: &scenes,
+        shown: &shown,
+        thrown: &thrown,
+        flights,
+        holds,
+    };
     let files = vec![
+        ("report.html", page::page(&compared).html()),
         ("compare.csv", rows::csv(&names, &rows)),
         ("scenes.svg", pictures::scenes(&names, &shown)?),
         ("random.svg", pictures::random(&names, &thrown, &shown)?),
     ];
-    let clean = |thrown: &Thrown| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
-    let holds = thrown.first().and_then(Option::as_ref).is_some_and(clean);
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
 

@@ -31,6 +31,18 @@ impl Controller {
         }
     }
 
+    /// One tick, with the wrench alone.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    #[inline]
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, ()), InputError> {
+        match self {
+            Self::Ours(law) => law.command(state, reference).map(|command| (command.wrench, ())),
+            Self::Rival(rival) => rival.step(state, reference).map(|(wrench, _)| (wrench, ())),
+        }
+    }
+
     /// What the rotors deliver of what is commanded, as far as the controller knows.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {

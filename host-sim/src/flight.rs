@@ -6,6 +6,8 @@
 use crate::actuators::ActuationError;
 use crate::controller::Controller;
 use crate::estimation::{Estimation, NoEstimate};
+use crate::plant::Diverged;
+use crate::plant::body::Body;
 use crate::reality::Surroundings;
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
@@ -64,6 +66,26 @@ pub struct Tick {
     /// Thrust commanded of each rotor, N; empty without rotors.
     pub rotor_thrusts: Thrusts,
 }
+
+/// Of a control tick what a verdict on the flight needs. What the law went through is not even worked out.
+#[derive(Debug, Clone)]
+pub struct Brief {
+    /// Time since the start, us.
+    pub time_us: u64,
+    /// The vehicle's true state before the tick's steps.
+    pub state: BodyState,
+    /// What was asked for.
+    pub reference: Reference,
+    /// What the law commanded, as in [`Tick::wrench`].
+    pub wrench: Wrench,
+    /// Whether the limits or the rotors cut something of it.
+    pub clipped: bool,
+    /// Thrust commanded of each rotor, N; empty without rotors.
+    pub rotor_thrusts: Thrusts,
+}
+
+/// What a law answers, with what it says of it.
+type Answer<D> = Result<(Wrench, D), InputError>;
 
 /// A flight that could not go on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -170,28 +192,15 @@ impl Flight {
     ///
     /// # Errors
     /// [`FlightError`] with the time; the flight cannot go on after it.
-    // Inlined: the whole tick would be copied twice on its way out, 7 % of the throughput (`cargo bench -p host-sim`).
-    #[inline]
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
-        let time_us = self.tick * self.period_us;
-        let fail = |cause| FlightError { time_us, cause };
-        let (state, rotors) = (*self.vehicle.state(), self.vehicle.thrusts());
-        let surroundings = self.vehicle.surroundings();
-        let measured = self.measure(&state).map_err(|error| fail(Cause::Estimate(error)))?;
-        let told = measured.as_deref().copied().unwrap_or_else(|| state.measured());
-        let reference = self.trajectory.at(time_us);
-        let (wrench, diagnostics) = self.controller.step(&told, &reference).map_err(|error| fail(Cause::Law(error)))?;
-        let asked = wrench.scaled(1.0 / self.controller.thrust_scale());
-        let (clipped, rotor_thrusts) = self.hold(&asked).map_err(|error| fail(Cause::Actuation(error)))?;
-        if clipped || surroundings.standing {
-            self.controller.hold_estimates();
-        }
-        self.tick += 1;
+        let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
+        let (told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts }, diagnostics) =
+            self.advance(Controller::step)?;
         let estimates = self.controller.estimates();
         Ok(Tick {
             time_us,
             state,
-            measured,
+            measured: told.map(Box::new),
             surroundings,
             reference,
             wrench,
@@ -203,19 +212,91 @@ impl Flight {
         })
     }
 
+    /// The same tick, to the bit, in brief: as campaigns fly.
+    ///
+    /// # Errors
+    /// As [`Self::tick`]'s.
+    #[inline]
+    pub fn brief_tick(&mut self) -> Result<Brief, FlightError> {
+        let (_, brief, ()) = self.advance(Controller::command)?;
+        Ok(brief)
+    }
+
+    /// A control tick with the law asked by `step`: what it was told where that is not the state, the tick, and what `step` says of it.
+    #[inline(always)]
+    fn advance<D>(
+        &mut self,
+        step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
+    ) -> Result<(Option<State>, Brief, D), FlightError> {
+        let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
+        let reference = self.reference();
+        let (told, wrench, more) = self.ask(&reference, step)?;
+        let held = self.hold(&self.asked(&wrench));
+        let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
+        self.end(clipped || standing);
+        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts }, more))
+    }
+
+    /// What the law is told where that is not the state, what it answers, and what `step` says of that.
+    #[inline(always)]
+    fn ask<D>(
+        &mut self,
+        reference: &Reference,
+        step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
+    ) -> Result<(Option<State>, Wrench, D), FlightError> {
+        let state = *self.vehicle.state();
+        let told = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
+        let answered = step(&mut self.controller, &told.unwrap_or_else(|| state.measured()), reference);
+        let (wrench, more) = answered.map_err(|error| self.error(Cause::Law(error)))?;
+        Ok((told, wrench, more))
+    }
+
+    /// What the rotors are to be asked for.
+    #[inline]
+    fn asked(&self, wrench: &Wrench) -> Wrench {
+        wrench.scaled(1.0 / self.controller.thrust_scale())
+    }
+
+    /// What is asked for at this moment.
+    #[inline]
+    pub(crate) fn reference(&self) -> Reference {
+        self.trajectory.at(self.time_us())
+    }
+
+    /// Ends a tick; whether the motion was another than the wrench alone would have made it.
+    #[inline]
+    fn end(&mut self, disturbed: bool) {
+        if disturbed {
+            self.controller.hold_estimates();
+        }
+        self.tick += 1;
+    }
+
+    #[inline]
+    fn time_us(&self) -> u64 {
+        self.tick * self.period_us
+    }
+
+    #[cold]
+    fn error(&self, cause: Cause) -> FlightError {
+        FlightError { time_us: self.time_us(), cause }
+    }
+
     /// What the law is told, where it is told anything else than the state.
-    fn measure(&mut self, state: &BodyState) -> Result<Option<Box<State>>, NoEstimate> {
+    #[inline]
+    fn measure(&mut self, state: &BodyState) -> Result<Option<State>, NoEstimate> {
         let Some(estimation) = &mut self.estimation else {
-            return Ok(self.sensors.as_mut().map(|sensors| Box::new(sensors.measure(state))));
+            return Ok(self.sensors.as_mut().map(|sensors| sensors.measure(state)));
         };
         let (told, jumped) = estimation.told()?;
         if jumped {
             self.controller.hold_estimates();
         }
-        Ok(Some(Box::new(told)))
+        Ok(Some(told))
     }
 
     /// The vehicle's motion until the next tick, under a wrench that is asked of the rotors.
+    #[inline]
     fn hold(&mut self, asked: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
             return self.vehicle.hold(asked, self.steps_per_tick);
@@ -230,6 +311,51 @@ impl Flight {
             estimation.sample(self.vehicle.state());
         }
         Ok((clipped, thrusts))
+    }
+}
+
+/// A flight among others that are flown side by side ([`crate::batch`]).
+impl Flight {
+    /// The body that moves and the plant steps of a tick, if the wrench acts on it at once and no estimator watches the motion.
+    pub(crate) fn bare(&self) -> Option<(&Body, u32)> {
+        let plant = self.vehicle.bare().filter(|_| self.estimation.is_none())?;
+        Some((plant.body(), self.steps_per_tick))
+    }
+
+    /// Whether both are asked for the same, now and at every tick to come.
+    pub(crate) fn shares_reference(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.trajectory, &other.trajectory) && (self.tick, self.period_us) == (other.tick, other.period_us)
+    }
+
+    /// The vehicle's true state.
+    #[inline]
+    pub(crate) fn state(&self) -> &BodyState {
+        self.vehicle.state()
+    }
+
+    /// A tick up to the motion: the wrench that the law commands, and the one that the body is to be moved by.
+    #[inline]
+    pub(crate) fn set_off(&mut self, reference: &Reference) -> Result<(Wrench, Wrench), FlightError> {
+        let (_, wrench, ()) = self.ask(reference, Controller::command)?;
+        Ok((wrench, self.asked(&wrench)))
+    }
+
+    /// Ends a tick whose motion has led to `state`.
+    #[inline]
+    pub(crate) fn arrive(
+        &mut self,
+        state: BodyState,
+        reference: &Reference,
+        (wrench, clipped): (Wrench, bool),
+    ) -> Result<Brief, FlightError> {
+        let (time_us, before) = (self.time_us(), *self.vehicle.state());
+        self.vehicle.place(state);
+        if !state.is_finite() {
+            return Err(self.error(Cause::Actuation(Diverged.into())));
+        }
+        self.end(clipped);
+        let rotor_thrusts = Thrusts::new();
+        Ok(Brief { time_us, state: before, reference: *reference, wrench, clipped, rotor_thrusts })
     }
 }
 

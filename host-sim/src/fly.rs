@@ -1,6 +1,7 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
 use crate::claims::{self, Claim};
+use crate::flier::{Flier, LawChoice};
 use crate::flight::{Flight, FlightError, Tick};
 use crate::flown::Flown;
 use crate::interrupt::Interrupt;
@@ -32,6 +33,8 @@ pub enum FlyError {
     Output(PathBuf, io::Error),
     /// The law refused the scenario.
     Parameter(ParameterError),
+    /// The law of this name is undefined for its gains.
+    Undefined(&'static str),
     /// A figure could not be drawn.
     Plot(PlotError),
     /// Somebody sent this signal.
@@ -44,6 +47,7 @@ impl fmt::Display for FlyError {
             Self::Flight(error) => write!(f, "{error}"),
             Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
             Self::Parameter(error) => write!(f, "{error}"),
+            Self::Undefined(law) => write!(f, "the law {law} is undefined for its gains"),
             Self::Plot(error) => write!(f, "{error}"),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
         }
@@ -79,7 +83,7 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
 }
 
-/// Flies `scenario`, which was read from `text`, and writes log.csv, report.html, four figures and report.md into `directory`; and
+/// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and report.md into `directory`; and
 /// flight.mcap if it is asked for.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
@@ -90,24 +94,33 @@ pub struct Outcome {
 pub fn fly(
     scenario: &Scenario,
     text: &str,
+    law: &LawChoice,
     directory: &Path,
     mcap: bool,
     interrupt: &Interrupt,
 ) -> Result<Outcome, FlyError> {
     let verdict = Verdict::of(scenario)?;
-    let mut flight = match verdict.certified() {
-        Some(certified) => Flight::certified(scenario, certified),
-        None => Flight::uncertified(scenario),
-    }?;
+    let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
+    let mut flight = flier.flight(scenario)?;
     std::fs::create_dir_all(directory).map_err(failed(directory))?;
     let mut log = Output::create(directory, "log.csv")?;
     let mut recording = mcap.then(|| Recorder::create(directory, scenario, text)).transpose()?;
     let (flown, record, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
 
-    let outcome =
-        Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) };
+    let outcome = match law {
+        LawChoice::Ours => {
+            Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) }
+        }
+        LawChoice::Rival(..) => Outcome {
+            certification: format!(
+                "under the law {}, of which nothing is proven; the bounds are those of ours",
+                law.name()
+            ),
+            claims: claims::of_rival(scenario, &verdict, &flown),
+        },
+    };
     let Outcome { certification, claims } = &outcome;
-    let over = report_page::Flight { scenario, text, verdict: &verdict, certification, claims, flown: &flown };
+    let over = report_page::Flight { scenario, text, law, verdict: &verdict, certification, claims, flown: &flown };
     let samples = record.samples();
     let texts = [
         ("fig1.svg", plots::figure_1(scenario, &samples)?),

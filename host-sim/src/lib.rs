@@ -10,16 +10,19 @@
 //! | [`sensors`] | what the controller is told of the state |
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
-//! | [`controller`], [`rivals`] | what flies: our law, or other laws to compare it with |
+//! | [`controller`], [`rivals`], [`flier`] | what flies: our law, or other laws to compare it with; the one that is chosen |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
+//! | [`batch`] | flights side by side, in the processor's vector registers |
 //! | [`piloted`] | the whole pilot in closed loop, supervisor, estimator and conditioner included |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
+//! | [`identify`] | a vehicle's numbers from the log of a flight and from a bench |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`compare`], [`hil`], [`sitl`] | the commands |
 
 pub mod actuators;
+pub mod batch;
 pub mod campaign;
 pub mod certify;
 pub mod claims;
@@ -27,11 +30,13 @@ pub mod compare;
 pub mod controller;
 pub mod course;
 pub mod estimation;
+pub mod flier;
 pub mod flight;
 pub mod flown;
 pub mod fly;
 pub mod ground;
 pub mod hil;
+pub mod identify;
 pub mod instruments;
 pub mod interrupt;
 pub mod law;

@@ -1,9 +1,10 @@
 //! Flies scenarios on the desktop and serves the control law to other simulators.
 
 mod arguments;
+mod searches;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, CompareArguments, HilArguments, MergeArguments, SitlArguments, TuneArguments,
+    Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, MergeArguments, SitlArguments,
 };
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
@@ -11,22 +12,19 @@ use host_sim::campaign::summary::Summary;
 use host_sim::campaign::{self, CampaignError};
 use host_sim::certify::certify;
 use host_sim::claims;
-use host_sim::compare::{self, CompareError, compare};
+use host_sim::flier::LawChoice;
 use host_sim::fly::{FlyError, fly};
 use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
 use host_sim::hil::{self, Clients, End, HilError};
+use host_sim::identify::command::{self, Refused, Task};
 use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
-use host_sim::rivals::gains::{self, Set};
-use host_sim::rivals::tuning;
 use host_sim::sitl::{self, SitlError};
-use host_sim::table::{percent, short};
-use host_sim::tune::effort::Effort;
-use host_sim::tune::{Tuned, output, tune, widest_bounds};
-use host_sim::whole_file::WholeFile;
-use scenario::{STUDY, Scenario, bounds, check_name};
+use host_sim::table::short;
+use scenario::{STUDY, Scenario};
+use searches::{run_compare, run_tune};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -48,6 +46,7 @@ fn main() -> ExitCode {
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Certify { file }) => run_certify(file.as_deref()),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
+            Some(Command::Identify(arguments)) => run_identify(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),
             Some(Command::Merge(arguments)) => run_merge(&arguments),
             Some(Command::Compare(arguments)) => run_compare(&arguments),
@@ -99,6 +98,14 @@ fn text_of(file: Option<&Path>) -> Result<String, String> {
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }
 
+/// A scenario's text and its name: of `file`, or of what is built in where boards are meant.
+fn given_or_study(file: Option<&Path>) -> Result<(String, String), String> {
+    match file {
+        Some(file) => Ok((text_of(Some(file))?, file.display().to_string())),
+        None => Ok((STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned())),
+    }
+}
+
 fn watch() -> Result<Interrupt, String> {
     Interrupt::watch().map_err(|error| format!("signals cannot be watched: {error}"))
 }
@@ -126,12 +133,18 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
         eprintln!("{named}{size}");
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
-    fly_into(&scenario, &text, &directory, mcap)
+    fly_into(&scenario, &text, &LawChoice::Ours, &directory, mcap)
 }
 
 /// Flies one flight of a scenario from a file with this `text`, and says what came of it.
-fn fly_into(scenario: &Scenario, text: &str, directory: &Path, mcap: bool) -> Result<ExitCode, String> {
-    let outcome = match fly(scenario, text, directory, mcap, &watch()?) {
+fn fly_into(
+    scenario: &Scenario,
+    text: &str,
+    law: &LawChoice,
+    directory: &Path,
+    mcap: bool,
+) -> Result<ExitCode, String> {
+    let outcome = match fly(scenario, text, law, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
             eprintln!("error: {}: {error}", scenario.name);
@@ -155,14 +168,18 @@ fn fly_into(scenario: &Scenario, text: &str, directory: &Path, mcap: bool) -> Re
 
 fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
     let (scenario, text) = arguments.scenario()?;
-    let orders = arguments.orders(&scenario)?;
+    let (orders, law) = (arguments.orders(&scenario)?, arguments.law(&scenario)?);
+    let name = match &law {
+        LawChoice::Ours => scenario.name.clone(),
+        LawChoice::Rival(kind, _) => format!("{}-{}", scenario.name, kind.name()),
+    };
     if let Some(number) = arguments.replay {
         let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
-        thrown.name = format!("{}-{number}", scenario.name);
-        return fly_into(&thrown, &text, &arguments.directory(&thrown), false);
+        thrown.name = format!("{name}-{number}");
+        return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
-    let (directory, interrupt) = (arguments.directory(&scenario), watch()?);
-    show_campaign(campaign::fly::campaign(&scenario, &text, &orders, &directory, &interrupt), &directory)
+    let (directory, interrupt) = (arguments.directory(&name), watch()?);
+    show_campaign(campaign::fly::campaign(&scenario, &text, &law, &orders, &directory, &interrupt), &directory)
 }
 
 fn run_merge(arguments: &MergeArguments) -> Result<ExitCode, String> {
@@ -227,11 +244,30 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     }
 }
 
+fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
+    let (original, file) = given_or_study(arguments.scenario.as_deref())?;
+    if let (Some(out), Some(file)) = (&arguments.out, &arguments.scenario)
+        && same_file(out, file)
+    {
+        return Err(format!("{}: --out must be another file than the scenario", out.display()));
+    }
+    let task =
+        Task { log: arguments.log.clone(), original, file, bench: arguments.bench.clone(), out: arguments.out.clone() };
+    match command::run(&task) {
+        Ok(report) => {
+            print_text(&report)?;
+            Ok(status(true, None))
+        }
+        Err(Refused::CannotTell(what)) => {
+            eprintln!("error: {what}");
+            Ok(status(false, None))
+        }
+        Err(Refused::Input(what)) => Err(what),
+    }
+}
+
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
-    let (text, name) = match &arguments.file {
-        Some(file) => (text_of(Some(file))?, file.display().to_string()),
-        None => (STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned()),
-    };
+    let (text, name) = given_or_study(arguments.file.as_deref())?;
     let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
     let session = arguments.session(text)?;
     // Whoever has stopped to read is none the less a pilot.
@@ -253,134 +289,6 @@ fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
     let (text, certified) = certify(&load(file)?).map_err(|error| error.to_string())?;
     print_text(&text)?;
     Ok(status(certified, None))
-}
-
-fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
-    let requirements = arguments.requirements()?;
-    let mut scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
-    let original = std::fs::read_to_string(&arguments.file)
-        .map_err(|error| format!("{}: cannot be read: {error}", arguments.file.display()))?;
-    let (name, path) = destination(arguments, &scenario)?;
-    scenario.name = name;
-    let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
-    let effort = Effort { generations: arguments.generations, population: arguments.population, seed: arguments.seed };
-    let interrupt = watch()?;
-    let tuned = match tune(&scenario, requirements, effort, &interrupt) {
-        Ok(tuned) => tuned,
-        Err(closest) => {
-            let what = closest.failed.clone().unwrap_or_default();
-            let lost = short(closest.shown.height_lost);
-            let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
-            eprintln!(
-                "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
-                 (height lost {lost} m)",
-                scenario.name
-            );
-            return Ok(status(false, interrupt.signal()));
-        }
-    };
-    let text = output::rewritten(&original, &tuned).map_err(|error| error.to_string())?;
-    WholeFile::write(&path, &text).map_err(unwritable)?;
-    let mut summary = found(&tuned, &path, interrupt.signal().is_some())?;
-    if arguments.widen {
-        let (factor, widest) =
-            widest_bounds(&tuned.scenario.configuration, requirements.margin).map_err(|error| error.to_string())?;
-        summary += &format!(
-            "\nwith these gains every margin stays at least {} for references {} times as demanding:\n\n{}",
-            percent(requirements.margin),
-            short(factor),
-            bounds::written(&widest)
-        );
-    }
-    print_text(&summary)?;
-    Ok(status(true, interrupt.signal()))
-}
-
-fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
-    let effort = arguments.effort()?;
-    let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
-    let directory = arguments.directory(&scenario.name);
-    let interrupt = watch()?;
-    let mut found = None;
-    let set = match (&effort, &arguments.gains) {
-        (Some(effort), _) => match tuning::tune(&scenario, *effort, &interrupt) {
-            Ok(set) => {
-                found = Some(("rivals.toml", set.written(&scenario, &arguments.command(effort))));
-                set
-            }
-            Err(message) => {
-                eprintln!("error: {}: {message}", scenario.name);
-                return Ok(status(false, interrupt.signal()));
-            }
-        },
-        (None, Some(file)) => {
-            Set::of(&scenario, &text_of(Some(file))?, &file.display().to_string()).map_err(|error| error.to_string())?
-        }
-        (None, None) => Set::of(&scenario, gains::BUILT_IN, "the built-in gains").map_err(|error| error.to_string())?,
-    };
-    let mut comparison = match compare(&scenario, &set, arguments.flights, &interrupt) {
-        Ok(comparison) => comparison,
-        Err(error @ (CompareError::NotCertified(_) | CompareError::Interrupted(_))) => {
-            eprintln!("error: {}: {error}", scenario.name);
-            return Ok(status(false, interrupt.signal()));
-        }
-        Err(error) => return Err(error.to_string()),
-    };
-    comparison.files.extend(found);
-    compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
-    print_text(&format!(
-        "{}: our law and {} others; {} random flights of each\n\n{}\n* another law does better; {}; table, pictures in {}\n",
-        scenario.name,
-        set.rivals.len(),
-        arguments.flights,
-        comparison.text,
-        if comparison.holds {
-            "every random flight of ours settles, unclipped, within its bounds"
-        } else {
-            "NOT every random flight of ours settles, unclipped, within its bounds"
-        },
-        directory.display()
-    ))?;
-    Ok(status(comparison.holds, None))
-}
-
-/// The name of a tuned scenario and the file it goes to. Whatever is wrong with them shows now, not after the search.
-fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String, PathBuf), String> {
-    let stem = arguments.out.as_deref().and_then(Path::file_stem);
-    let name = stem.map_or_else(|| format!("{}-tuned", scenario.name), |stem| stem.to_string_lossy().into_owned());
-    check_name(&name).map_err(|error| format!("--out: becomes the scenario's name: {error}"))?;
-    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
-    if same_file(&path, &arguments.file) {
-        return Err(format!("{}: --out must be another file than the one tuned", path.display()));
-    }
-    let writable =
-        if path.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { WholeFile::create(&path).map(drop) };
-    writable.map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
-    Ok((name, path))
-}
-
-/// What a search says of the gains it found.
-fn found(tuned: &Tuned, path: &Path, interrupted: bool) -> Result<String, String> {
-    let (certificate, _) = certify(&tuned.scenario).map_err(|error| error.to_string())?;
-    let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
-        format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
-    });
-    let shown = &tuned.verdict.shown;
-    Ok(format!(
-        "{certificate}\n{}\nheight lost {} m, back after {} s; gust {} m; step {} s; under noise {} m and {} N a tick; cost {}\n\
-         {active}{}{} candidates judged; written to {}\n",
-        tuned.frontier.table(),
-        short(shown.height_lost),
-        short(shown.recovered),
-        short(shown.gust),
-        short(shown.step),
-        short(shown.noise),
-        short(shown.activity),
-        short(tuned.verdict.cost),
-        if interrupted { "interrupted: the best so far; " } else { "" },
-        tuned.judged,
-        path.display()
-    ))
 }
 
 /// Whether both paths lead to one file that exists.

@@ -156,8 +156,14 @@ impl RealVehicle {
         Surroundings {
             wind: self.wind.as_ref().map(|wind| wind.velocity(self.now, 0.0)),
             battery: self.propulsion.battery(),
-            standing: self.ground.as_ref().is_some_and(Ground::stands),
+            standing: self.stands(),
         }
+    }
+
+    /// Whether it stands on the ground.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.ground.as_ref().is_some_and(Ground::stands)
     }
 
     /// Pushes it from now on with a force, N, world, in place of the scenario's disturbance.

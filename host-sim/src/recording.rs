@@ -18,11 +18,13 @@ pub mod flight;
 mod schemas;
 pub mod session;
 
+use drawing::{pose, transform};
 use mcap::records::MessageHeader;
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 use scenario::Scenario;
-use schemas::Schema;
+use scenario::body::BodyState;
+use schemas::{FRAME_TRANSFORM, LAW, POSE_IN_FRAME, ROTORS, SCENE_UPDATE, Schema};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -30,6 +32,17 @@ use std::io::{self, Write};
 
 /// A topic, and what its messages look like.
 pub type Topic = (&'static str, Schema);
+
+/// What every recording has.
+const COMMON: [Topic; 7] = [
+    ("/vehicle", POSE_IN_FRAME),
+    ("/reference", POSE_IN_FRAME),
+    ("/told", POSE_IN_FRAME),
+    ("/tf", FRAME_TRANSFORM),
+    ("/scene", SCENE_UPDATE),
+    ("/law", LAW),
+    ("/rotors", ROTORS),
+];
 
 /// A recording that grows tick by tick.
 pub struct Recording<W: Write> {
@@ -39,7 +52,7 @@ pub struct Recording<W: Write> {
 }
 
 impl<W: Write> Recording<W> {
-    /// Begins one of `scenario` with these topics: its `text` attached, the vehicle's arms drawn.
+    /// Begins one of `scenario` with these topics beside those that every one has: its `text` attached, the vehicle's arms drawn.
     ///
     /// # Errors
     /// As the writer's.
@@ -47,7 +60,7 @@ impl<W: Write> Recording<W> {
         let options = WriteOptions::new().compression(None).disable_seeking(true).library("host-sim");
         let mut recording =
             Self { writer: options.create(NoSeek::new(out)).map_err(failed)?, channels: BTreeMap::new() };
-        for (topic, schema) in topics {
+        for (topic, schema) in COMMON.iter().chain(topics) {
             recording.channel(topic, schema)?;
         }
         let attachment = Attachment {
@@ -80,6 +93,12 @@ impl<W: Write> Recording<W> {
         let header = MessageHeader { channel_id: *channel_id, sequence: *count, log_time: time, publish_time: time };
         *count += 1;
         self.writer.write_to_known_channel(&header, value.to_string().as_bytes()).map_err(failed)
+    }
+
+    /// Where the vehicle really is at `time_us`.
+    fn truth(&mut self, time_us: u64, state: &BodyState) -> io::Result<()> {
+        self.message("/vehicle", time_us, &pose(time_us, &state.position, &state.attitude))?;
+        self.message("/tf", time_us, &transform(time_us, &state.position, &state.attitude))
     }
 
     /// Ends it, and gives back what it was written to.

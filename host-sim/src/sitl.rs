@@ -150,8 +150,15 @@ pub struct Sitl {
 struct Desk(Rc<Cell<bool>>);
 
 impl Restart for Desk {
+    const HAS_BOOTLOADER: bool = false;
+
     fn restart(&mut self) {
         self.0.set(true);
+    }
+
+    /// There is none, and nobody asks for it.
+    fn start_bootloader(&mut self) {
+        self.restart();
     }
 }
 

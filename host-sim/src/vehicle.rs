@@ -65,6 +65,31 @@ impl SimulatedVehicle {
         }
     }
 
+    /// Its body, where it is the model's and the wrench acts on it at once.
+    #[must_use]
+    pub fn bare(&self) -> Option<&Plant> {
+        match self {
+            Self::Model(plant, actuators) if actuators.are_ideal() => Some(plant),
+            _ => None,
+        }
+    }
+
+    /// Puts that body where it has moved; any other stays.
+    pub fn place(&mut self, state: BodyState) {
+        if let Self::Model(plant, _) = self {
+            plant.place(state);
+        }
+    }
+
+    /// Whether it stands on the ground.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        match self {
+            Self::Model(..) => false,
+            Self::Real(vehicle) => vehicle.stands(),
+        }
+    }
+
     /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///

@@ -7,6 +7,7 @@ use host_sim::campaign::CampaignError;
 use host_sim::campaign::fly::{self, Orders};
 use host_sim::campaign::step;
 use host_sim::campaign::summary;
+use host_sim::flier::LawChoice;
 use pyo3::prelude::*;
 use scenario::campaign::MOST_FLIGHTS;
 use std::path::PathBuf;
@@ -105,7 +106,9 @@ pub fn campaign(
         Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
     };
     let orders = Orders { flights, seed, shard };
-    let flown = interruptible(py, |interrupt| fly::campaign(&stepped, &scenario.text, &orders, &directory, interrupt))?;
+    let flown = interruptible(py, |interrupt| {
+        fly::campaign(&stepped, &scenario.text, &LawChoice::Ours, &orders, &directory, interrupt)
+    })?;
     Ok(Campaign { summary: flown.map_err(raised)? })
 }
 

@@ -3,7 +3,7 @@
     browse.py SCREENSHOTS REPORT…
 
 For every report: no message on the console, no request but for the file itself, the replay moves when it is played and by its
-slider, distributions can be read, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
+slider, plots and distributions can be read, legends hide and show, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
 """
 
 import base64
@@ -205,6 +205,23 @@ class Reader:
         said = self.element("#live").get_attribute("textContent")
         self.expect("x " in said and " m" in said, f"nothing is told to a screen reader: {said!r}")
 
+    def toggles(self):
+        """A name in a legend hides its curve, and shows it again."""
+        for figure in ("figure[data-plot]", "figure[data-distribution]"):
+            if not self.has(f"{figure} .legend button"):
+                continue
+            self.seen(f"{figure} .chart")
+            for _ in range(50):
+                self.frames()
+                if self.script("return document.querySelector(arguments[0]).width !== 300", f"{figure} canvas"):
+                    break
+            whole, name = self.picture(f"{figure} canvas"), self.seen(f"{figure} .legend button")
+            name.click()
+            hidden = self.picture(f"{figure} canvas")
+            self.expect(hidden != whole and name.get_attribute("aria-pressed") == "false", f"{figure}: no curve is hidden")
+            name.click()
+            self.expect(self.picture(f"{figure} canvas") == whole, f"{figure}: the curve does not come back")
+
     def pointer(self):
         """A mouse reads values, and zooms by dragging."""
         chart = self.seen(".chart")
@@ -262,8 +279,10 @@ def main():
                     if reader.has("canvas.stage"):
                         if size == "desktop":
                             reader.keyboard()
-                            reader.pointer()
                         reader.replay()
+                    if reader.has("figure[data-plot]") and size == "desktop":
+                        reader.pointer()
+                    reader.toggles()
                     if reader.has("figure[data-distribution]"):
                         reader.distribution()
                     if (size, scheme) in (("desktop", "light"), ("phone", "dark")):

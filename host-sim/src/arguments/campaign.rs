@@ -1,8 +1,12 @@
 //! What a campaign is asked to be, and a merge of its shards, in clap's terms; and what of it is refused.
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use host_sim::campaign::fly::Orders;
 use host_sim::campaign::step;
+use host_sim::flier::{LawChoice, OURS};
+use host_sim::rivals::gains::{self, Set};
+use host_sim::rivals::kind::Kind;
 use scenario::Scenario;
 use scenario::campaign::MOST_FLIGHTS;
 use std::path::{Path, PathBuf};
@@ -27,6 +31,12 @@ pub struct CampaignArguments {
     /// Fly this one flight again, as `fly` does: log, figures, report
     #[arg(long, value_name = "NUMBER")]
     pub replay: Option<u64>,
+    /// Which law flies: ours, or another one to compare it with
+    #[arg(long, value_name = "NAME", default_value = OURS, value_parser = law_names())]
+    law: String,
+    /// File with that law's gains, as `compare --tune` writes it [default: those built in for the vehicles of docs/rivals.md]
+    #[arg(long, value_name = "FILE")]
+    gains: Option<PathBuf>,
     /// A file with a [campaign] section, for a scenario that has none
     #[arg(long, value_name = "FILE")]
     draws: Option<PathBuf>,
@@ -59,7 +69,15 @@ goes on from there. campaign.arrow has a row for each flight; docs/campaign.md h
   host-sim campaign vehicles/hummingbird.toml --shard 2/2 --out second    on another
   host-sim merge first second --out whole
 
-The exit status is 1 if a flight does not track, a command goes beyond its certified bound, or the scenario is not certified.";
+Another law flies the very same circumstances: --law indi, into campaigns/<name>-indi. docs/rivals.md says what the laws are.
+
+The exit status is 1 if a flight does not track, a command goes beyond its certified bound, or the scenario is not certified. Nothing is
+certified of another law: its status is 1 if a flight does not track.";
+
+/// What --law may be.
+fn law_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)))
+}
 
 /// `I/N`.
 fn shard(text: &str) -> Result<(u64, u64), String> {
@@ -107,14 +125,34 @@ impl CampaignArguments {
         Ok(Orders { flights, seed, shard: self.shard.unwrap_or((1, 1)) })
     }
 
-    /// Where the results go.
-    #[must_use]
-    pub fn directory(&self, scenario: &Scenario) -> PathBuf {
-        let replayed = || match self.replay {
-            Some(_) => Path::new("flights").join(&scenario.name),
-            None => Path::new("campaigns").join(&scenario.name),
+    /// Which law flies `scenario`.
+    ///
+    /// # Errors
+    /// Names the file of gains that is refused, and why.
+    pub fn law(&self, scenario: &Scenario) -> Result<LawChoice, String> {
+        let Some(kind) = Kind::named(&self.law) else {
+            return match self.gains {
+                Some(_) => Err("--gains: our law's gains are the scenario's: choose another law with --law".to_owned()),
+                None => Ok(LawChoice::Ours),
+            };
         };
-        self.out.clone().unwrap_or_else(replayed)
+        let set = match &self.gains {
+            Some(file) => {
+                let text = std::fs::read_to_string(file)
+                    .map_err(|error| format!("{}: cannot be read: {error}", file.display()))?;
+                Set::of(scenario, &text, &file.display().to_string())
+            }
+            None => Set::of(scenario, gains::BUILT_IN, gains::BUILT_IN_NAME),
+        };
+        let set = set.map_err(|error| error.to_string())?;
+        set.law(kind).ok_or_else(|| format!("--law: there are no gains of {}", kind.name()))
+    }
+
+    /// Where the results go, of a campaign or a flight of this name.
+    #[must_use]
+    pub fn directory(&self, name: &str) -> PathBuf {
+        let parent = if self.replay.is_some() { "flights" } else { "campaigns" };
+        self.out.clone().unwrap_or_else(|| Path::new(parent).join(name))
     }
 }
 

@@ -12,10 +12,10 @@ pub struct CompareArguments {
     /// Random flights of each law
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub flights: u64,
-    /// Directory for table, pictures and gains [default: flights/<name>-compared]
+    /// Directory for table, pictures, report and gains [default: flights/<name>-compared]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// File with the rivals' gains [default: those that were found for vehicles/hummingbird.toml, built in; other vehicles need --tune]
+    /// File with the rivals' gains [default: those built in for the vehicles of docs/rivals.md; others need --tune]
     #[arg(long, value_name = "FILE", conflicts_with = "tune")]
     pub gains: Option<PathBuf>,
     /// Search the rivals' gains first, in so many generations, and write them to rivals.toml

@@ -4,19 +4,17 @@
 //! are already there are not flown again.
 
 use super::CampaignError;
-use super::draw::circumstances;
 use super::manifest::Manifest;
-use super::outcome::Outcome;
 use super::report;
 use super::rows::{Row, batch};
 use super::store::{REPORT, SUMMARY, Store};
 use super::summary::Summary;
-use crate::flight::Flight;
+use super::throw::throw;
+use crate::flier::{Flier, LawChoice};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use arrow_array::RecordBatch;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::certified::Certified;
 use rayon::prelude::*;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
@@ -35,13 +33,14 @@ pub struct Orders {
     pub shard: (u64, u64),
 }
 
-/// Flies `scenario`, with the plant step that it has, read from `text`, into `directory`, or what is missing there.
+/// Flies `scenario` under `law`, with the plant step that it has, read from `text`, into `directory`, or what is missing there.
 ///
 /// # Errors
 /// [`CampaignError`]; chunks that were finished stay.
 pub fn campaign(
     scenario: &Scenario,
     text: &str,
+    law: &LawChoice,
     orders: &Orders,
     directory: &Path,
     interrupt: &Interrupt,
@@ -52,11 +51,15 @@ pub fn campaign(
     }
     let Orders { flights, seed, shard } = *orders;
     let verdict = Verdict::of(scenario).map_err(CampaignError::Parameter)?;
-    let store = Store::open(directory, &Manifest::new(scenario, text, flights, seed, shard), text)?;
+    let flier = Flier::new(law, scenario, verdict.certified()).ok_or_else(|| {
+        CampaignError::Input(format!("{}: the law {} is undefined for its gains", scenario.name, law.name()))
+    })?;
+    let manifest = Manifest::new(scenario, text, flights, seed, shard).under(law.clone());
+    let store = Store::open(directory, &manifest, text)?;
     let flown = match store.result() {
         Some(flown) => flown,
         None => {
-            let chunks = Chunks::new(scenario, &verdict, &store, interrupt);
+            let chunks = Chunks::new(scenario, &flier, verdict.certificate(), &store, interrupt);
             chunks.fly()?
         }
     };
@@ -118,8 +121,8 @@ fn finish(
 /// Chunks to fly.
 struct Chunks<'a> {
     scenario: &'a Scenario,
+    flier: &'a Flier,
     certificate: &'a Certificate,
-    certified: Option<&'a Certified>,
     store: &'a Store,
     interrupt: &'a Interrupt,
     done: AtomicU64,
@@ -127,11 +130,17 @@ struct Chunks<'a> {
 }
 
 impl<'a> Chunks<'a> {
-    fn new(scenario: &'a Scenario, verdict: &'a Verdict, store: &'a Store, interrupt: &'a Interrupt) -> Self {
+    fn new(
+        scenario: &'a Scenario,
+        flier: &'a Flier,
+        certificate: &'a Certificate,
+        store: &'a Store,
+        interrupt: &'a Interrupt,
+    ) -> Self {
         Self {
             scenario,
-            certificate: verdict.certificate(),
-            certified: verdict.certified(),
+            flier,
+            certificate,
             store,
             interrupt,
             done: AtomicU64::new(0),
@@ -153,7 +162,7 @@ impl<'a> Chunks<'a> {
             return Ok(flown);
         }
         let rows = numbers.map(|number| self.fly_one(number)).collect::<Result<Vec<Row>, _>>()?;
-        let flown = batch(&rows, self.store.manifest().rotors as usize).map_err(CampaignError::Rows)?;
+        let flown = batch(&rows, self.store.manifest()).map_err(CampaignError::Rows)?;
         self.store.keep(chunk, &flown)?;
         Ok(flown)
     }
@@ -162,14 +171,9 @@ impl<'a> Chunks<'a> {
         if let Some(signal) = self.interrupt.signal() {
             return Err(CampaignError::Interrupted(signal));
         }
-        let thrown = circumstances(self.scenario, &self.scenario.campaign.ranges, self.store.manifest().seed, number);
-        let flight = match self.certified {
-            Some(certified) => Flight::certified(&thrown, certified),
-            None => Flight::uncertified(&thrown),
-        };
-        let outcome = Outcome::of(&thrown, flight.map_err(CampaignError::Parameter)?, self.certificate);
+        let flown = throw(self.flier, self.scenario, self.certificate, self.store.manifest().seed, number);
         self.show(1);
-        Ok(Row::new(number, &thrown, outcome))
+        flown.map_err(CampaignError::Parameter)
     }
 
     /// So many more are done.

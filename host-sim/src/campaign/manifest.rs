@@ -2,6 +2,8 @@
 //! if these agree.
 
 use super::CampaignError;
+use crate::flier::{LawChoice, OURS};
+use crate::rivals::kind::Kind;
 use scenario::Scenario;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -33,10 +35,12 @@ pub struct Manifest {
     pub rotors: u64,
     /// Which part of the campaign, from 1, and of how many.
     pub shard: (u64, u64),
+    /// Which law flies.
+    pub law: LawChoice,
 }
 
 impl Manifest {
-    /// Of flights of `scenario`, with the plant step that it has, read from `text`.
+    /// Of our law's flights of `scenario`, with the plant step that it has, read from `text`.
     #[must_use]
     pub fn new(scenario: &Scenario, text: &str, flights: u64, seed: u64, shard: (u64, u64)) -> Self {
         Self {
@@ -48,7 +52,20 @@ impl Manifest {
             plant_step: scenario.timing.step(),
             rotors: scenario.configuration.rotors().map_or(0, |rotors| rotors.len() as u64),
             shard,
+            law: LawChoice::Ours,
         }
+    }
+
+    /// The same flights under `law`.
+    #[must_use]
+    pub fn under(self, law: LawChoice) -> Self {
+        Self { law, ..self }
+    }
+
+    /// The name of a law that is not ours.
+    #[must_use]
+    pub fn rival(&self) -> Option<&'static str> {
+        (self.law != LawChoice::Ours).then(|| self.law.name())
     }
 
     /// The numbers of its chunks, rising.
@@ -70,16 +87,19 @@ impl Manifest {
         self.chunks().into_iter().map(|chunk| self.flights_of(chunk)).map(|flights| flights.end - flights.start).sum()
     }
 
-    /// As the text of a file.
+    /// As the text of a file. That of our law says nothing of laws: its gains are the scenario's.
     #[must_use]
     pub fn written(&self) -> String {
-        let values: serde_json::Map<String, Value> =
-            self.fields().into_iter().map(|(key, _, value)| (key.to_owned(), value)).collect();
+        let said = |key: &str| self.law != LawChoice::Ours || !matches!(key, "law" | "gains");
+        let fields = self.fields().into_iter().filter(|(key, ..)| said(key));
+        let values: serde_json::Map<String, Value> = fields.map(|(key, _, value)| (key.to_owned(), value)).collect();
         format!("{:#}\n", Value::Object(values))
     }
 
     /// Each key, what a person calls it, and its value.
-    fn fields(&self) -> [(&'static str, &'static str, Value); 9] {
+    fn fields(&self) -> [(&'static str, &'static str, Value); 11] {
+        let gains: serde_json::Map<String, Value> =
+            self.law.gains().map(|(gain, value)| (gain.to_owned(), json!(value))).collect();
         [
             ("name", "name", json!(self.name)),
             ("scenario_sha256", "scenario", json!(self.scenario)),
@@ -90,6 +110,8 @@ impl Manifest {
             ("rotors", "number of rotors", json!(self.rotors)),
             ("shard", "shard", json!([self.shard.0, self.shard.1])),
             ("chunk", "flights of a chunk", json!(CHUNK)),
+            ("law", "law", json!(self.law.name())),
+            ("gains", "gains of that law", Value::Object(gains)),
         ]
     }
 
@@ -127,6 +149,7 @@ impl Manifest {
             plant_step,
             rotors: number("rotors")?,
             shard,
+            law: law(value)?,
         })
     }
 
@@ -137,12 +160,24 @@ impl Manifest {
         let differing: Vec<String> = pairs
             .filter(|((_, _, own), (_, _, others))| own != others)
             .map(|((key, what, own), (_, _, others))| match key {
-                "scenario_sha256" => what.to_owned(),
+                "scenario_sha256" | "gains" => what.to_owned(),
                 _ => format!("{what} ({own} and {others})"),
             })
             .collect();
         (!differing.is_empty()).then(|| differing.join(", "))
     }
+}
+
+/// The law that a manifest names.
+fn law(manifest: &Value) -> Option<LawChoice> {
+    let Some(name) = manifest.get("law") else { return Some(LawChoice::Ours) };
+    let name = name.as_str()?;
+    if name == OURS {
+        return Some(LawChoice::Ours);
+    }
+    let (kind, gains) = (Kind::named(name)?, manifest.get("gains")?);
+    let values = kind.gains().iter().map(|gain| gains.get(gain)?.as_f64()).collect::<Option<Vec<f64>>>()?;
+    Some(LawChoice::Rival(kind, values))
 }
 
 fn hash(text: &str) -> String {

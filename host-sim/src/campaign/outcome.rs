@@ -11,7 +11,7 @@
 //! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that of a torque,
 //! whose bound is on both sides, |tau| over the bound.
 
-use crate::flight::{Flight, Tick};
+use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
@@ -79,7 +79,7 @@ impl Outcome {
             ticks: 0,
         };
         for _ in 0..scenario.timing.ticks {
-            let Ok(tick) = flight.tick() else {
+            let Ok(tick) = flight.brief_tick() else {
                 let lost = f64::INFINITY;
                 return Self { settled: None, height_lost: lost, final_error: lost, ..outcome };
             };
@@ -89,7 +89,7 @@ impl Outcome {
         Self { settled: outcome.settled.filter(|_| outcome.final_error <= NEAR), ..outcome }
     }
 
-    fn observe(&mut self, tick: &Tick, start: f64, period_us: u64) {
+    fn observe(&mut self, tick: &Brief, start: f64, period_us: u64) {
         let (position, wanted) = (&tick.state.position, tick.reference.position.map(f64::from));
         self.height_lost = self.height_lost.max(start - position.z);
         self.rise = self.rise.max(position.z - start.max(wanted.z));
@@ -116,7 +116,7 @@ impl Outcome {
 
 impl Shares {
     /// Takes a tick's commands into account; returns whether they are within their bounds.
-    fn take(&mut self, tick: &Tick, certificate: &Certificate) -> bool {
+    fn take(&mut self, tick: &Brief, certificate: &Certificate) -> bool {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
         let raised = 1.0 + ROUNDING;
         let mut within = (proven.least / raised..=proven.greatest * raised).contains(&thrust);

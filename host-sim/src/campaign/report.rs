@@ -59,21 +59,30 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
         ("Worst flights", std::iter::once(Block::Text(REPLAY.to_owned())).chain(worst).collect()),
         (
             "Scenario",
-            vec![
-                Block::Folded(
+            [
+                gains(manifest),
+                Some(Block::Folded(
                     "Vehicle, gains and all else, section by section".into(),
                     document::tables(text, "scenario"),
-                ),
-                Block::Listing("The file as it was read".into(), text.to_owned()),
-            ],
+                )),
+                Some(Block::Listing("The file as it was read".into(), text.to_owned())),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
         ),
     ];
-    let sentence =
-        if summary.holds { "Every flight recovers and tracks within its bounds" } else { "Not every flight holds" };
+    let sentence = match (summary.holds, summary.rival) {
+        (true, None) => "Every flight recovers and tracks within its bounds".to_owned(),
+        (false, None) => "Not every flight holds".to_owned(),
+        (true, Some(law)) => format!("Every flight under {law} recovers and tracks; nothing is proven of that law"),
+        (false, Some(law)) => format!("Not every flight under {law} recovers and tracks"),
+    };
+    let beyond = if summary.rival.is_some() { "Beyond a certified bound of ours" } else { "Beyond a certified bound" };
     Page {
         title: manifest.name.clone(),
-        kind: "campaign".into(),
-        verdict: Some((summary.holds, sentence.into())),
+        kind: manifest.rival().map_or("campaign".to_owned(), |law| format!("campaign under {law}")),
+        verdict: Some((summary.holds, sentence)),
         lead: summary
             .refusal
             .as_ref()
@@ -81,12 +90,19 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
         highlights: vec![
             Fact::new("Flights", summary.flights.to_string()),
             Fact::new("Recover and track", share(summary.tracking, summary.flights)),
-            Fact::new("Beyond a certified bound", summary.beyond.to_string()),
+            Fact::new(beyond, summary.beyond.to_string()),
             Fact::new("Asked a rotor for more than it has", summary.clipped.to_string()),
         ],
         tracks: Vec::new(),
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
     }
+}
+
+/// A law that is not the scenario's, with its gains.
+fn gains(manifest: &Manifest) -> Option<Block> {
+    let law = Fact::new("law", manifest.rival()?);
+    let gains = manifest.law.gains().map(|(gain, value)| Fact::new(gain, short(value)));
+    Some(Block::Facts(std::iter::once(law).chain(gains).collect()))
 }
 
 const REPLAY: &str =
@@ -99,7 +115,14 @@ fn share(part: u64, whole: u64) -> String {
 fn distribution(figure: &Figure) -> Distribution {
     let Figure { title, unit, bound, values } = figure;
     let groups = vec![("all flights".to_owned(), values.clone())];
-    Distribution { title: title.clone(), unit: (*unit).to_owned(), logarithmic: false, bound: *bound, groups }
+    Distribution {
+        title: title.clone(),
+        unit: (*unit).to_owned(),
+        logarithmic: false,
+        bound: *bound,
+        groups,
+        looks: Vec::new(),
+    }
 }
 
 /// The flights with the greatest values, greatest first.

@@ -13,8 +13,11 @@
 //! | `height_lost`, `rise`, `settled`, `final_error` | m, m, s, m | [`Outcome`]; `settled` is null where it was away at the end |
 //! | `share_thrust`, `share_torque_x` …, `share_rotor_1` … | | greatest part of each certified bound |
 //! | `clipped`, `beyond`, `ticks` | ticks | |
-//! | `verdict` | | `holds`, `away` or `beyond` |
+//! | `verdict` | | `holds`, `away` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
+//!
+//! A file of another law than ours says which in its schema's metadata, under `law`.
 
+use super::manifest::Manifest;
 use super::outcome::Outcome;
 use arrow_array::builder::Float64Builder;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray, UInt64Array};
@@ -40,6 +43,9 @@ pub struct Row {
     pub outcome: Outcome,
 }
 
+/// What the metadata calls the law.
+const LAW: &str = "law";
+
 impl Row {
     /// Flight `number`, in the circumstances of `thrown`.
     #[must_use]
@@ -56,10 +62,10 @@ impl Row {
 }
 
 impl Outcome {
-    /// In a word.
+    /// In a word; whether the bounds were kept counts where they are `proven` of the law that flew.
     #[must_use]
-    pub fn verdict(&self) -> &'static str {
-        match (self.beyond > 0, self.tracks()) {
+    pub fn verdict(&self, proven: bool) -> &'static str {
+        match (proven && self.beyond > 0, self.tracks()) {
             (true, _) => BEYOND,
             (false, true) => HOLDS,
             (false, false) => AWAY,
@@ -82,19 +88,23 @@ const WIND: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
 const FIGURES: [&str; 3] = ["height_lost", "rise", "final_error"];
 const SHARES: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
-/// The columns of a vehicle with so many rotors.
+/// The columns of what `manifest` describes.
 #[must_use]
-pub fn schema(rotors: usize) -> Schema {
+pub fn schema(manifest: &Manifest) -> Schema {
     let number = |name: &str| Field::new(name, DataType::Float64, false);
     let count = |name: &str| Field::new(name, DataType::UInt64, false);
     let mut fields = vec![count("number"), Field::new("hover", DataType::Boolean, false)];
     fields.extend(START.iter().chain(&WIND).chain(&FIGURES).map(|name| number(name)));
     fields.push(Field::new("settled", DataType::Float64, true));
     fields.extend(SHARES.iter().map(|name| number(name)));
-    fields.extend((1..=rotors).map(|rotor| number(&share_of_rotor(rotor))));
+    fields.extend((1..=manifest.rotors as usize).map(|rotor| number(&share_of_rotor(rotor))));
     fields.extend(["clipped", "beyond", "ticks"].map(count));
     fields.push(Field::new("verdict", DataType::Utf8, false));
-    Schema::new(fields)
+    let schema = Schema::new(fields);
+    match manifest.rival() {
+        Some(law) => schema.with_metadata([(LAW.to_owned(), law.to_owned())]),
+        None => schema,
+    }
 }
 
 /// The column of a rotor's share, numbered from 1.
@@ -103,11 +113,11 @@ pub fn share_of_rotor(rotor: usize) -> String {
     format!("share_rotor_{rotor}")
 }
 
-/// The rows as a record batch.
+/// The rows, of what `manifest` describes, as a record batch.
 ///
 /// # Errors
-/// As Arrow's: none for rows of a vehicle with so many rotors.
-pub fn batch(rows: &[Row], rotors: usize) -> Result<RecordBatch, ArrowError> {
+/// As Arrow's: none for rows of that vehicle.
+pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowError> {
     let numbers =
         |value: &dyn Fn(&Row) -> f64| -> ArrayRef { Arc::new(Float64Array::from_iter_values(rows.iter().map(value))) };
     let counts =
@@ -122,14 +132,15 @@ pub fn batch(rows: &[Row], rotors: usize) -> Result<RecordBatch, ArrowError> {
     columns.push(settled(rows));
     columns.push(numbers(&|row| row.outcome.shares.thrust));
     columns.extend((0..3).map(|axis| numbers(&|row| row.outcome.shares.torque[axis])));
-    columns.extend((0..rotors).map(|rotor| numbers(&|row| row.outcome.shares.rotors[rotor])));
+    columns.extend((0..manifest.rotors as usize).map(|rotor| numbers(&|row| row.outcome.shares.rotors[rotor])));
     columns.extend([
         counts(|row| row.outcome.clipped),
         counts(|row| row.outcome.beyond),
         counts(|row| row.outcome.ticks),
     ]);
-    columns.push(Arc::new(StringArray::from_iter_values(rows.iter().map(|row| row.outcome.verdict()))));
-    RecordBatch::try_new(Arc::new(schema(rotors)), columns)
+    let proven = manifest.rival().is_none();
+    columns.push(Arc::new(StringArray::from_iter_values(rows.iter().map(|row| row.outcome.verdict(proven)))));
+    RecordBatch::try_new(Arc::new(schema(manifest)), columns)
 }
 
 fn settled(rows: &[Row]) -> ArrayRef {

@@ -151,7 +151,7 @@ impl Store {
 
     fn write_batches(&self, path: &Path, batches: &[RecordBatch]) -> Result<(), CampaignError> {
         let write = || -> Result<(), ArrowError> {
-            let mut writer = FileWriter::try_new(WholeFile::create(path)?, &schema(self.manifest.rotors as usize))?;
+            let mut writer = FileWriter::try_new(WholeFile::create(path)?, &schema(&self.manifest))?;
             batches.iter().try_for_each(|batch| writer.write(batch))?;
             writer.finish()?;
             Ok(writer.into_inner()?.finish()?)
@@ -166,7 +166,7 @@ fn read(path: &Path) -> Result<Vec<RecordBatch>, ArrowError> {
 
 /// Whether a batch holds the flights of a chunk.
 fn is_chunk(batch: &RecordBatch, manifest: &Manifest, chunk: u64) -> bool {
-    *batch.schema() == schema(manifest.rotors as usize)
+    *batch.schema() == schema(manifest)
         && batch.column(0).as_primitive::<UInt64Type>().values().iter().copied().eq(manifest.flights_of(chunk))
 }
 

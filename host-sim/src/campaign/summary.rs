@@ -3,7 +3,7 @@
 use super::manifest::Manifest;
 use super::outcome::NEAR;
 use super::quantile;
-use super::rows::{BEYOND, HOLDS, share_of_rotor};
+use super::rows::{HOLDS, share_of_rotor};
 use crate::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
@@ -24,13 +24,15 @@ pub struct Summary {
     pub flights: u64,
     /// Flights that recovered and tracked.
     pub tracking: u64,
-    /// Flights with a command beyond a certified bound.
+    /// The name of the law that flew, if it is not ours.
+    pub rival: Option<&'static str>,
+    /// Flights with a command beyond a certified bound, which is ours whatever law flew.
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
     /// Why the scenario may not fly, if so.
     pub refusal: Option<String>,
-    /// Whether every flight tracks within all bounds, and the scenario may fly.
+    /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight tracks.
     pub holds: bool,
     quantiles: String,
     worst: Vec<(&'static str, String)>,
@@ -91,10 +93,12 @@ impl Summary {
         let (part, parts) = manifest.shard;
         let shard = if parts > 1 { format!(", shard {part} of {parts}") } else { String::new() };
         let refusal = verdict.refusal().map(|refusal| refusal.to_string());
-        let beyond = verdicts.iter().filter(|verdict| **verdict == BEYOND).count() as u64;
+        let ever = |column: &str| counts(flown, column).iter().filter(|ticks| **ticks > 0).count() as u64;
+        let rival = manifest.rival();
+        let under = rival.map_or(String::new(), |law| format!(" under {law}"));
         Self {
             title: format!(
-                "{}: {} flights of {} s from seed {}, plant step {} ms{shard}",
+                "{}{under}: {} flights of {} s from seed {}, plant step {} ms{shard}",
                 manifest.name,
                 numbers.len(),
                 scenario.campaign.ranges.duration,
@@ -103,9 +107,10 @@ impl Summary {
             ),
             flights: numbers.len() as u64,
             tracking: settled.iter().filter(|settled| settled.is_finite()).count() as u64,
-            beyond,
-            clipped: counts(flown, "clipped").iter().filter(|ticks| **ticks > 0).count() as u64,
-            holds: refusal.is_none() && verdicts.iter().all(|verdict| *verdict == HOLDS),
+            rival,
+            beyond: ever("beyond"),
+            clipped: ever("clipped"),
+            holds: (refusal.is_none() || rival.is_some()) && verdicts.iter().all(|verdict| *verdict == HOLDS),
             refusal,
             quantiles: table(&numbers, &figures),
             worst,
@@ -117,12 +122,17 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n", self.title)?;
         if let Some(refusal) = &self.refusal {
-            writeln!(f, "NOT certified: {refusal}\n")?;
+            let ours = if self.rival.is_some() { "ours is " } else { "" };
+            writeln!(f, "{ours}NOT certified: {refusal}\n")?;
         }
         writeln!(
             f,
-            "{} of {} recover and track; {} went beyond a certified bound; {} asked a rotor for more than it has\n",
-            self.tracking, self.flights, self.beyond, self.clipped
+            "{} of {} recover and track; {} went beyond a certified bound{}; {} asked a rotor for more than it has\n",
+            self.tracking,
+            self.flights,
+            self.beyond,
+            if self.rival.is_some() { " of ours" } else { "" },
+            self.clipped
         )?;
         writeln!(f, "{}", self.quantiles)?;
         for (what, flights) in &self.worst {

@@ -69,15 +69,19 @@ fn clipped(shown: &Shown) -> f64 {
     100.0 * shown.clipped
 }
 
-/// All rows: of `scenes`, each with what every law showed there, and of what every law showed in the random flights.
+/// How a figure of the rotors begins: a vehicle without has none.
+const OF_ROTORS: &str = "rotor";
+
+/// All rows of a vehicle with or without `rotors`: of `scenes`, each with what every law showed there, and of what every law showed in the random flights.
 #[must_use]
-pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>]) -> Vec<Row> {
+pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>], rotors: bool) -> Vec<Row> {
     let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {
         let (_, shown) = scenes.iter().find(|(scene, _)| *scene == name)?;
         let values = shown.iter().map(|shown| shown.as_ref().map_or(f64::INFINITY, get)).collect();
         Some(Row { scene: name, figure, unit, values, grain })
     };
-    let mut rows: Vec<Row> = FIGURES.iter().filter_map(of_scene).collect();
+    let figures = FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
+    let mut rows: Vec<Row> = figures.filter_map(of_scene).collect();
     let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&Thrown) -> f64| {
         let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
         rows.push(Row { scene: "random", figure, unit, values, grain });
@@ -94,7 +98,9 @@ pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Throw
     rows
 }
 
-fn cell(value: f64) -> String {
+/// A value as the tables show it.
+#[must_use]
+pub fn cell(value: f64) -> String {
     if value.is_finite() { short(significant(value)) } else { "never".to_owned() }
 }
 

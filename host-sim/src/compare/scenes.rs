@@ -32,6 +32,8 @@ const WIND_AT: f64 = 1.0;
 pub struct Scene {
     /// Its name in tables.
     pub name: &'static str,
+    /// What is asked, in a sentence.
+    pub asked: &'static str,
     /// What is flown.
     pub scenario: Scenario,
 }
@@ -63,15 +65,15 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     noisy.reality.sensors = Some(noise(file.timing.period()));
     let upside_down = recovery(&calm, 20.0)?;
     let scenes = [
-        ("own", file.clone()),
-        ("step", at([-1.0, 0.0, 0.0], 12.0)?),
-        ("far step", at([-6.0, -6.0, -5.3], 30.0)?),
-        ("upside down", upside_down.clone()),
-        ("gust", windy(5.0, 12.0)?),
-        ("storm", windy(12.0, 20.0)?),
-        ("noise", noisy),
-        ("weak rotors", really(at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
-        ("heavy", really(upside_down, 1.6, 1.0)),
+        ("own", "the file's own flight", file.clone()),
+        ("step", "hover 1 m from where it is", at([-1.0, 0.0, 0.0], 12.0)?),
+        ("far step", "hover 10 m away, across and up", at([-6.0, -6.0, -5.3], 30.0)?),
+        ("upside down", "hover where it starts: roll −179°, yaw 100° off", upside_down.clone()),
+        ("gust", "hover; 5 m/s of wind begin after a second", windy(5.0, 12.0)?),
+        ("storm", "hover; 12 m/s of wind begin after a second", windy(12.0, 20.0)?),
+        ("noise", "hover; noise of gyro and poses, all 20 ms late", noisy),
+        ("weak rotors", "1 m step with rotors that deliver 60 %", really(at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
+        ("heavy", "upside down with 1.6 times the mass", really(upside_down, 1.6, 1.0)),
     ];
-    Ok(scenes.map(|(name, scenario)| Scene { name, scenario }).into())
+    Ok(scenes.map(|(name, asked, scenario)| Scene { name, asked, scenario }).into())
 }

@@ -1,20 +1,20 @@
 //! What one law showed in one scene, and in the random flights.
 
-use super::flier::Flier;
 use super::scenes::Scene;
-use crate::campaign::draw::circumstances;
 use crate::campaign::outcome::Outcome;
 use crate::campaign::quantile;
+use crate::campaign::throw;
+use crate::flier::Flier;
 use crate::flight::{Flight, FlightError, Tick};
+use crate::interrupt::Interrupt;
 use controller_core::certificate::Certificate;
 use rayon::prelude::*;
 use scenario::Scenario;
-use scenario::campaign::Ranges;
 
 /// How near its reference a vehicle must stay to be there, m: as in the trials of a search.
 const NEAR: f64 = 0.1;
 /// Every so many ticks a point of a picture.
-const THINNED: u64 = 2;
+pub const THINNED: u64 = 2;
 
 /// One law in one scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,10 +41,8 @@ pub struct Shown {
 
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
-pub fn show(flier: &Flier, file: &Scenario, scene: &Scene) -> Option<Shown> {
-    let scenario = &scene.scenario;
-    let flight = flier.flight(file, scenario)?;
-    over(scenario, flight).ok()
+pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
+    over(&scene.scenario, flier.flight(&scene.scenario).ok()?).ok()
 }
 
 fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
@@ -99,18 +97,19 @@ pub struct Thrown {
     pub outcomes: Vec<Outcome>,
 }
 
-/// Flies the flights 0 to `count` - 1 of the campaign of `file` with this `seed`: the same circumstances for every law.
+/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with the plant step that it has: those of `campaign --law`. None
+/// once somebody has interrupted them.
 #[must_use]
-pub fn throw(
+pub fn throw_all(
     flier: &Flier,
-    file: &Scenario,
+    scenario: &Scenario,
     certificate: &Certificate,
-    (ranges, seed): (&Ranges, u64),
     count: u64,
+    interrupt: &Interrupt,
 ) -> Option<Thrown> {
     let fly = |number| {
-        let scenario = circumstances(file, ranges, seed, number);
-        Some(Outcome::of(&scenario, flier.flight(file, &scenario)?, certificate))
+        let row = throw::throw(flier, scenario, certificate, scenario.campaign.seed, number).ok()?;
+        interrupt.signal().is_none().then_some(row.outcome)
     };
     Some(Thrown { outcomes: (0..count).into_par_iter().map(fly).collect::<Option<_>>()? })
 }

@@ -1,6 +1,7 @@
 //! Both doors into a flight, and what its rotors show.
 
 use super::*;
+use crate::campaign::draw::circumstances;
 
 const STUDY: &str = include_str!("../../../vehicles/study.toml");
 
@@ -45,5 +46,20 @@ fn a_certified_flight_is_of_what_was_certified_whatever_the_circumstances() {
     let mut own = Flight::new(&study).unwrap();
     for _ in 0..100 {
         assert_eq!(flight.tick().unwrap().state, own.tick().unwrap().state);
+    }
+}
+
+#[test]
+fn a_tick_in_brief_is_the_same_tick() {
+    for scenario in [Scenario::paper().unwrap(), Scenario::parse(STUDY, "f").unwrap()] {
+        let thrown = circumstances(&scenario, &scenario.campaign.ranges, 0, 1);
+        let mut flights = [(); 2].map(|()| Flight::new(&thrown).unwrap());
+        for _ in 0..300 {
+            let [whole, brief] = &mut flights;
+            let (whole, brief) = (whole.tick().unwrap(), brief.brief_tick().unwrap());
+            assert_eq!((whole.time_us, whole.state, whole.reference), (brief.time_us, brief.state, brief.reference));
+            assert_eq!((whole.wrench, whole.clipped), (brief.wrench, brief.clipped));
+            assert_eq!(whole.rotor_thrusts, brief.rotor_thrusts);
+        }
     }
 }

@@ -1,23 +1,14 @@
 //! What a tick of a simulated flight adds to its recording.
 
-use super::drawing::{pose, transform, vector};
+use super::drawing::{pose, vector};
+use super::schemas::ESTIMATES;
 use super::{Recording, Topic};
 use crate::flight::Tick;
-use crate::recording::schemas::{ESTIMATES, FRAME_TRANSFORM, LAW, POSE_IN_FRAME, ROTORS, SCENE_UPDATE};
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a flight is recorded as.
-pub const TOPICS: &[Topic] = &[
-    ("/vehicle", POSE_IN_FRAME),
-    ("/reference", POSE_IN_FRAME),
-    ("/told", POSE_IN_FRAME),
-    ("/tf", FRAME_TRANSFORM),
-    ("/scene", SCENE_UPDATE),
-    ("/law", LAW),
-    ("/rotors", ROTORS),
-    ("/estimates", ESTIMATES),
-];
+/// What a flight is recorded as beside what every recording has.
+pub const TOPICS: &[Topic] = &[("/estimates", ESTIMATES)];
 
 impl<W: Write> Recording<W> {
     /// Adds a tick.
@@ -26,8 +17,7 @@ impl<W: Write> Recording<W> {
     /// As the writer's.
     pub fn take(&mut self, tick: &Tick) -> io::Result<()> {
         let (now, s, d) = (tick.time_us, &tick.state, &tick.diagnostics);
-        self.message("/vehicle", now, &pose(now, &s.position, &s.attitude))?;
-        self.message("/tf", now, &transform(now, &s.position, &s.attitude))?;
+        self.truth(now, s)?;
         self.message("/reference", now, &pose(now, &tick.reference.position.cast(), &d.desired_attitude.cast()))?;
         if let Some(told) = &tick.measured {
             self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;

@@ -1,25 +1,15 @@
 //! What a session with the firmware adds to its recording: what the vehicle does, what it believes, and what it says.
 
-use super::drawing::{pose, stamp, transform, vector};
-use super::schemas::{FRAME_TRANSFORM, LAW, LOG, POSE_IN_FRAME, ROTORS, SCENE_UPDATE, STATE};
+use super::drawing::{pose, stamp, vector};
+use super::schemas::{LOG, STATE};
 use super::{Recording, Topic};
 use firmware::shared::Report;
 use scenario::body::{BodyState, attitude_from_euler};
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a session is recorded as.
-pub const TOPICS: &[Topic] = &[
-    ("/vehicle", POSE_IN_FRAME),
-    ("/reference", POSE_IN_FRAME),
-    ("/told", POSE_IN_FRAME),
-    ("/tf", FRAME_TRANSFORM),
-    ("/scene", SCENE_UPDATE),
-    ("/law", LAW),
-    ("/rotors", ROTORS),
-    ("/state", STATE),
-    ("/log", LOG),
-];
+/// What a session is recorded as beside what every recording has.
+pub const TOPICS: &[Topic] = &[("/state", STATE), ("/log", LOG)];
 
 /// Foxglove's level of information.
 const INFORMATION: u8 = 2;
@@ -47,8 +37,7 @@ impl<W: Write> Recording<W> {
     pub fn moment(&mut self, moment: &Moment) -> io::Result<()> {
         let Moment { now, truth, rotors, report, voltage } = moment;
         let now = *now;
-        self.message("/vehicle", now, &pose(now, &truth.position, &truth.attitude))?;
-        self.message("/tf", now, &transform(now, &truth.position, &truth.attitude))?;
+        self.truth(now, truth)?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;
         let Some(report) = report else { return Ok(()) };
         if let Some(told) = &report.state {

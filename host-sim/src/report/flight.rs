@@ -10,6 +10,7 @@ use super::prose::{Cell, Fact, Table};
 use super::recorder::Recorder;
 use super::replay::{Body, Replay};
 use crate::claims::{self, Claim};
+use crate::flier::LawChoice;
 use crate::flown::Flown;
 use crate::table::{percent, short};
 use scenario::Scenario;
@@ -22,7 +23,9 @@ pub struct Flight<'a> {
     pub scenario: &'a Scenario,
     /// The file it was read from.
     pub text: &'a str,
-    /// Whether it may fly for real.
+    /// Which law flew.
+    pub law: &'a LawChoice,
+    /// Whether it may fly for real, under our law.
     pub verdict: &'a Verdict,
     /// The same in a sentence.
     pub certification: &'a str,
@@ -42,7 +45,7 @@ pub fn recorder(scenario: &Scenario) -> Recorder {
 /// The page of a flight.
 #[must_use]
 pub fn page(flight: &Flight, recorder: Recorder) -> Page {
-    let Flight { scenario, verdict, claims, flown, .. } = flight;
+    let Flight { scenario, law, verdict, claims, flown, .. } = flight;
     let ticks_per_row = recorder.ticks_per_row();
     let track = recorder.finish(&scenario.name);
     let plots = plots::plots(scenario, verdict.certificate(), &track);
@@ -74,16 +77,20 @@ pub fn page(flight: &Flight, recorder: Recorder) -> Page {
         title: scenario.name.clone(),
         kind: "flight".into(),
         verdict: Some((holds, if holds { "Every claim holds" } else { "Not every claim holds" }.into())),
-        lead: lead(scenario),
-        highlights: highlights(scenario, verdict, flown),
+        lead: lead(scenario, law),
+        highlights: highlights(scenario, law, verdict, flown),
         tracks: vec![track],
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
     }
 }
 
-fn lead(scenario: &Scenario) -> String {
+fn lead(scenario: &Scenario, law: &LawChoice) -> String {
     let timing = &scenario.timing;
-    let law = if scenario.configuration.paper().is_some() { "the paper's law" } else { "the extended law" };
+    let law = match law {
+        LawChoice::Rival(kind, _) => &format!("another law, {}, of which nothing is proven,", kind.name()),
+        LawChoice::Ours if scenario.configuration.paper().is_some() => "the paper's law",
+        LawChoice::Ours => "the extended law",
+    };
     let beyond = match scenario.reality.sections().as_slice() {
         [] => String::new(),
         sections => format!(" Beyond the model: [{}], of which no certificate knows.", sections.join("], [")),
@@ -96,13 +103,14 @@ fn lead(scenario: &Scenario) -> String {
     )
 }
 
-fn highlights(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Fact> {
+fn highlights(scenario: &Scenario, law: &LawChoice, verdict: &Verdict, flown: &Flown) -> Vec<Fact> {
     let since = |since: Option<f64>| since.map_or_else(|| "never".to_owned(), |since| format!("{} s", short(since)));
+    let ours = *law == LawChoice::Ours;
     let margin = verdict.certificate().tightest().map_or("none".to_owned(), |tightest| percent(tightest.margin()));
     let torque = flown.torque.map(short).join(", ");
     vec![
-        Fact::new("Certified", if verdict.refusal().is_none() { "yes" } else { "no" }),
-        Fact::new("Tightest proven margin", margin),
+        Fact::new("Certified", if ours && verdict.refusal().is_none() { "yes" } else { "no" }),
+        Fact::new("Tightest proven margin", if ours { margin } else { "none".to_owned() }),
         Fact::new("On its reference after", since(flown.position_reached())),
         Fact::new("Steady position error", format!("{} m", short(flown.steady_position_error))),
         Fact::new("Height lost", format!("{} m", short(flown.height_lost))),

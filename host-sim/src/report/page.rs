@@ -14,11 +14,13 @@ use std::fmt::Write;
 
 const STYLE: &str = include_str!("../../report/page.css");
 /// The program's parts, in the order in which they need each other; together they are one function.
-const PROGRAM: [&str; 6] = [
+const PROGRAM: [&str; 8] = [
     include_str!("../../report/data.js"),
+    include_str!("../../report/legend.js"),
     include_str!("../../report/chart.js"),
     include_str!("../../report/plots.js"),
     include_str!("../../report/space.js"),
+    include_str!("../../report/stage.js"),
     include_str!("../../report/replay.js"),
     include_str!("../../report/distributions.js"),
 ];

@@ -20,7 +20,9 @@ pub enum Color {
     Purple,
     /// A sixth curve.
     Sky,
-    /// Bounds that belong to no curve.
+    /// A seventh rival.
+    Grey,
+    /// Bounds that belong to no curve; our law beside others.
     Ink,
 }
 
@@ -44,6 +46,7 @@ impl Color {
             Self::Orange => "orange",
             Self::Purple => "purple",
             Self::Sky => "sky",
+            Self::Grey => "grey",
             Self::Ink => "ink",
         }
     }
@@ -60,7 +63,7 @@ pub struct Curve {
     pub label: String,
     /// Its colour.
     pub color: Color,
-    /// Dashed: something asked for rather than flown.
+    /// Dashed: something asked for rather than flown; or one of many laws, so that not colour alone tells them apart.
     pub dashed: bool,
 }
 

@@ -1,22 +1,34 @@
 //! The rivals' gains as a file: for each vehicle a table, in it for each rival a table of its gains by name.
 //!
 //! ```toml
-//! [hummingbird]
-//! mass = 0.5                  # the vehicle they were found for: kg, kg m^2
-//! inertia = [3.65e-3, 3.68e-3, 7.03e-3]
+//! [hummingbird]               # the vehicle they were found for, as rivals know it
+//! mass = 0.5                  # kg
+//! inertia = [3.65e-3, 3.68e-3, 7.03e-3]   # kg m^2
+//! lag = 0.005                 # of the rotors, s
+//! delay = 0.0                 # between a tick and its command's effect, s
+//! thrust_max = 40.0           # N
+//! period = 0.01               # between ticks, s
 //!
 //! [hummingbird.lee]
 //! cost = 9.4                  # what the search made of it
 //! k_x_across = 5.0
 //! ```
+//!
+//! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle that its table
+//! describes and no other. A table that leaves out lag, delay, thrust or period serves any.
 
 use super::kind::Kind;
+use super::pilot::model;
+use crate::flier::LawChoice;
 use scenario::Scenario;
 use std::fmt::Write;
-use toml_edit::{DocumentMut, Item};
+use toml_edit::{DocumentMut, Item, Value};
 
 /// Gains that were found with `host-sim compare --tune`, with the commands that find them again.
 pub const BUILT_IN: &str = include_str!("gains.toml");
+
+/// What messages call them.
+pub const BUILT_IN_NAME: &str = "the built-in gains";
 
 /// The gains of every rival on one vehicle.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,23 +53,22 @@ impl Set {
     /// The set in `text`, called `file` in messages, that was found for the vehicle of `scenario`.
     ///
     /// # Errors
-    /// If the text is no TOML, holds no table of that mass and inertia, or a rival's gains are not all there, or not positive.
+    /// If the text is no TOML, holds no table of that vehicle, or a rival's gains are not all there, or not positive.
     pub fn of(scenario: &Scenario, text: &str, file: &str) -> Result<Self, GainsError> {
         let failed = |what: String| GainsError(format!("{file}: {what}"));
         let document: DocumentMut =
             text.parse().map_err(|error: toml_edit::TomlError| failed(error.message().replace('\n', " ")))?;
-        let vehicle = scenario.configuration.vehicle();
-        let own = [vehicle.mass, vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z];
-        let is_own = |item: &Item| {
-            let numbers = item.get("inertia").and_then(Item::as_array).into_iter().flatten();
-            let numbers = numbers.map(|value| value.as_float().map(|number| number as f32));
-            let mass = item.get("mass").and_then(Item::as_float).map(|mass| mass as f32);
-            std::iter::once(mass).chain(numbers).eq(own.map(Some))
-        };
+        let own = vehicle(scenario);
+        let is_own = |item: &Item| own.iter().all(|(key, values)| is_said(item.get(key), key, values));
         let Some((name, item)) = document.iter().find(|(_, item)| is_own(item)) else {
+            let there: Vec<&str> = document.iter().map(|(name, _)| name).collect();
+            let said: Vec<String> = own.iter().map(|(key, values)| line(key, values)).collect();
             return Err(failed(format!(
-                "no table has the mass and inertia of {}'s vehicle: find the rivals' gains for it with --tune 40",
-                scenario.name
+                "no table is of {}'s vehicle ({}); those there are of: {}; `host-sim compare FILE --tune 40` finds the rivals' gains \
+                 for it and writes them to rivals.toml, which --gains reads",
+                scenario.name,
+                said.join(", "),
+                if there.is_empty() { "none".to_owned() } else { there.join(", ") }
             )));
         };
         let rivals = Kind::ALL.map(|kind| {
@@ -82,15 +93,23 @@ impl Set {
         Ok(Self { rivals: rivals.into_iter().collect::<Result<_, _>>()? })
     }
 
+    /// The laws, in the order of their names.
+    pub fn laws(&self) -> impl Iterator<Item = LawChoice> {
+        self.rivals.iter().map(|(kind, gains, _)| LawChoice::Rival(*kind, gains.clone()))
+    }
+
+    /// One of them.
+    #[must_use]
+    pub fn law(&self, kind: Kind) -> Option<LawChoice> {
+        self.laws().find(|law| law.name() == kind.name())
+    }
+
     /// As a table of a file of gains; `origin` is a line that says where they come from.
     #[must_use]
     pub fn written(&self, scenario: &Scenario, origin: &str) -> String {
-        let vehicle = scenario.configuration.vehicle();
-        let (name, inertia) = (&scenario.name, vehicle.inertia);
-        let mut text = format!(
-            "# {origin}\n[{name}]\nmass = {:?}\ninertia = [{:?}, {:?}, {:?}]\n",
-            vehicle.mass, inertia.x, inertia.y, inertia.z
-        );
+        let name = &scenario.name;
+        let lines: String = vehicle(scenario).iter().map(|(key, values)| line(key, values) + "\n").collect();
+        let mut text = format!("# {origin}\n[{name}]\n{lines}");
         for (kind, gains, cost) in &self.rivals {
             let _ = writeln!(text, "\n[{name}.{}]\ncost = {cost:.3}", kind.name());
             for (key, gain) in kind.gains().iter().zip(gains) {
@@ -98,6 +117,38 @@ impl Set {
             }
         }
         text
+    }
+}
+
+/// What rivals know of the vehicle of `scenario`, by the keys of a table, in single precision.
+fn vehicle(scenario: &Scenario) -> [(&'static str, Vec<f32>); 6] {
+    let model = model(scenario);
+    [
+        ("mass", vec![model.mass as f32]),
+        ("inertia", model.inertia.iter().map(|value| *value as f32).collect()),
+        ("lag", vec![model.lag as f32]),
+        ("delay", vec![model.delay as f32]),
+        ("thrust_max", vec![model.thrust_max as f32]),
+        ("period", vec![model.period as f32]),
+    ]
+}
+
+/// Whether a table says `values` under `key`, or nothing where it need not.
+fn is_said(found: Option<&Item>, key: &str, values: &[f32]) -> bool {
+    let Some(found) = found else { return !matches!(key, "mass" | "inertia") };
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    let said: Option<Vec<f32>> = match found.as_array() {
+        Some(array) => array.iter().map(|value| number(value).map(|number| number as f32)).collect(),
+        None => found.as_value().and_then(number).map(|number| vec![number as f32]),
+    };
+    said.is_some_and(|said| said == values)
+}
+
+/// As a line of a table.
+fn line(key: &str, values: &[f32]) -> String {
+    match values {
+        [value] => format!("{key} = {value:?}"),
+        several => format!("{key} = {several:?}"),
     }
 }
 

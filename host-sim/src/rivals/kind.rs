@@ -51,6 +51,28 @@ impl Kind {
         }
     }
 
+    /// What it is, in a line.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Lee => "geometric tracking on SE(3): Lee, Leok, McClamroch, 2010",
+            Self::Cascade => {
+                "P and PID loops as PX4 flies them, around a quaternion law: Brescianini, Hehn, D'Andrea, 2013"
+            }
+            Self::Mellinger => "geometric tracking with feed-forward torque: Mellinger, Kumar, 2011",
+            Self::Indi => "incremental nonlinear dynamic inversion: Smeur, Chu, de Croon, 2016; Tal, Karaman, 2021",
+            Self::Nested => "nested saturations around the paper's attitude law: Martins, Cardeira, Oliveira, 2024",
+            Self::Continuous => "continuous quaternion feedback: Wie, Weiss, Arapostathis, 1989",
+            Self::Memoryless => "the same, always the nearer quaternion: Fjellstad, Fossen, 1994",
+        }
+    }
+
+    /// The one of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
     /// Its gains' names.
     #[must_use]
     pub fn gains(self) -> &'static [&'static str] {

@@ -77,7 +77,11 @@ fn gains_that_cannot_be_used_are_refused_by_name() {
         assert_ne!(text, BUILT_IN, "{from}");
         Set::of(&file, &text, "mine.toml").unwrap_err().to_string()
     };
-    assert!(refused("mass = 0.5", "mass = 0.6").contains("mine.toml: no table has the mass"));
+    for (from, to) in [("mass = 0.5", "mass = 0.6"), ("lag = 0.005", "lag = 0.006"), ("delay = 0.0", "delay = 0.01")] {
+        let message = refused(from, to);
+        assert!(message.starts_with("mine.toml: no table is of hummingbird's vehicle (mass = 0.5, "), "{message}");
+        assert!(message.contains("--tune 40"), "{message}");
+    }
     assert!(refused("[hummingbird.lee]", "[hummingbird.lea]").contains("hummingbird.lee: missing"));
     assert!(refused("k_w_yaw = ", "k_w_yaw = -").contains("hummingbird.lee.k_w_yaw: must be a finite number"));
     assert!(refused("k_w_yaw = ", "k_w_jaw = ").contains("hummingbird.lee.k_w_jaw: unknown"));

@@ -31,7 +31,7 @@ fn orders(part: u64, parts: u64) -> Orders {
 
 fn fly_on(threads: usize, orders: &Orders, directory: &Path) -> Summary {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| campaign(&scenario(), &text(), orders, directory, &Interrupt::default())).unwrap()
+    pool.install(|| campaign(&scenario(), &text(), &LawChoice::Ours, orders, directory, &Interrupt::default())).unwrap()
 }
 
 /// Every file, by name.
@@ -91,7 +91,8 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     let there = fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap();
     let verdict = Verdict::of(&scenario()).unwrap();
     let (same, none) = (scenario(), Interrupt::default());
-    assert_eq!(Chunks::new(&same, &verdict, &store, &none).fly().unwrap(), flown);
+    let ours = Flier::new(&LawChoice::Ours, &same, verdict.certified()).unwrap();
+    assert_eq!(Chunks::new(&same, &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
     assert_eq!(fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap(), there);
     fly_on(2, &orders(1, 1), &again);
     assert_eq!(files(&again), files(&whole));
@@ -106,7 +107,8 @@ fn a_directory_is_of_one_campaign() {
     let before = files(&first);
     let refuse = |orders: &Orders, text: &str, expected: &str| {
         let scenario = longest(&Scenario::parse(text, "f").unwrap());
-        let error = campaign(&scenario, text, orders, &first, &Interrupt::default()).unwrap_err().to_string();
+        let error =
+            campaign(&scenario, text, &LawChoice::Ours, orders, &first, &Interrupt::default()).unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("choose another --out"), "{error}");
     };
     refuse(&Orders { seed: 2, ..few }, &text(), "not the same seed (1 and 2)");
@@ -114,7 +116,8 @@ fn a_directory_is_of_one_campaign() {
     refuse(&Orders { shard: (1, 2), ..few }, &text(), "not the same shard ([1,1] and [1,2])");
     refuse(&few, &format!("{}# Another.\n", text()), "not the same scenario;");
     fs::write(first.join(MANIFEST), "{}").unwrap();
-    let error = campaign(&scenario(), &text(), &few, &first, &Interrupt::default()).unwrap_err().to_string();
+    let error =
+        campaign(&scenario(), &text(), &LawChoice::Ours, &few, &first, &Interrupt::default()).unwrap_err().to_string();
     assert!(error.ends_with("campaign.json: is no campaign's of this program"), "{error}");
     fs::write(first.join(MANIFEST), &before[1].1).unwrap();
     assert_eq!(files(&first), before);

@@ -18,6 +18,7 @@ fn flown(text: &str) -> (Page, String) {
     }
     let claims = claims::claims(&scenario, &verdict, &seen);
     let flight = Flight {
+        law: &LawChoice::Ours,
         scenario: &scenario,
         text,
         verdict: &verdict,

@@ -13,7 +13,14 @@ fn page(text: &str) -> Page {
     let plot = Plot::new(text, text, vec![Curve::new("px", text, Color::Blue)]).within(vec![bound]);
     let body = Body { track: 0, label: text.into(), color: Color::Green };
     let groups = vec![(text.to_owned(), vec![1.0, 2.0])];
-    let spread = Distribution { title: text.into(), unit: text.into(), logarithmic: false, bound: None, groups };
+    let spread = Distribution {
+        title: text.into(),
+        unit: text.into(),
+        logarithmic: false,
+        bound: None,
+        groups,
+        looks: Vec::new(),
+    };
     let blocks = vec![
         Block::Text(text.into()),
         Block::Facts(vec![Fact::new(text, text)]),
@@ -144,6 +151,7 @@ fn colours_of_curves_stand_out_from_the_ground_they_are_drawn_on() {
             ("green", 3.0),
             ("purple", 3.0),
             ("sky", 3.0),
+            ("grey", 3.0),
             ("orange", 2.0),
             ("ink", 7.0),
             ("muted", 4.5),

@@ -1,0 +1,62 @@
+//! How often `identify` is right: `cargo run --release -p host-sim --example identify_coverage -- [RUNS]`.
+//!
+//! For each of two vehicles, RUNS (100) vehicles drawn like it fly `scenarios/identify.toml`'s manoeuvre, each identified from its log and a
+//! weighing. Printed: how many had every true value within its stated interval and how many were refused, with the quantity; and, for each
+//! quantity, the standard uncertainty, the error that really occurred, errors over uncertainties (root mean square, 1 if uncertainties are
+//! honest), and how many intervals missed. Fails if fewer than 95 of 100 were told, and rightly.
+
+use host_sim::identify::flight_log::FlightLog;
+use host_sim::identify::identify;
+use host_sim::identify::quantities::Quantity;
+use host_sim::identify::telling;
+use host_sim::identify::trials::Trial;
+use rayon::prelude::*;
+use scenario::{STUDY, Scenario};
+use std::error::Error;
+
+/// A name, what is told, what is true.
+type Told = Vec<(&'static str, Quantity, f64)>;
+
+fn run(file: &str, seed: u64) -> Result<Told, String> {
+    let trial = Trial::flown(file, seed)?;
+    let scenario = Scenario::parse(file, "model").map_err(|error| error.to_string())?;
+    let log = FlightLog::from_csv(&trial.log)?;
+    let refused = |lines: Vec<String>| if lines.is_empty() { Ok(()) } else { Err(lines.join("; ")) };
+    refused(telling::unmoved(&log))?;
+    let told = identify(&log, &scenario, &trial.bench)?;
+    refused(telling::unknown(&told))?;
+    Ok(trial.truths(&told))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let runs: u64 = std::env::args().nth(1).map_or(Ok(100), |runs| runs.parse())?;
+    let mut right = true;
+    for (name, file) in [("hummingbird", include_str!("../../vehicles/hummingbird.toml")), ("study", STUDY)] {
+        let told: Vec<Result<Told, String>> = (1..=runs).into_par_iter().map(|seed| run(file, seed)).collect();
+        for (seed, refused) in
+            told.iter().enumerate().filter_map(|(index, told)| Some((index + 1, told.as_ref().err()?)))
+        {
+            println!("{name}, run {seed}: {refused}");
+        }
+        let told: Vec<Told> = told.into_iter().flatten().collect();
+        let all = told.iter().filter(|run| run.iter().all(|(_, told, truth)| told.holds(*truth))).count();
+        println!("{name}: {} of {runs} runs told, {all} of them with every true value within its interval", told.len());
+        println!(
+            "{:18} {:>12} {:>12} {:>12} {:>12} {:>7}",
+            "", "uncertainty", "rms error", "mean error", "rms ratio", "missed"
+        );
+        for index in 0..told.first().map_or(0, Vec::len) {
+            let of: Vec<(Quantity, f64)> = told.iter().map(|run| (run[index].1, run[index].2)).collect();
+            let mean = |what: &dyn Fn(&(Quantity, f64)) -> f64| of.iter().map(what).sum::<f64>() / of.len() as f64;
+            let uncertainty = mean(&|(told, _)| told.uncertainty.powi(2)).sqrt();
+            let error = mean(&|(told, truth)| (told.value - truth).powi(2)).sqrt();
+            let bias = mean(&|(told, truth)| told.value - truth);
+            let ratio = mean(&|(told, truth)| ((told.value - truth) / told.uncertainty).powi(2)).sqrt();
+            let missed = of.iter().filter(|(told, truth)| !told.holds(*truth)).count();
+            let name = told[0][index].0;
+            println!("{name:18} {uncertainty:12.3e} {error:12.3e} {bias:12.3e} {ratio:12.2} {missed:7}");
+        }
+        right &= 100 * all as u64 >= 95 * runs;
+    }
+    if right { Ok(()) } else { Err("fewer than 95 of 100 runs are right".into()) }
+}

@@ -1,0 +1,85 @@
+//! Who flies: our law, or a rival with its gains.
+//!
+//! [`LawChoice`] says which law is wanted and can be written down and read again; a [`Flier`] is that law on one vehicle, ready for any
+//! number of flights. Ours is flown as boards fly it, certified once for all flights; where nothing certifies it, as its scenario has it.
+
+use crate::flight::Flight;
+use crate::rivals::kind::Kind;
+use crate::rivals::rival::Rival;
+use controller_core::certificate::certified::Certified;
+use controller_core::error::ParameterError;
+use scenario::Scenario;
+
+/// What our law is called beside others.
+pub const OURS: &str = "ours";
+
+/// Which law.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawChoice {
+    /// The scenario's own.
+    Ours,
+    /// Another one with its gains, each in the place of its name.
+    Rival(Kind, Vec<f64>),
+}
+
+impl LawChoice {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Ours => OURS,
+            Self::Rival(kind, _) => kind.name(),
+        }
+    }
+
+    /// The names of a rival's gains with their values; none of ours, which are the scenario's.
+    pub fn gains(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let (names, values) = match self {
+            Self::Ours => (&[][..], &[][..]),
+            Self::Rival(kind, gains) => (kind.gains(), gains.as_slice()),
+        };
+        names.iter().copied().zip(values.iter().copied())
+    }
+}
+
+/// A law on a vehicle.
+#[derive(Debug)]
+pub enum Flier {
+    /// The scenario's own, with what certifies it, if anything does.
+    Ours(Option<Box<Certified>>),
+    /// Another one, at the start of a flight.
+    Rival(Kind, Box<dyn Rival>),
+}
+
+impl Flier {
+    /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what certifies ours. None if
+    /// the rival is undefined for its gains.
+    #[must_use]
+    pub fn new(choice: &LawChoice, scenario: &Scenario, certified: Option<&Certified>) -> Option<Self> {
+        Some(match choice {
+            LawChoice::Ours => Self::Ours(certified.cloned().map(Box::new)),
+            LawChoice::Rival(kind, gains) => Self::Rival(*kind, kind.build(scenario, gains)?),
+        })
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Ours(_) => OURS,
+            Self::Rival(kind, _) => kind.name(),
+        }
+    }
+
+    /// A flight in the circumstances of `scenario`.
+    ///
+    /// # Errors
+    /// If our law refuses the scenario's period; none that was read from a file does.
+    pub fn flight(&self, scenario: &Scenario) -> Result<Flight, ParameterError> {
+        match self {
+            Self::Ours(Some(certified)) => Flight::certified(scenario, certified),
+            Self::Ours(None) => Flight::uncertified(scenario),
+            Self::Rival(_, rival) => Ok(Flight::of_rival(scenario, rival.boxed())),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! A vehicle of one's own: its numbers, from the log of a flight and from a bench, each with its uncertainty.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`flight_log`], [`ulog`] | what the vehicle knew in flight, from log.csv or from the firmware's recorder |
+//! | [`impulses`] | what the model's rotors gave between ticks, with a lag and a delay |
+//! | [`model`] | the rigid body that the log is held against |
+//! | [`noise`] | what is left, made white |
+//! | [`fit`] | the most likely numbers and their covariance |
+//! | [`mod@bench`] | weighing, swings, thrust stand |
+//! | [`quantities`] | flight and bench together |
+//! | [`telling`] | what a log cannot tell, and what to fly for it |
+//! | [`output`], [`margins`] | the scenario with these numbers; what the uncertainty eats of its certificate |
+//! | [`command`] | all of it, from files to a report |
+//! | [`trials`] | flights of vehicles that are not what their file says, to see how often this is right |
+
+pub mod bench;
+pub mod command;
+pub mod fit;
+pub mod flight_log;
+pub mod impulses;
+pub mod margins;
+pub mod model;
+pub mod noise;
+pub mod output;
+pub mod quantities;
+pub mod telling;
+pub mod trials;
+pub mod ulog;
+
+use bench::Bench;
+use controller_core::imu::INCREMENT;
+use flight_log::{FlightLog, Source};
+use model::Model;
+use quantities::Quantities;
+use scenario::Scenario;
+
+/// What `log` and `bench` say of the vehicle whose model is `scenario`'s.
+///
+/// # Errors
+/// If the log is of no flight of it.
+pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Quantities, String> {
+    let configuration = &scenario.configuration;
+    let asked_for = log.asked_for();
+    let (flown, asked) = (Model::new(log, configuration)?, Model::new(&asked_for, configuration)?);
+    let fit = fit::fit(&flown, &asked, log.period)?;
+    Quantities::combined(&fit, bench, configuration.vehicle(), late(log, scenario))
+}
+
+/// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a whole increment of the IMU, besides the
+/// low-pass that [`impulses`] knows.
+fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
+    match log.source {
+        Source::Estimator => INCREMENT as f64 * 1e-6,
+        Source::Sensors => scenario.input_delay(),
+        Source::Truth => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests;

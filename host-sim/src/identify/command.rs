@@ -1,0 +1,166 @@
+//! The `identify` command: files in, a report and a scenario out.
+
+use super::bench::{self, Bench};
+use super::flight_log::{FlightLog, Source};
+use super::output::{Values, rewritten};
+use super::quantities::{COVERAGE, Quantities, Quantity};
+use super::{identify, margins, telling, ulog};
+use crate::table::{aligned, short};
+use crate::whole_file::WholeFile;
+use scenario::Scenario;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What is asked for.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// log.csv or a ULog of the recorder.
+    pub log: PathBuf,
+    /// The scenario's text, and how errors call it.
+    pub original: String,
+    /// See [`Self::original`].
+    pub file: String,
+    /// Bench data.
+    pub bench: Option<PathBuf>,
+    /// The scenario to write.
+    pub out: Option<PathBuf>,
+}
+
+/// Why nothing was identified.
+#[derive(Debug)]
+pub enum Refused {
+    /// A file cannot be used or written.
+    Input(String),
+    /// The log is in order and cannot tell.
+    CannotTell(String),
+}
+
+/// Identifies, writes `task.out` if it is asked for, and returns the report.
+///
+/// # Errors
+/// [`Refused`]; then nothing is written.
+pub fn run(task: &Task) -> Result<String, Refused> {
+    let scenario = Scenario::parse(&task.original, &task.file).map_err(|error| Refused::Input(error.to_string()))?;
+    let of_file = |what: String| Refused::Input(format!("{}: {what}", task.file));
+    let rotors = scenario.configuration.rotors();
+    let rotors =
+        rotors.ok_or_else(|| of_file("rotors: is missing; identify needs a model of the rotors".to_owned()))?;
+    let gravity = f64::from(scenario.configuration.vehicle().gravity);
+    let bench = match &task.bench {
+        None => Bench::default(),
+        Some(path) => bench::read(&text(path)?, rotors, gravity).map_err(|what| in_file(path, &what))?,
+    };
+    let log = read(&task.log)?;
+    let cannot = |lines: Vec<String>| {
+        Refused::CannotTell(format!("{}: cannot tell\n  {}", task.log.display(), lines.join("\n  ")))
+    };
+    let missing = telling::unmoved(&log);
+    if !missing.is_empty() {
+        return Err(cannot(missing));
+    }
+    let told = identify(&log, &scenario, &bench).map_err(|what| cannot(vec![format!("the log {what}")]))?;
+    let unknown = telling::unknown(&told);
+    if !unknown.is_empty() {
+        return Err(cannot(unknown));
+    }
+    let mut report = head(&scenario, &log);
+    report += &table(&told, &scenario);
+    report += &remarks(&told, &bench);
+    let (eaten, all) = margins::report(&task.original, &task.file, &told)
+        .map_err(|what| cannot(vec![format!("the vehicle found cannot fly: {what}")]))?;
+    report += &format!("\nwhat the uncertainty eats of the margins\n{eaten}");
+    report += if all {
+        "every margin is left in the worst corner of the intervals\n"
+    } else {
+        "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
+    };
+    if let Some(path) = &task.out {
+        let stem = path.file_stem().map_or_else(|| scenario.name.clone(), |stem| stem.to_string_lossy().into_owned());
+        scenario::check_name(&stem)
+            .map_err(|what| Refused::Input(format!("--out: becomes the scenario's name: {what}")))?;
+        let text = rewritten(&task.original, &stem, &Values::of(&told), scenario.timing.step()).map_err(of_file)?;
+        WholeFile::write(path, &text).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
+        report += &format!("written to {}\n", path.display());
+    }
+    Ok(report)
+}
+
+/// A log of either kind; a ULog is known by its first bytes.
+fn read(path: &Path) -> Result<FlightLog, Refused> {
+    let bytes = fs::read(path).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
+    let log = if bytes.starts_with(&ulog::MAGIC) {
+        ulog::read(&bytes)
+    } else {
+        match String::from_utf8(bytes) {
+            Ok(text) => FlightLog::from_csv(&text),
+            Err(_) => Err("neither a log.csv nor a ULog".to_owned()),
+        }
+    };
+    log.map_err(|what| in_file(path, &what))
+}
+
+fn text(path: &Path) -> Result<String, Refused> {
+    fs::read_to_string(path).map_err(|error| in_file(path, &format!("cannot be read: {error}")))
+}
+
+fn in_file(path: &Path, what: &str) -> Refused {
+    Refused::Input(format!("{}: {what}", path.display()))
+}
+
+fn head(scenario: &Scenario, log: &FlightLog) -> String {
+    let told = match log.source {
+        Source::Estimator => "the estimator's",
+        Source::Sensors => "the sensors'",
+        Source::Truth => "the TRUE state, which no real vehicle knows",
+    };
+    let seconds = log.moments.len() as f64 * log.period;
+    format!("{}: {} s flown without a gap, state: {told}\n\n", scenario.name, short(seconds))
+}
+
+fn table(told: &Quantities, scenario: &Scenario) -> String {
+    let vehicle = scenario.configuration.vehicle();
+    let inertia = vehicle.inertia.map(f64::from);
+    let drag = scenario.reality.drag.map_or([f64::NAN; 3], |drag| drag.linear.into());
+    let delay = scenario.delay();
+    let rows = [
+        ("thrust scale / mass", "1/kg", told.scale_over_mass, 1.0 / f64::from(vehicle.mass)),
+        ("inertia x / thrust scale", "kg m^2", told.inertia_over_scale[0], inertia.x),
+        ("inertia y / thrust scale", "kg m^2", told.inertia_over_scale[1], inertia.y),
+        ("inertia z / thrust scale", "kg m^2", told.inertia_over_scale[2], inertia.z),
+        ("mass", "kg", told.mass, f64::from(vehicle.mass)),
+        ("thrust scale", "", told.thrust_scale, 1.0),
+        ("inertia x", "kg m^2", told.inertia[0], inertia.x),
+        ("inertia y", "kg m^2", told.inertia[1], inertia.y),
+        ("inertia z", "kg m^2", told.inertia[2], inertia.z),
+        ("lag and delay together", "s", told.whole_delay, scenario.rotor_lag + delay),
+        ("rotor lag", "s", told.lag, scenario.rotor_lag),
+        ("delay", "s", told.delay, delay),
+        ("centre of mass x", "m", told.centre_of_mass[0], 0.0),
+        ("centre of mass y", "m", told.centre_of_mass[1], 0.0),
+        ("linear drag x", "kg/s", told.drag[0], drag[0]),
+        ("linear drag y", "kg/s", told.drag[1], drag[1]),
+        ("linear drag z", "kg/s", told.drag[2], drag[2]),
+    ];
+    let head = ["", "identified", "uncertainty", "interval", "", "file", ""].map(str::to_owned).to_vec();
+    let row = |(name, unit, quantity, file): (&str, &str, Quantity, f64)| {
+        let [least, greatest] = quantity.interval.map(short);
+        let file = if file.is_nan() { "-".to_owned() } else { short(file) };
+        let numbers = [short(quantity.value), short(quantity.uncertainty), least, greatest, file];
+        [&[name.to_owned()][..], &numbers, &[unit.to_owned()]].concat()
+    };
+    aligned(&std::iter::once(head).chain(rows.map(row)).collect::<Vec<_>>())
+}
+
+fn remarks(told: &Quantities, bench: &Bench) -> String {
+    let mut text = format!(
+        "uncertainty: standard. interval: {COVERAGE} of them to either side, for all true values together (docs/identify.md says how often that held)\n\
+         the centre of mass is from the file's; other steady torques count as part of it\n"
+    );
+    if !told.mass_is_measured {
+        text += "the mass was TAKEN FROM THE FILE: a flight tells thrust scale over mass and inertia over thrust scale only; weigh it (--bench)\n";
+    }
+    if let Some(curve) = bench.curve {
+        text += &format!("thrust curve a = {}: set the parameter THR_CURVE\n", short(curve));
+    }
+    text
+}

@@ -1,0 +1,188 @@
+//! The unknowns that make a log most likely, and how sure that is.
+//!
+//! On whitened residuals e with their slopes J ([`super::noise`]), the noise fitted again on the way, each step solves
+//!
+//! ```text
+//! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton          velocities: Z = J of the flight that was *asked for*
+//! ```
+//!
+//! Gusts move the vehicle, and the law answers them: thrust and speed then go along with what is left, and least squares would take too little
+//! drag and thrust from it. What was asked for knows nothing of gusts: instrumental variables (L. Ljung, section 7.6), without bias whatever
+//! the gusts' spectrum.
+//!
+//! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are not white is the
+//! jackknife's: by how much the unknowns move if a block b, a [`BLOCKS`]-th of the log, is left out, (A - A_b)^-1 sum_b Z' e, squared and
+//! summed over G blocks, times (G - 1) / G. It counts in full what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because
+//! a block pulls the fit to itself. The greater of the two counts for each unknown.
+//!
+//! Velocities are looked at ten times a second only. What they know, thrust over mass, drag and wind, is slow, and an estimator that carries
+//! them on between its own updates leaves marks from tick to tick that are no motion.
+
+use super::model::{CHANNELS, Channels, Model, SQUARED_LAG, STRENGTH, UNKNOWNS, Unknowns, WHOLE_DELAY, prior};
+use super::noise::{Noise, Whitening};
+use nalgebra::SMatrix;
+use std::array::from_fn;
+
+/// Parts of the log that the jackknife leaves out in turn: in a flight of 80 s each is 5 s long, longer than the memory of what is left once
+/// the noise is made white. Turbulence is not quite of first order, nor does an estimator's error in its gyro's bias come and go as the
+/// model has it.
+pub const BLOCKS: usize = 16;
+/// Between two looks at the velocities, s.
+const LOOK: f64 = 0.1;
+/// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are longer than a standard
+/// uncertainty.
+const STEPS: usize = 40;
+const NOISE_STEPS: usize = 8;
+const MORE_NOISE_STEPS: usize = 20;
+/// The least part of a step that is taken.
+const SHORTEST_SHARE: f64 = 0.125;
+/// A step that ends the search, in standard uncertainties.
+const SETTLED: f64 = 0.1;
+
+/// Whitened series, a channel each.
+type White = Vec<Vec<f64>>;
+
+/// A covariance of all unknowns.
+pub type Covariance = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// What a log says.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The most likely unknowns.
+    pub unknowns: Unknowns,
+    /// Theirs.
+    pub covariance: Covariance,
+}
+
+/// Fits `model`; `asked_for` is that of the same flight without what nobody asked for. Samples come each `period`, s.
+///
+/// # Errors
+/// If the search leads nowhere: the log is of another vehicle, or says next to nothing.
+pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String> {
+    let (mut unknowns, wide) = prior();
+    unknowns[STRENGTH] = model.balance();
+    let (start, mut noise) = (unknowns, [Noise::START; CHANNELS]);
+    let mut felt = Vec::new();
+    let (mut share, mut last, mut is_near) = (1.0, Unknowns::zeros(), false);
+    let look = (LOOK / period).round().max(1.0) as usize;
+    let every: [usize; CHANNELS] = from_fn(|channel| if channel < 3 { look } else { 1 });
+    let periods = every.map(|every| every as f64 * period);
+    let seen = |channels: Channels| -> Channels {
+        from_fn(|channel| channels[channel].iter().step_by(every[channel]).copied().collect())
+    };
+    for step in 0..STEPS {
+        let impulses = model.impulses(&unknowns);
+        let left = seen(model.left(&unknowns, &impulses, &felt));
+        if step < NOISE_STEPS || (step < MORE_NOISE_STEPS && !is_near) {
+            noise = from_fn(|channel| Noise::START.fitted(&left[channel], periods[channel]));
+        }
+        let filters: [Whitening; CHANNELS] =
+            from_fn(|channel| noise[channel].whitening(left[channel].len(), periods[channel]));
+        let white = |channels: &Channels| -> White {
+            channels.iter().zip(&filters).map(|(series, filter)| filter.whiten(series)).collect()
+        };
+        let errors = white(&left);
+        let slopes: Vec<(White, White)> = (0..UNKNOWNS)
+            .map(|unknown| {
+                let width = 1e-3 * wide[unknown];
+                let hovering = asked_for.hovering(&unknowns);
+                let moved = |by: f64| {
+                    let mut moved = unknowns;
+                    moved[unknown] += by;
+                    let late = [WHOLE_DELAY, SQUARED_LAG].contains(&unknown).then(|| model.impulses(&moved));
+                    let flown = seen(model.left(&moved, late.as_ref().unwrap_or(&impulses), &felt));
+                    (flown, seen(asked_for.left(&moved, &hovering, &[])))
+                };
+                let (ahead, behind) = (moved(width), moved(-width));
+                let slope = |ahead: &Channels, behind: &Channels| {
+                    white(&from_fn(|channel| {
+                        let pairs = ahead[channel].iter().zip(&behind[channel]);
+                        pairs.map(|(a, b)| (b - a) / (2.0 * width)).collect()
+                    }))
+                };
+                (slope(&ahead.0, &behind.0), slope(&ahead.1, &behind.1))
+            })
+            .collect();
+        let (mut spread, blocks) = equations(&errors, &slopes);
+        let mut information = blocks.iter().map(|block| block.information).sum::<Covariance>();
+        let mut pull = blocks.iter().map(|block| block.pull).sum::<Unknowns>();
+        for unknown in 0..UNKNOWNS {
+            let weight = 1.0 / (wide[unknown] * wide[unknown]);
+            information[(unknown, unknown)] += weight;
+            spread[(unknown, unknown)] += weight;
+            pull[unknown] += weight * (start[unknown] - unknowns[unknown]);
+        }
+        let inverse = scaled_inverse(&information).ok_or("says nothing that a model could be fitted to")?;
+        let covariance = inverse * spread * inverse.transpose();
+        let moved = inverse * pull;
+        let within = |part: f64| (0..UNKNOWNS).all(|i| moved[i].abs() < part * covariance[(i, i)].sqrt());
+        if step >= NOISE_STEPS && is_near && within(SETTLED) {
+            return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)? });
+        }
+        // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones are taken.
+        let turned = (0..UNKNOWNS).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
+        share = if turned { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
+        (last, is_near) = (moved, within(1.0));
+        unknowns += moved * share;
+        let impulses = model.impulses(&unknowns);
+        let left = seen(model.left(&unknowns, &impulses, &felt));
+        let gusts = from_fn(|axis| {
+            let wander = filters[axis].wander(&left[axis]);
+            wander.into_iter().flat_map(|b| std::iter::repeat_n(b, look)).collect()
+        });
+        felt = model.felt(&unknowns, &impulses, &gusts);
+    }
+    Err("is of no vehicle like the scenario's: the search for its numbers does not settle".to_owned())
+}
+
+/// The inverse of a matrix whose unknowns have very different sizes.
+fn scaled_inverse(matrix: &Covariance) -> Option<Covariance> {
+    let scale = Unknowns::from_fn(|i, _| 1.0 / matrix[(i, i)].abs().sqrt());
+    let scaled = Covariance::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    let inverse = scaled.try_inverse()?;
+    Some(Covariance::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}
+
+/// What one of [`BLOCKS`] parts of the log says.
+#[derive(Debug, Clone, Default)]
+struct Block {
+    /// Its part of A.
+    information: Covariance,
+    /// Its part of the sum of Z' e.
+    pull: Unknowns,
+}
+
+/// sum Z' Z, and what each part of the log adds to A and to sum Z' e; each unknown has the slopes of the model and of what was asked for.
+fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Block>) {
+    let mut spread = Covariance::zeros();
+    let mut blocks = vec![Block::default(); BLOCKS];
+    for (channel, errors) in errors.iter().enumerate() {
+        let deviation = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        for (sample, error) in errors.iter().enumerate() {
+            let slope = Unknowns::from_fn(|unknown, _| slopes[unknown].0[channel][sample]) / deviation;
+            let instrument = if channel < 3 {
+                Unknowns::from_fn(|unknown, _| slopes[unknown].1[channel][sample]) / deviation
+            } else {
+                slope
+            };
+            let block = &mut blocks[BLOCKS * sample / errors.len()];
+            block.information.ger(1.0, &instrument, &slope, 1.0);
+            block.pull += instrument * (error / deviation);
+            spread.ger(1.0, &instrument, &instrument, 1.0);
+        }
+    }
+    (spread, blocks)
+}
+
+/// The covariance with each deviation the greater of the usual and the jackknife's, correlations kept.
+fn robust(usual: &Covariance, information: &Covariance, blocks: &[Block]) -> Result<Covariance, String> {
+    let share = (BLOCKS - 1) as f64 / BLOCKS as f64;
+    let mut spread = Covariance::zeros();
+    for block in blocks {
+        let others = scaled_inverse(&(information - block.information));
+        let moved = others.ok_or("rests on a sixteenth of its time: fly longer")? * block.pull;
+        spread.ger(share, &moved, &moved, 1.0);
+    }
+    let grow = Unknowns::from_fn(|i, _| (spread[(i, i)] / usual[(i, i)]).max(1.0).sqrt());
+    Ok(Covariance::from_fn(|i, j| usual[(i, j)] * grow[i] * grow[j]))
+}

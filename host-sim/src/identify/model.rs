@@ -1,0 +1,200 @@
+//! The rigid body that a log is held against, and what is left between the two.
+//!
+//! A flight shows accelerations, never forces: thrust scale c, mass m and inertia J appear as c/m and c/J_i only. With f and tau
+//! the thrust and torque of the model's rotors ([`super::impulses`]), r_c the centre of mass (x, y), V = v - w the velocity in an air
+//! that moves steadily with w across:
+//!
+//! ```text
+//! v_c' = (c/m) f R e3 - g e3 - R diag(D/m) R' V + b                   v_c = v + R (omega x r_c)
+//! omega_i' = (c/J_i) (tau - r_c x h)_i + ((J_j - J_k)/J_i) omega_j omega_k - beta_i omega_i + e_i
+//! h = (m/c) R' (v_c' + g e3)                                           all forces act at the body's origin
+//! ```
+//!
+//! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever share of it drag has: in h it
+//! is held while the unknowns move, and torques tell nothing of drag or thrust that forces do not. beta, and e about z alone, are what rotors in the air and unequal
+//! rotors may add: found, not reported. A steady torque about x or y is a centre of mass beside the origin: no flight near
+//! hover tells them apart. A steady vertical force is thrust: none is supposed.
+//!
+//! Both sides are integrated from tick to tick, never differentiated. What is left is the state told less the integral.
+
+use super::flight_log::{FlightLog, Moment};
+use super::impulses::{Commands, Impulse};
+use controller_core::certificate::configuration::Configuration;
+use nalgebra::{SVector, Vector3};
+
+/// How many unknowns there are.
+pub const UNKNOWNS: usize = 17;
+
+/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2.
+pub const STRENGTH: usize = 0;
+/// About x; y and z follow.
+pub const TURNING: usize = 1;
+/// The whole delay, with that of the rates told.
+pub const WHOLE_DELAY: usize = 4;
+/// The squared lag.
+pub const SQUARED_LAG: usize = 5;
+/// Along x; y follows.
+pub const CENTRE: usize = 6;
+/// Along x; y and z follow.
+pub const DRAG: usize = 8;
+const WIND: usize = 11;
+const DAMPING: usize = 13;
+const YAWING: usize = 16;
+
+/// All unknowns.
+pub type Unknowns = SVector<f64, UNKNOWNS>;
+
+/// Velocity along the world's axes, body rates.
+pub const CHANNELS: usize = 6;
+
+/// Six series.
+pub type Channels = [Vec<f64>; CHANNELS];
+
+/// Before the first, rotors turn in a way that no log tells, s.
+const UNKNOWN_START: f64 = 0.5;
+
+/// A log and the model it is held against.
+#[derive(Debug, Clone)]
+pub struct Model<'a> {
+    log: &'a FlightLog,
+    commands: Commands,
+    /// m_0, kg; J_0, kg m^2; g, m/s^2.
+    mass: f64,
+    inertia: Vector3<f64>,
+    gravity: f64,
+    first: usize,
+}
+
+/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that a flight which can tell
+/// does not feel it.
+#[must_use]
+pub fn prior() -> (Unknowns, Unknowns) {
+    let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let wide = [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0];
+    (start.into(), wide.into())
+}
+
+impl<'a> Model<'a> {
+    /// # Errors
+    /// If the file has no rotors, or its allocation refuses what the log says was asked for.
+    pub fn new(log: &'a FlightLog, configuration: &Configuration) -> Result<Self, String> {
+        let rotors = configuration.rotors().ok_or("rotors: is missing; a log is held against a model of rotors")?;
+        let vehicle = configuration.vehicle();
+        Ok(Self {
+            log,
+            commands: Commands::new(log, rotors)?,
+            mass: vehicle.mass.into(),
+            inertia: vehicle.inertia.map(f64::from),
+            gravity: vehicle.gravity.into(),
+            first: (UNKNOWN_START / log.period).round() as usize,
+        })
+    }
+
+    /// The rotors' impulses for these unknowns.
+    #[must_use]
+    pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {
+        self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
+    }
+
+    /// What is left of each channel: told less integrated. `felt` is R' (v_c' + g e3) over each sample, m/s, body, as [`Self::felt`] has
+    /// it.
+    #[must_use]
+    pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Vector3<f64>]) -> Channels {
+        let Numbers { strength, turning, drag, centre, wind } = self.numbers(unknowns);
+        let damping = three(unknowns, DAMPING);
+        let yawing = Vector3::new(0.0, 0.0, unknowns[YAWING]);
+        let of_one = turning.map(|turning| 1.0 / turning);
+        let coupling = Vector3::new(of_one.y - of_one.z, of_one.z - of_one.x, of_one.x - of_one.y);
+        let period = self.log.period;
+        let mut velocity = Vector3::zeros();
+        let mut rates = Vector3::zeros();
+        let mut left = Channels::default();
+        for (sample, (pair, impulse)) in self.steps(impulses).enumerate() {
+            let [now, next] = pair else { break };
+            let told = now.velocity + now.attitude * now.angular_velocity.cross(&centre);
+            let (apart, turned) = (told - velocity, now.angular_velocity - rates);
+            for axis in 0..3 {
+                left[axis].push(apart[axis]);
+                left[3 + axis].push(turned[axis]);
+            }
+            let up = (now.attitude * Vector3::z() + next.attitude * Vector3::z()) * 0.5;
+            let dragged = now.attitude * dragged(pair, &drag, &wind);
+            velocity += up * (strength * impulse.thrust) + (dragged - Vector3::z() * self.gravity) * period;
+            let felt = felt.get(sample).copied().unwrap_or_else(|| Vector3::z() * (self.gravity * period));
+            let torque = impulse.torque - centre.cross(&(felt / strength));
+            let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
+            let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
+            rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));
+            rates += (yawing - damping.component_mul(&omega)) * period;
+        }
+        left
+    }
+
+    /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's axes.
+    #[must_use]
+    pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Vector3<f64>> {
+        let Numbers { strength, drag, wind, .. } = self.numbers(unknowns);
+        let feel = |(sample, (pair, impulse)): (usize, (&[Moment], &Impulse))| {
+            let gust = Vector3::from_fn(|axis, _| gusts[axis].get(sample).copied().unwrap_or(0.0));
+            let gust = pair[0].attitude.inverse_transform_vector(&gust);
+            Vector3::z() * (strength * impulse.thrust) + (dragged(pair, &drag, &wind) + gust) * self.log.period
+        };
+        self.steps(impulses).enumerate().map(feel).collect()
+    }
+
+    /// The strength that carries the weight over the whole flight: where a search begins.
+    #[must_use]
+    pub fn balance(&self) -> f64 {
+        let impulses = self.impulses(&prior().0);
+        let (mut up, mut count) = (0.0, 0.0);
+        for (pair, impulse) in self.steps(&impulses) {
+            up += impulse.thrust * (pair[0].attitude * Vector3::z()).z;
+            count += 1.0;
+        }
+        let gained = self.log.moments.last().map_or(0.0, |last| last.velocity.z)
+            - self.log.moments.get(self.first).map_or(0.0, |first| first.velocity.z);
+        let strength = (self.gravity * self.log.period * count + gained) / up * self.mass;
+        if strength > 0.0 && strength.is_finite() { strength.ln() } else { 0.0 }
+    }
+
+    /// A hover's impulses, one for each moment but the last.
+    #[must_use]
+    pub fn hovering(&self, unknowns: &Unknowns) -> Vec<Impulse> {
+        let thrust = self.gravity * self.log.period / self.numbers(unknowns).strength;
+        vec![Impulse { thrust, torque: Vector3::zeros() }; self.log.moments.len().saturating_sub(1)]
+    }
+
+    fn steps<'b>(&'b self, impulses: &'b [Impulse]) -> impl Iterator<Item = (&'b [Moment], &'b Impulse)> {
+        self.log.moments.windows(2).zip(impulses).skip(self.first)
+    }
+
+    fn numbers(&self, unknowns: &Unknowns) -> Numbers {
+        Numbers {
+            strength: unknowns[STRENGTH].exp() / self.mass,
+            turning: three(unknowns, TURNING).map(f64::exp).component_div(&self.inertia),
+            drag: three(unknowns, DRAG),
+            centre: Vector3::new(unknowns[CENTRE], unknowns[CENTRE + 1], 0.0),
+            wind: Vector3::new(unknowns[WIND], unknowns[WIND + 1], 0.0),
+        }
+    }
+}
+
+/// Unknowns by the names of their equation: c/m, 1/kg; c/J, 1/(kg m^2); D/m, 1/s; r_c, m; w, m/s.
+struct Numbers {
+    strength: f64,
+    turning: Vector3<f64>,
+    drag: Vector3<f64>,
+    centre: Vector3<f64>,
+    wind: Vector3<f64>,
+}
+
+fn three(unknowns: &Unknowns, at: usize) -> Vector3<f64> {
+    Vector3::new(unknowns[at], unknowns[at + 1], unknowns[at + 2])
+}
+
+/// - D V/m between two moments, m/s^2, body.
+fn dragged(pair: &[Moment], drag: &Vector3<f64>, wind: &Vector3<f64>) -> Vector3<f64> {
+    let [now, next] = pair else { return Vector3::zeros() };
+    let airspeed = (now.velocity + next.velocity) * 0.5 - wind;
+    -drag.component_mul(&now.attitude.inverse_transform_vector(&airspeed))
+}

@@ -1,0 +1,178 @@
+//! What is known of a vehicle in the end: a flight and a bench together, each number with its uncertainty.
+//!
+//! A flight knows c/m and c/J_i; a scale knows m; a bifilar swing knows J_i/m; a thrust stand knows c. In logarithms all of these are
+//! linear, so they are combined by least squares, each with its weight. Without a scale or a stand nothing tells m and c
+//! apart: then the mass is taken from the file as it stands.
+//!
+//! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen quantities at once, and all
+//! true values together are to be in their intervals in 95 of 100 flights. Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever
+//! their correlation. An uncertainty from [`BLOCKS`] parts of a flight is itself uncertain: errors over uncertainties follow Student's t
+//! with one degree of freedom less than there are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay
+//! and that of the lag, so it misses only where one of them does.
+
+use super::bench::Bench;
+use super::fit::{BLOCKS, Fit};
+use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
+use controller_core::vehicle::Vehicle;
+use nalgebra::{SMatrix, SVector};
+
+/// Standard uncertainties to either side of an estimate: the quantile of Student's t with 15 degrees of freedom at 1 - 0.05 / (2 x 16).
+pub const COVERAGE: f64 = 3.515;
+const _: () = assert!(BLOCKS == 16);
+
+/// The file's mass, where nothing else tells: as good as exact.
+const TAKEN: f64 = 1e-6;
+
+/// One number of a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard uncertainty.
+    pub uncertainty: f64,
+    /// The least and the greatest value that are within the stated uncertainty.
+    pub interval: [f64; 2],
+}
+
+impl Quantity {
+    fn new(value: f64, uncertainty: f64) -> Self {
+        let wide = COVERAGE * uncertainty;
+        Self { value, uncertainty, interval: [value - wide, value + wide] }
+    }
+
+    /// `unit` times e to the power of what is known.
+    fn exponential(logarithm: f64, uncertainty: f64, unit: f64) -> Self {
+        let at = |deviations: f64| unit * (logarithm + deviations * uncertainty).exp();
+        Self { value: at(0.0), uncertainty: at(0.0) * uncertainty, interval: [at(-COVERAGE), at(COVERAGE)] }
+    }
+
+    /// Whether a value is within the stated uncertainty.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> bool {
+        let [least, greatest] = self.interval;
+        (least..=greatest).contains(&value)
+    }
+}
+
+/// All that is told of a vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantities {
+    /// kg.
+    pub mass: Quantity,
+    /// What the rotors deliver of the file's thrust and drag torque.
+    pub thrust_scale: Quantity,
+    /// c/m, 1/kg: what a flight alone knows of the two.
+    pub scale_over_mass: Quantity,
+    /// kg m^2.
+    pub inertia: [Quantity; 3],
+    /// J_i/c, kg m^2: what a flight alone knows.
+    pub inertia_over_scale: [Quantity; 3],
+    /// Lag and delay together, s.
+    pub whole_delay: Quantity,
+    /// s.
+    pub lag: Quantity,
+    /// s.
+    pub delay: Quantity,
+    /// x and y, m, from the file's.
+    pub centre_of_mass: [Quantity; 2],
+    /// kg/s along the body's axes.
+    pub drag: [Quantity; 3],
+    /// Whether the mass was weighed, or follows from a thrust stand.
+    pub mass_is_measured: bool,
+}
+
+impl Quantities {
+    /// What `fit` and `bench` say of a vehicle whose model is `vehicle`; the rates of the log were late by `late`, s.
+    ///
+    /// # Errors
+    /// If the two cannot be combined; finite numbers can.
+    pub fn combined(fit: &Fit, bench: &Bench, vehicle: &Vehicle, late: f64) -> Result<Self, String> {
+        let (unknowns, covariance) = (&fit.unknowns, &fit.covariance);
+        let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt());
+        let (values, spread) = logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
+        let deviation = |index: usize| f64::max(spread[(index, index)], 0.0).sqrt();
+        let mass_0 = f64::from(vehicle.mass);
+        let of_bench = |index: usize, unit: f64| Quantity::exponential(values[index], deviation(index), unit);
+        let mass = of_bench(0, mass_0);
+        let over_scale = |axis: usize| {
+            let known = direct(1 + axis);
+            Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]))
+        };
+        let strength = direct(STRENGTH);
+        let whole = direct(WHOLE_DELAY);
+        let whole_delay = Quantity::new(whole.value - late, whole.uncertainty);
+        let lag = lag(&direct(SQUARED_LAG), &whole_delay);
+        let drag = |axis: usize| {
+            let of_mass = direct(DRAG + axis);
+            let relative = mass.uncertainty / mass.value * of_mass.value;
+            Quantity::new(mass.value * of_mass.value, mass.value * of_mass.uncertainty.hypot(relative))
+        };
+        Ok(Self {
+            mass,
+            thrust_scale: of_bench(1, 1.0),
+            scale_over_mass: Quantity::exponential(strength.value, strength.uncertainty, 1.0 / mass_0),
+            inertia: [0, 1, 2].map(|axis| of_bench(2 + axis, f64::from(vehicle.inertia[axis]))),
+            inertia_over_scale: [0, 1, 2].map(over_scale),
+            whole_delay,
+            lag,
+            delay: delay(&lag, &whole_delay),
+            centre_of_mass: [direct(CENTRE), direct(CENTRE + 1)],
+            drag: [0, 1, 2].map(drag),
+            mass_is_measured: bench.mass.is_some() || bench.thrust_scale.is_some(),
+        })
+    }
+}
+
+/// Between what the squared lag allows; there is none below zero, and none above the whole.
+fn lag(squared: &Quantity, whole: &Quantity) -> Quantity {
+    let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
+    let interval = squared.interval.map(root);
+    spanned(root(squared.value).min(whole.value).max(interval[0]), interval)
+}
+
+/// The rest of the whole.
+fn delay(lag: &Quantity, whole: &Quantity) -> Quantity {
+    let [least, greatest] = [whole.interval[0] - lag.interval[1], whole.interval[1] - lag.interval[0]];
+    spanned((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)])
+}
+
+fn spanned(value: f64, interval: [f64; 2]) -> Quantity {
+    Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * COVERAGE), interval }
+}
+
+/// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
+fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(SVector<f64, 5>, SMatrix<f64, 5, 5>)> {
+    const SHARES: [[f64; 5]; 4] = [
+        [-1.0, 1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, -1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, -1.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0, -1.0],
+    ];
+    let flown = SMatrix::<f64, 4, 4>::from_fn(|i, j| fit.covariance[(i, j)]).try_inverse()?;
+    let shares = SMatrix::<f64, 4, 5>::from_fn(|i, j| SHARES[i][j]);
+    let values = SVector::<f64, 4>::from_fn(|i, _| fit.unknowns[i]);
+    let mut information = shares.transpose() * flown * shares;
+    let mut pull = shares.transpose() * flown * values;
+    let mut add = |row: [f64; 5], value: f64, deviation: f64| {
+        let row = SVector::<f64, 5>::from(row) / deviation;
+        information += row * row.transpose();
+        pull += row * (value / deviation);
+    };
+    let mass = f64::from(vehicle.mass);
+    match (bench.mass, bench.thrust_scale) {
+        (Some(weighed), _) => add([1.0, 0.0, 0.0, 0.0, 0.0], (weighed.value / mass).ln(), weighed.relative()),
+        (None, None) => add([1.0, 0.0, 0.0, 0.0, 0.0], 0.0, TAKEN),
+        (None, Some(_)) => {}
+    }
+    if let Some(scale) = bench.thrust_scale {
+        add([0.0, 1.0, 0.0, 0.0, 0.0], scale.value.ln(), scale.relative());
+    }
+    for swing in &bench.swings {
+        let mut row = [-1.0, 0.0, 0.0, 0.0, 0.0];
+        row[2 + swing.axis] = 1.0;
+        let of_file = f64::from(vehicle.inertia[swing.axis]) / mass;
+        add(row, (swing.over_mass.value / of_file).ln(), swing.over_mass.relative());
+    }
+    let covariance = information.try_inverse()?;
+    Some((covariance * pull, covariance))
+}

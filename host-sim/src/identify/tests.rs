@@ -1,0 +1,288 @@
+//! Identification against vehicles whose numbers are known, and against logs that cannot tell.
+
+use super::flight_log::{FlightLog, Source};
+use super::impulses::Commands;
+use super::noise::Noise;
+use super::output::{Values, rewritten};
+use super::quantities::COVERAGE;
+use super::trials::{Trial, fly};
+use super::{bench, identify, telling, ulog};
+use crate::actuators::rotors::SpinningRotors;
+use controller_core::flight::Mode;
+use controller_core::heading::Heading;
+use controller_core::imu::low_pass::LowPass;
+use controller_core::reference::Reference;
+use controller_core::state::State;
+use firmware::hardware::MotorCommand;
+use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::tick::Tick;
+use nalgebra::{Quaternion, Vector3};
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+use scenario::{STUDY, Scenario};
+
+const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+
+fn parse(text: &str) -> Scenario {
+    Scenario::parse(text, "f").unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A hover on the estimator, in still air.
+fn hover() -> String {
+    let (before, rest) = HUMMINGBIRD.split_once("[reference]").unwrap();
+    let (_, bounds) = rest.split_once("[reference_bounds]").unwrap();
+    let reference = "[estimator]\n[reference]\nkind = \"hover\"\nposition = [1.0, 0.0, 1.5]\n[reference_bounds]";
+    before.to_owned() + reference + bounds
+}
+
+#[test]
+fn four_vehicles_are_found_within_what_is_stated() {
+    // Vehicles that are told rightly. How many of a hundred are not, the example `identify_coverage` counts.
+    let runs: Vec<(&str, u64)> = [(HUMMINGBIRD, 1), (HUMMINGBIRD, 3), (STUDY, 1), (STUDY, 3)].into();
+    runs.into_par_iter().for_each(|(file, seed)| {
+        let trial = Trial::flown(file, seed).unwrap();
+        let log = FlightLog::from_csv(&trial.log).unwrap();
+        assert_eq!((log.source, telling::unmoved(&log)), (Source::Estimator, vec![]));
+        let told = identify(&log, &parse(file), &trial.bench).unwrap();
+        assert_eq!(telling::unknown(&told), Vec::<String>::new());
+        for (name, quantity, truth) in trial.truths(&told) {
+            assert!(quantity.holds(truth), "{seed}: {name}: {quantity:?}, truly {truth}");
+        }
+        // An interval that says nothing is no knowledge.
+        let j = &told.inertia[0];
+        assert!(COVERAGE * j.uncertainty < 0.05 * j.value, "{j:?}");
+    });
+}
+
+#[test]
+fn no_truth_is_read_where_the_vehicle_was_told_something_else() {
+    let text = fly(&hover().replace("duration = 40.0", "duration = 1.0")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let poisoned: Vec<String> = rows
+        .lines()
+        .map(|row| {
+            let fields: Vec<&str> = row.split(',').collect();
+            let kept =
+                fields.iter().enumerate().map(|(at, field)| if (1..14).contains(&at) { "nonsense" } else { field });
+            kept.collect::<Vec<_>>().join(",")
+        })
+        .collect();
+    let poisoned = format!("{header}\n{}\n", poisoned.join("\n"));
+    assert_eq!(FlightLog::from_csv(&poisoned), FlightLog::from_csv(&text));
+    let bare = poisoned.replace("est_", "other_");
+    assert_eq!(FlightLog::from_csv(&bare).unwrap_err(), "line 2, vx: must be a finite number, found \"nonsense\"");
+}
+
+#[test]
+fn a_hover_cannot_tell_and_is_told_what_to_fly() {
+    let log = FlightLog::from_csv(&fly(&hover()).unwrap()).unwrap();
+    let missing = telling::unmoved(&log);
+    for (line, words) in [
+        ("inertia x, centre of mass y", "to the left and to the right"),
+        ("inertia y, centre of mass x", "forwards and backwards"),
+        ("inertia z", "turns of the heading"),
+        ("drag x", "there and back"),
+        ("drag z", "climb and sink"),
+    ] {
+        assert!(missing.iter().any(|said| said.starts_with(line) && said.contains(words)), "{line}: {missing:?}");
+    }
+    let short = FlightLog { moments: log.moments[..500].to_vec(), ..log };
+    assert!(telling::unmoved(&short)[0].starts_with("the flight: 5 s"), "{:?}", telling::unmoved(&short));
+}
+
+#[test]
+fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
+    const STEP: f64 = 1e-5;
+    let log = FlightLog::from_csv(&fly(&hover().replace("duration = 40.0", "duration = 0.5")).unwrap()).unwrap();
+    let scenario = parse(HUMMINGBIRD);
+    let rotors = scenario.configuration.rotors().unwrap();
+    let mut log = log;
+    for (index, moment) in log.moments.iter_mut().enumerate() {
+        moment.asked.thrust = 5.0 + (index % 7) as f32 * 0.2;
+        moment.asked.torque = Vector3::new(0.01, -0.02, 0.005) * (index % 5) as f32;
+    }
+    let (lag, delay) = (0.013, 0.0143);
+    let impulses = Commands::new(&log, rotors).unwrap().impulses(lag + delay, lag * lag);
+    let mixer = controller_core::allocation::Mixer::new(rotors);
+    let mut spinning = SpinningRotors::hovering(rotors, lag, 5.0, STEP);
+    let thrusts: Vec<_> = log.moments.iter().map(|moment| mixer.allocate(&moment.asked).unwrap().thrusts).collect();
+    let (steps, late) = ((log.period / STEP).round() as usize, (delay / STEP).round() as usize);
+    // The gyro's, at 1 kHz.
+    let mut low_pass = LowPass::new(60.0, 1e3);
+    let sample = (1e-3 / STEP).round() as usize;
+    for (tick, impulse) in impulses.iter().enumerate() {
+        let (mut thrust, mut torque, mut sampled) = (0.0, Vector3::zeros(), Vector3::zeros());
+        for step in tick * steps..(tick + 1) * steps {
+            spinning.command(&thrusts[step.saturating_sub(late) / steps]);
+            let (f, tau) = spinning.advance();
+            thrust += f * STEP;
+            sampled += tau * STEP;
+            if (step + 1) % sample == 0 {
+                torque += low_pass.take(&sampled.map(|torque: f64| torque as f32)).map(f64::from);
+                sampled = Vector3::zeros();
+            }
+        }
+        // After the start, which differs; midpoints of small steps are exact to (STEP / lag)^2.
+        if tick > 20 {
+            assert!((thrust - impulse.thrust).abs() < 1e-6, "{tick}: {thrust} {impulse:?}");
+            assert!((torque - impulse.torque).norm() < 1e-7, "{tick}: {torque} {impulse:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_left_is_made_white_by_the_noise_that_is_fitted_to_it() {
+    const PARTS: usize = 20;
+    let truth = Noise { wander: 200.0, time: 2.0, walk: 0.5 };
+    let (period, mut random) = (0.01, Xoshiro256PlusPlus::seed_from_u64(3));
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let decay = (-period / PARTS as f64 / truth.time).exp();
+    let (mut r, mut b) = (0.0, 0.0);
+    let series: Vec<f64> = (0..8000)
+        .map(|_| {
+            let measured = r + normal();
+            r += truth.walk * normal();
+            for _ in 0..PARTS {
+                r += period / PARTS as f64 * b;
+                b = decay * b + truth.wander * (1.0 - decay * decay).sqrt() * normal();
+            }
+            0.003 * measured
+        })
+        .collect();
+    let white = Noise::START.fitted(&series, period).whitening(series.len(), period).whiten(&series);
+    let spread: f64 = white.iter().map(|e| e * e).sum();
+    assert!(((spread / white.len() as f64).sqrt() / 0.003 - 1.0).abs() < 0.05, "{spread}");
+    for lag in 1..40 {
+        let correlation = white.iter().zip(&white[lag..]).map(|(a, b)| a * b).sum::<f64>() / spread;
+        // Four deviations of what white noise of this length shows.
+        assert!(correlation.abs() < 4.0 / (white.len() as f64).sqrt(), "{lag}: {correlation}");
+    }
+}
+
+#[test]
+fn the_recorders_file_says_what_log_csv_says() {
+    let log = FlightLog::from_csv(&fly(&hover().replace("duration = 40.0", "duration = 3.0")).unwrap()).unwrap();
+    let mut memory = vec![[0; SLOT]; 600];
+    let mut ring = Ring::recover(&mut memory);
+    ring.begin();
+    // On the ground first, and for a moment without a state.
+    for (index, moment) in log.moments.iter().enumerate() {
+        let single = |vector: &Vector3<f64>| vector.map(|number| number as f32);
+        let q = moment.attitude.into_inner().coords.map(|number| number as f32);
+        let state = State {
+            position: Vector3::zeros(),
+            velocity: single(&moment.velocity),
+            attitude: Quaternion::from(q),
+            angular_velocity: single(&moment.angular_velocity),
+        };
+        let still = Vector3::zeros();
+        let reference = Reference {
+            position: still,
+            velocity: single(&moment.reference_velocity),
+            acceleration: still,
+            jerk: still,
+            snap: still,
+            heading: Heading::FORWARD,
+        };
+        let tick = Tick {
+            time: 10_000 * index as u64,
+            mode: Mode::Flying,
+            is_airborne: index >= 50,
+            state: (index != 80).then_some(state),
+            reference: Some(reference),
+            wrench: Some(moment.asked.scaled(0.9)),
+            thrust_scale: Some(0.9),
+            pose_age: None,
+            missed: 0,
+            command: MotorCommand::Run([0.5; 4]),
+            voltage: None,
+        };
+        ring.put(&tick.to_bytes());
+    }
+    let mut file = vec![0; 200_000];
+    let length = firmware::recorder::ulog::read(&ring, 0, &mut file);
+    file.truncate(length);
+    let read = ulog::read(&file).unwrap();
+    let expected = &log.moments[81..];
+    assert_eq!((read.source, read.moments.len()), (Source::Estimator, expected.len()));
+    for (read, expected) in read.moments.iter().zip(expected) {
+        assert!((read.reference_velocity - expected.reference_velocity).norm() < 1e-6);
+        assert!((read.velocity - expected.velocity).norm() < 1e-6 && (read.time - expected.time).abs() < 1e-9);
+        assert!(read.attitude.angle_to(&expected.attitude) < 1e-5);
+        assert!((read.asked.thrust - expected.asked.thrust).abs() < 1e-5);
+        assert!((read.asked.torque - expected.asked.torque).norm() < 1e-6);
+    }
+    // Cut short anywhere it is an error, the beginning of the same flight, or the 30 ticks before the gap.
+    for end in (0..file.len()).step_by(97) {
+        match ulog::read(&file[..end]) {
+            Ok(part) => assert!(read.moments.starts_with(&part.moments) || part.moments.len() <= 30, "{end}"),
+            Err(what) => assert!(what.starts_with("holds no"), "{end}: {what}"),
+        }
+    }
+    // A flight so short says nothing of a vehicle.
+    assert!(telling::unmoved(&ulog::read(&file[..file.len() / 2]).unwrap())[0].starts_with("the flight: "));
+}
+
+#[test]
+fn bench_data_are_read_as_their_formulas_say_and_refused_by_name() {
+    let scenario = parse(HUMMINGBIRD);
+    let rotors = scenario.configuration.rotors().unwrap();
+    let full = 5.57e-6 * 1500.0 * 1500.0 * 0.9;
+    let commands = [0.2, 0.4, 0.6, 0.8, 1.0];
+    let thrusts: Vec<String> = commands.iter().map(|u| (full * (0.3 * u + 0.7 * u * u)).to_string()).collect();
+    // J/m = g T^2 d^2 / (16 pi^2 L): 7.3e-3 m^2 swings with this period.
+    let period = (7.3e-3 * 16.0 * std::f64::consts::PI.powi(2) * 1.2 / (9.81 * 0.09)).sqrt();
+    let text = format!(
+        "[weighing]\nmass = [0.51, 0.53]\nuncertainty = 0.001\n[[swing]]\naxis = \"y\"\nlength = 1.2\ndistance = 0.3\n\
+         swings = 20\ntimes = [{0}, {0}]\nuncertainty = 0.001\n[thrust_stand]\ncommands = {commands:?}\nthrusts = [{1}]\nuncertainty = 0.01\n",
+        20.0 * period,
+        thrusts.join(", ")
+    );
+    let read = bench::read(&text, rotors, 9.81).unwrap();
+    let (mass, scale) = (read.mass.unwrap(), read.thrust_scale.unwrap());
+    assert!((mass.value - 0.52).abs() < 1e-12 && (mass.uncertainty - 0.001_f64.hypot(0.01)).abs() < 1e-9, "{mass:?}");
+    assert!((scale.value - 0.9).abs() < 1e-5 && (scale.uncertainty - 0.009).abs() < 1e-5, "{scale:?}");
+    assert!((read.curve.unwrap() - 0.3).abs() < 1e-6);
+    assert!(read.swings[0].axis == 1 && (read.swings[0].over_mass.value - 7.3e-3).abs() < 1e-9);
+    for (good, bad, said) in [
+        ("[weighing]", "[weighting]", "weighting: unknown key"),
+        ("axis = \"y\"", "axis = \"w\"", "swing.axis: must be"),
+        ("length = 1.2", "length = -1.2", "swing.length: must be a number above zero"),
+        ("uncertainty = 0.01", "", "thrust_stand.uncertainty: is missing"),
+        ("[0.2, 0.4, 0.6, 0.8, 1.0]", "[0.2, 0.2, 0.2, 0.2, 0.2]", "thrust_stand.commands: must differ"),
+    ] {
+        // Of several the last: the stand's.
+        let at = text.rfind(good).unwrap();
+        let refused = bench::read(&(text[..at].to_owned() + bad + &text[at + good.len()..]), rotors, 9.81).unwrap_err();
+        assert!(refused.contains(said), "{refused}");
+    }
+}
+
+#[test]
+fn the_written_scenario_has_the_numbers_and_keeps_the_rest() {
+    let values = Values {
+        mass: 0.61,
+        inertia: [4e-3, 4.1e-3, 7.5e-3],
+        thrust_scale: 0.9,
+        lag: 0.0123,
+        delay: 0.0064,
+        centre_of_mass: [0.002, -0.003],
+        drag: [0.3, 0.2, 0.1],
+    };
+    let text = rewritten(HUMMINGBIRD, "mine", &values, 1e-3).unwrap();
+    let (scenario, original) = (parse(&text), parse(HUMMINGBIRD));
+    let vehicle = scenario.configuration.vehicle();
+    assert_eq!((scenario.name.as_str(), vehicle.mass, vehicle.inertia.y), ("mine", 0.61, 4.1e-3));
+    assert!((scenario.rotor_lag - 0.0123).abs() < 1e-9 && (scenario.delay() - 0.006).abs() < 1e-9);
+    let rotor = |scenario: &Scenario| *scenario.configuration.rotors().unwrap().iter().next().unwrap();
+    let (new, old) = (rotor(&scenario), rotor(&original));
+    assert!((new.thrust_coefficient / old.thrust_coefficient - 0.9).abs() < 1e-5);
+    assert!((new.drag_coefficient / old.drag_coefficient - 0.9).abs() < 1e-5);
+    assert!((new.position - old.position - Vector3::new(-0.002, 0.003, 0.0)).norm() < 1e-5);
+    assert_eq!(scenario.reality.drag.unwrap().linear, Vector3::new(0.3, 0.2, 0.1));
+    for kept in ["k_p_across = 48.45521", "# RK4", "Flies a 1 m circle"] {
+        assert!(text.contains(kept) || !HUMMINGBIRD.contains(kept), "{kept}");
+    }
+}

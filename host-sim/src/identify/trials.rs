@@ -1,0 +1,172 @@
+//! Flights of vehicles that are not what their file says, for asking how often identification is right.
+//!
+//! Each trial draws a vehicle: mass, inertia by 20 %, thrust by 5 %, lag by 30 %, delay, centre of mass by 5 mm, drag; and its air:
+//! steady wind, turbulence, a gust. It flies the manoeuvre of `scenarios/identify.toml` on the estimator, with a BMI088 and poses 20 ms late,
+//! and leaves what `fly` leaves: log.csv.
+
+use super::bench::{Bench, Measured};
+use super::quantities::Quantities;
+use crate::flight::Flight;
+use crate::log;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+use scenario::Scenario;
+use toml_edit::{Array, DocumentMut, Table, value};
+
+/// The manoeuvre.
+pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
+
+/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most, s: the last whole
+/// increment of the IMU ended 4 ms ago, not 5 ms.
+pub const RATES_YOUNGER: f64 = 0.001;
+
+/// What a trial's scale is good for: a standard uncertainty of so much of the mass.
+const SCALE: f64 = 1e-3;
+
+/// One vehicle as it really is, its file and its log.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// The file, with the truth in it.
+    pub text: String,
+    /// What it left.
+    pub log: String,
+    /// Its mass on a scale.
+    pub bench: Bench,
+    truths: Truths,
+}
+
+/// Numbers by the names of [`Trial::truths`].
+#[derive(Debug, Clone, Copy, Default)]
+struct Truths {
+    mass: f64,
+    thrust_scale: f64,
+    inertia: [f64; 3],
+    lag: f64,
+    delay: f64,
+    centre: [f64; 2],
+    drag: [f64; 3],
+}
+
+impl Trial {
+    /// Number `seed` of the vehicles like `file`'s.
+    ///
+    /// # Errors
+    /// If `file` is no scenario with rotors, or the flight fails.
+    pub fn flown(file: &str, seed: u64) -> Result<Self, String> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut document: DocumentMut = file.parse().map_err(|error| format!("{error}"))?;
+        let manoeuvre: DocumentMut = MANOEUVRE.parse().map_err(|error| format!("{error}"))?;
+        for section in ["duration", "initial", "reference"] {
+            document[section] = manoeuvre[section].clone();
+        }
+        let model = Scenario::parse(file, "trial").map_err(|error| error.to_string())?;
+        let truths = Truths::drawn(&model, &mut random);
+        truths.write(&mut document);
+        for section in ["drag", "wind", "estimator", "sampling"] {
+            document[section] = toml_edit::Item::Table(Table::new());
+        }
+        let mut within = |reach: f64| random.random_range(-reach..reach);
+        document["drag"]["linear"] = list(&truths.drag);
+        document["wind"]["steady"] = list(&[within(3.0), within(3.0), 0.0]);
+        let mut gust = Table::new();
+        gust.insert("kind", value("one-cosine"));
+        gust.insert("start", value(20.0));
+        gust.insert("duration", value(1.0));
+        gust.insert("velocity", list(&[within(3.0), within(3.0), 0.0]));
+        document["wind"]["gust"] = toml_edit::Item::Table(gust);
+        let mut turbulence = Table::new();
+        turbulence.insert("wind_at_20_feet", value(5.0));
+        turbulence.insert("altitude", value(10.0));
+        turbulence.insert("seed", value(seed as i64));
+        document["wind"]["turbulence"] = toml_edit::Item::Table(turbulence);
+        document["estimator"]["seed"] = value(seed as i64);
+        document["sampling"]["delay"] = value(truths.delay);
+        let text = document.to_string();
+        let log = fly(&text)?;
+        let normal: f64 = StandardNormal.sample(&mut random);
+        let weighed = truths.mass * (1.0 + SCALE * normal);
+        let bench = Bench { mass: Some(Measured { value: weighed, uncertainty: SCALE * weighed }), ..Bench::default() };
+        Ok(Self { text, log, bench, truths })
+    }
+
+    /// The name of each quantity, what is told of it, and what it is.
+    #[must_use]
+    pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, super::quantities::Quantity, f64)> {
+        let t = &self.truths;
+        vec![
+            ("mass", told.mass, t.mass),
+            ("thrust scale", told.thrust_scale, t.thrust_scale),
+            ("inertia x", told.inertia[0], t.inertia[0]),
+            ("inertia y", told.inertia[1], t.inertia[1]),
+            ("inertia z", told.inertia[2], t.inertia[2]),
+            ("lag and delay", told.whole_delay, t.lag + t.delay - RATES_YOUNGER),
+            ("lag", told.lag, t.lag),
+            ("delay", told.delay, t.delay - RATES_YOUNGER),
+            ("centre of mass x", told.centre_of_mass[0], t.centre[0]),
+            ("centre of mass y", told.centre_of_mass[1], t.centre[1]),
+            ("drag x", told.drag[0], t.drag[0]),
+            ("drag y", told.drag[1], t.drag[1]),
+            ("drag z", told.drag[2], t.drag[2]),
+        ]
+    }
+}
+
+impl Truths {
+    fn drawn(model: &Scenario, random: &mut Xoshiro256PlusPlus) -> Self {
+        let vehicle = model.configuration.vehicle();
+        let mut about = |part: f64| 1.0 + random.random_range(-part..part);
+        let mass = f64::from(vehicle.mass) * about(0.2);
+        let inertia = loop {
+            let drawn: [f64; 3] = std::array::from_fn(|axis| f64::from(vehicle.inertia[axis]) * about(0.2));
+            let greatest = drawn.iter().copied().fold(0.0, f64::max);
+            // A body that can exist.
+            if 2.0 * greatest < drawn.iter().sum::<f64>() {
+                break drawn;
+            }
+        };
+        let delay = (1e3 * (model.delay() + 0.003) * about(0.6)).round() * 1e-3;
+        Self {
+            mass,
+            inertia,
+            thrust_scale: about(0.05),
+            lag: model.rotor_lag * about(0.3),
+            delay,
+            centre: [0, 1].map(|_| 0.005 * (about(0.999) - 1.0)),
+            drag: [0.25, 0.25, 0.15].map(|usual| usual * about(0.6)),
+        }
+    }
+
+    fn write(&self, document: &mut DocumentMut) {
+        let mut truth = Table::new();
+        truth.insert("mass", value(self.mass));
+        truth.insert("inertia", list(&self.inertia));
+        truth.insert("thrust_scale", value(self.thrust_scale));
+        truth.insert("lag", value(self.lag));
+        truth.insert("centre_of_mass", list(&[self.centre[0], self.centre[1], 0.0]));
+        document["truth"] = toml_edit::Item::Table(truth);
+    }
+}
+
+fn list(numbers: &[f64]) -> toml_edit::Item {
+    value(numbers.iter().copied().collect::<Array>())
+}
+
+/// Flies a scenario and returns its log.csv.
+///
+/// # Errors
+/// If it is no scenario, or cannot be flown to its end.
+pub fn fly(text: &str) -> Result<String, String> {
+    let scenario = Scenario::parse(text, "trial").map_err(|error| error.to_string())?;
+    let mut flight = Flight::new(&scenario).map_err(|error| error.to_string())?;
+    let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+    let header =
+        log::header(rotors, scenario.configuration.paper().is_none()) + &log::reality_header(&scenario.reality);
+    let mut out = header.into_bytes();
+    out.push(b'\n');
+    for _ in 0..scenario.timing.ticks {
+        let tick = flight.tick().map_err(|error| error.to_string())?;
+        log::write_row(&mut out, &tick).map_err(|error| error.to_string())?;
+    }
+    String::from_utf8(out).map_err(|error| error.to_string())
+}
