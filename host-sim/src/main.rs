@@ -2,6 +2,7 @@
 
 mod arguments;
 mod searches;
+mod terminal;
 
 use arguments::{
     Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, MergeArguments, SitlArguments,
@@ -18,23 +19,17 @@ use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
 use host_sim::hil::{self, Clients, End, HilError};
 use host_sim::identify::command::{self, Refused, Task};
-use host_sim::interrupt::Interrupt;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
 use host_sim::sitl::{self, SitlError};
 use host_sim::table::short;
 use scenario::{STUDY, Scenario};
 use searches::{run_compare, run_tune};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use terminal::{BAD_INPUT, print, print_text, same_file, status, text_of, watch};
 
-/// A well-posed run whose claims fail.
-const CLAIMS_FAIL: u8 = 1;
-/// Input that cannot be used, or output that cannot be written.
-const BAD_INPUT: u8 = 2;
-/// What a signal's number is added to, as shells do.
-const INTERRUPTED: u8 = 128;
 /// The largest log that nobody is asked about, bytes.
 const LARGE_LOG: u64 = 1_000_000_000;
 
@@ -61,20 +56,6 @@ fn main() -> ExitCode {
     })
 }
 
-/// Writes to standard output, whole. A reader that has gone away changes no verdict.
-fn print(write: impl FnOnce() -> io::Result<()>) -> Result<(), String> {
-    match write().and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(format!("standard output: cannot be written: {error}"))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn print_text(text: &str) -> Result<(), String> {
-    print(|| io::stdout().write_all(text.as_bytes()))
-}
-
 /// Help, the version, or what is wrong with the arguments.
 fn explain(message: &clap::Error) -> Result<ExitCode, String> {
     if message.use_stderr() {
@@ -90,32 +71,11 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
     file.map_or_else(Scenario::paper, Scenario::load).map_err(|error| error.to_string())
 }
 
-/// What a scenario is read from, once: a pipe cannot be read twice.
-fn text_of(file: Option<&Path>) -> Result<String, String> {
-    let read = |file: &Path| {
-        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
-    };
-    file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
-}
-
 /// A scenario's text and its name: of `file`, or of what is built in where boards are meant.
 fn given_or_study(file: Option<&Path>) -> Result<(String, String), String> {
     match file {
         Some(file) => Ok((text_of(Some(file))?, file.display().to_string())),
         None => Ok((STUDY.to_owned(), "vehicles/study.toml (built in)".to_owned())),
-    }
-}
-
-fn watch() -> Result<Interrupt, String> {
-    Interrupt::watch().map_err(|error| format!("signals cannot be watched: {error}"))
-}
-
-/// The status of a run that held or did not, unless it was cut short.
-fn status(holds: bool, signal: Option<u8>) -> ExitCode {
-    match (signal, holds) {
-        (Some(signal), _) => ExitCode::from(INTERRUPTED + signal),
-        (None, true) => ExitCode::SUCCESS,
-        (None, false) => ExitCode::from(CLAIMS_FAIL),
     }
 }
 
@@ -289,9 +249,4 @@ fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
     let (text, certified) = certify(&load(file)?).map_err(|error| error.to_string())?;
     print_text(&text)?;
     Ok(status(certified, None))
-}
-
-/// Whether both paths lead to one file that exists.
-fn same_file(one: &Path, other: &Path) -> bool {
-    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }

@@ -1,7 +1,7 @@
 //! The two commands that search for gains: `tune` for our law, `compare` for others.
 
 use crate::arguments::{CompareArguments, TuneArguments};
-use crate::{print_text, same_file, status, text_of, watch};
+use crate::terminal::{print_text, same_file, status, text_of, watch};
 use host_sim::certify::certify;
 use host_sim::compare::{self, CompareError, compare};
 use host_sim::rivals::gains::{self, Set};

@@ -1,0 +1,53 @@
+//! What commands have in common at a terminal: a file read once, output written whole, signals watched, and the status they end with.
+
+use host_sim::interrupt::Interrupt;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// A well-posed run whose claims fail.
+const CLAIMS_FAIL: u8 = 1;
+/// Input that cannot be used, or output that cannot be written.
+pub const BAD_INPUT: u8 = 2;
+/// What a signal's number is added to, as shells do.
+const INTERRUPTED: u8 = 128;
+
+/// Writes to standard output, whole. A reader that has gone away changes no verdict.
+pub fn print(write: impl FnOnce() -> io::Result<()>) -> Result<(), String> {
+    match write().and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(format!("standard output: cannot be written: {error}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+pub fn print_text(text: &str) -> Result<(), String> {
+    print(|| io::stdout().write_all(text.as_bytes()))
+}
+
+/// What a scenario is read from, once: a pipe cannot be read twice.
+pub fn text_of(file: Option<&Path>) -> Result<String, String> {
+    let read = |file: &Path| {
+        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+    };
+    file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
+}
+
+pub fn watch() -> Result<Interrupt, String> {
+    Interrupt::watch().map_err(|error| format!("signals cannot be watched: {error}"))
+}
+
+/// The status of a run that held or did not, unless it was cut short.
+pub fn status(holds: bool, signal: Option<u8>) -> ExitCode {
+    match (signal, holds) {
+        (Some(signal), _) => ExitCode::from(INTERRUPTED + signal),
+        (None, true) => ExitCode::SUCCESS,
+        (None, false) => ExitCode::from(CLAIMS_FAIL),
+    }
+}
+
+/// Whether both paths lead to one file that exists.
+pub fn same_file(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
