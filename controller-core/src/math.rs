@@ -136,7 +136,10 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 /// was found at most one for every single-precision number, so nothing is clipped.
 #[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
-    if z * z <= SATURATION {
+    let z2 = z * z;
+    if z2 <= LINEAR {
+        linear(z)
+    } else if z2 <= SATURATION {
         unsaturated(z)
     } else if z.is_nan() {
         z
@@ -149,8 +152,18 @@ pub fn tanh_of_scaled(z: f32) -> f32 {
 #[inline(always)]
 #[must_use]
 pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
-    if z.norm_squared() <= SATURATION { z.map(unsaturated) } else { z.map(tanh_of_scaled) }
+    let z2 = z.norm_squared();
+    if z2 <= LINEAR {
+        z.map(linear)
+    } else if z2 <= SATURATION {
+        z.map(unsaturated)
+    } else {
+        z.map(tanh_of_scaled)
+    }
 }
+
+/// Up to this z^2 the leading coefficients are all that is left of A and Q after rounding, and Q^2 of the denominator.
+const LINEAR: f32 = 5e-11;
 
 /// Where z^2 is beyond this, |x| > 8.69, tanh is within a rounding of one: so it is one, before a quotient rounds beyond.
 const SATURATION: f32 = 0.034_9;
@@ -159,10 +172,20 @@ const SATURATION: f32 = 0.034_9;
 fn unsaturated(z: f32) -> f32 {
     let z2 = z * z;
     let z4 = z2 * z2;
-    let a = z * (z4 + 0.120_494_44 * z2 + 1.869_867_2e-3);
-    let q = z2 * z4 + 0.454_219_88 * z4 + 0.019_679_535 * z2 + 8.037_678e-5;
+    let a = z * (z4 + 0.120_494_44 * z2 + A_0);
+    let q = z2 * z4 + 0.454_219_88 * z4 + 0.019_679_535 * z2 + Q_0;
     2.0 * a * q / (a * a + q * q)
 }
+
+/// [`unsaturated`] to the bit, up to [`LINEAR`]: without the powers of z that fall below the normal numbers, which cost a desktop
+/// a quarter of its time where a vehicle has settled.
+#[inline(always)]
+fn linear(z: f32) -> f32 {
+    2.0 * (z * A_0) * Q_0 / (Q_0 * Q_0)
+}
+
+const A_0: f32 = 1.869_867_2e-3;
+const Q_0: f32 = 8.037_678e-5;
 
 /// The square root of three.
 pub const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -81,7 +81,21 @@ class Chart {
 
   /** Sets the ends of both axes. */
   range(horizontal, vertical) {
-    Object.assign(this, { horizontal, vertical });
+    this.ends = { horizontal, vertical };
+  }
+
+  get horizontal() {
+    return this.ranged().horizontal;
+  }
+
+  get vertical() {
+    return this.ranged().vertical;
+  }
+
+  /** The ends of both axes. A pointer that the page is scrolled under, or a key, may ask before the first drawing: then it is drawn. */
+  ranged() {
+    if (!this.ends) this.draw(true);
+    return this.ends;
   }
 
   share(value, { least, greatest, logarithmic }) {

@@ -57,14 +57,15 @@ impl Batch {
         let Some((body, steps_per_tick)) = flights.first().and_then(alike) else {
             return Err(flights);
         };
-        let rows = Rows::new(processor, flights.len());
+        let mut rows = Rows::new(processor, flights.len());
+        flights.iter().enumerate().for_each(|(number, flight)| rows.place(number, flight.state()));
         let members = flights.into_iter().map(|flight| Member { flight, stage: Stage::Waiting }).collect();
         Ok(Self { members, rows, body, steps_per_tick })
     }
 
     /// One control tick of every flight that goes on, and their motion until the next. `observe` sees each by its number, as
     /// [`Flight::brief_tick`] would give it; of a flight that could not go on it sees nothing after the error.
-    pub fn tick(&mut self, mut observe: impl FnMut(usize, Result<Brief, FlightError>)) {
+    pub fn tick(&mut self, mut observe: impl FnMut(usize, Result<&Brief, FlightError>)) {
         let going_on = |member: &&Member| !matches!(member.stage, Stage::Ended);
         let Some(reference) = self.members.iter().find(going_on).map(|member| member.flight.reference()) else {
             return;
@@ -76,7 +77,7 @@ impl Batch {
             match flight.set_off(&reference) {
                 Ok((wrench, asked)) => {
                     let (thrust, torque, clipped) = self.body.clipped(&asked);
-                    self.rows.set(number, flight.state(), thrust, &torque);
+                    self.rows.command(number, thrust, &torque);
                     *stage = Stage::Commanded(wrench, clipped);
                 }
                 Err(error) => {
@@ -90,7 +91,7 @@ impl Batch {
             if let Stage::Commanded(wrench, clipped) = *stage {
                 let brief = flight.arrive(self.rows.state(number), &reference, (wrench, clipped));
                 *stage = if brief.is_ok() { Stage::Waiting } else { Stage::Ended };
-                observe(number, brief);
+                observe(number, brief.as_ref().map_err(|error| *error));
             }
         }
     }

@@ -341,7 +341,7 @@ impl Flight {
     }
 
     /// Ends a tick whose motion has led to `state`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn arrive(
         &mut self,
         state: BodyState,

@@ -38,6 +38,17 @@ fn tanh_is_within_its_stated_error_odd_and_bounded() {
 }
 
 #[test]
+fn tanh_of_little_has_the_bits_of_the_whole_formula() {
+    // Every 61st number from zero to twice as far as the short formula reaches, subnormal ones among them.
+    let end = (2.0 * LINEAR.sqrt()).to_bits();
+    for z in (0..end).step_by(61).flat_map(|bits| [f32::from_bits(bits), -f32::from_bits(bits)]) {
+        assert_eq!(tanh_of_scaled(z).to_bits(), unsaturated(z).to_bits(), "{z:e}");
+        let three = Vector3::new(z, 0.5 * z, -0.25 * z);
+        assert_eq!(tanh_of_all_scaled(&three).map(f32::to_bits), three.map(unsaturated).map(f32::to_bits), "{z:e}");
+    }
+}
+
+#[test]
 fn three_at_once_are_the_same_three_numbers() {
     for i in 0..10_000 {
         let z = Vector3::new(i as f32 * 4e-5, i as f32 * -1e-5, 0.19);

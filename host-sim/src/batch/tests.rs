@@ -43,11 +43,7 @@ fn flights_side_by_side_have_the_bits_of_each_alone_on_all_that_this_processor_h
         for _ in 0..200 {
             let mut seen = 0;
             batch.tick(|number, brief| {
-                assert_eq!(
-                    bits(&brief.unwrap()),
-                    bits(&alone[number].brief_tick().unwrap()),
-                    "{processor:?}, {number}"
-                );
+                assert_eq!(bits(brief.unwrap()), bits(&alone[number].brief_tick().unwrap()), "{processor:?}, {number}");
                 seen += 1;
             });
             assert_eq!(seen, flights.len());
@@ -69,7 +65,7 @@ fn a_flight_that_cannot_go_on_ends_as_it_does_alone_and_leaves_the_others_alone(
         batch.tick(|number, brief| {
             seen[number] += 1;
             match brief {
-                Ok(brief) => assert_eq!(bits(&brief), bits(&alone.clone().brief_tick().unwrap())),
+                Ok(brief) => assert_eq!(bits(brief), bits(&alone.clone().brief_tick().unwrap())),
                 Err(error) => assert_eq!((number, Some(error)), (1, bad.clone().brief_tick().err())),
             }
         });

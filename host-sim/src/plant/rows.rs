@@ -32,14 +32,18 @@ impl Rows {
         Self { processor, states: std::array::from_fn(row), commands: std::array::from_fn(row) }
     }
 
-    /// Puts a body at `state` under thrust, N, and torque, N m.
-    #[inline]
-    pub fn set(&mut self, body: usize, state: &BodyState, thrust: f64, torque: &Vector3<f64>) {
+    /// Puts a body at `state`.
+    pub fn place(&mut self, body: usize, state: &BodyState) {
         let BodyState { position: p, velocity: v, attitude: q, angular_velocity: w } = state;
         let state = [p.x, p.y, p.z, v.x, v.y, v.z, q.i, q.j, q.k, q.w, w.x, w.y, w.z];
         for (row, number) in self.states.iter_mut().zip(state) {
             row[body] = number;
         }
+    }
+
+    /// Puts a body under thrust, N, and torque, N m.
+    #[inline]
+    pub fn command(&mut self, body: usize, thrust: f64, torque: &Vector3<f64>) {
         for (row, number) in self.commands.iter_mut().zip([thrust, torque.x, torque.y, torque.z]) {
             row[body] = number;
         }

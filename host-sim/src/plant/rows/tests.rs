@@ -38,7 +38,8 @@ fn bodies_in_rows_move_as_each_moves_alone_whatever_the_registers_and_their_numb
             let mut rows = Rows::new(processor, bodies);
             for index in 0..bodies {
                 let (state, thrust, torque) = thrown(index);
-                rows.set(index, &state, thrust, &torque);
+                rows.place(index, &state);
+                rows.command(index, thrust, &torque);
             }
             rows.advance(&body, 3);
             rows.advance(&body, 1);
