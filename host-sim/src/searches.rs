@@ -4,7 +4,7 @@ use crate::arguments::{CompareArguments, TuneArguments};
 use crate::terminal::{print_text, same_file, status, text_of, watch};
 use host_sim::certify::certify;
 use host_sim::compare::{self, CompareError, compare};
-use host_sim::rivals::gains::{self, Set};
+use host_sim::rivals::gains::Set;
 use host_sim::rivals::tuning;
 use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
@@ -74,10 +74,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
                 return Ok(status(false, interrupt.signal()));
             }
         },
-        (None, Some(file)) => {
-            Set::of(&scenario, &text_of(Some(file))?, &file.display().to_string()).map_err(|error| error.to_string())?
-        }
-        (None, None) => Set::of(&scenario, gains::BUILT_IN, gains::BUILT_IN_NAME).map_err(|error| error.to_string())?,
+        (None, file) => Set::read(&scenario, file.as_deref()).map_err(|error| error.to_string())?,
     };
     let mut comparison = match compare(&scenario, &text, &set, arguments.flights, &interrupt) {
         Ok(comparison) => comparison,

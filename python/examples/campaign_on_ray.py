@@ -20,16 +20,16 @@ ONE_CORE = {"env_vars": {"RAYON_NUM_THREADS": "1"}}
 
 
 @ray.remote(num_cpus=1, runtime_env=ONE_CORE)
-def shard(scenario, flights, seed, part, parts):
+def shard(scenario, flights, seed, law, part, parts):
     """Flies one part; its files by their names."""
     with tempfile.TemporaryDirectory() as folder:
-        sh.campaign(scenario, folder, flights=flights, seed=seed, shard=(part, parts))
+        sh.campaign(scenario, folder, flights=flights, seed=seed, shard=(part, parts), law=law)
         return {file.name: file.read_bytes() for file in pathlib.Path(folder).iterdir() if file.is_file()}
 
 
-def campaign(scenario, out, flights, seed, parts):
+def campaign(scenario, out, flights, seed, parts, law="ours"):
     """Flies all parts and merges them into the directory `out`; what they showed."""
-    tasks = [shard.remote(scenario, flights, seed, part, parts) for part in range(1, parts + 1)]
+    tasks = [shard.remote(scenario, flights, seed, law, part, parts) for part in range(1, parts + 1)]
     with tempfile.TemporaryDirectory() as folder:
         shards = []
         for part, files in enumerate(ray.get(tasks), start=1):
@@ -46,11 +46,12 @@ def main():
     parser.add_argument("--flights", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--shards", type=int, default=4, help="tasks; Ray runs as many at once as it has cores")
+    parser.add_argument("--law", default="ours", help="whose flights: ours, or one of docs/rivals.md")
     parser.add_argument("--out", required=True, help="directory for the whole campaign")
     arguments = parser.parse_args()
     ray.init(log_to_driver=False)
     scenario = sh.Scenario.load(arguments.file)
-    shown = campaign(scenario, arguments.out, arguments.flights, arguments.seed, arguments.shards)
+    shown = campaign(scenario, arguments.out, arguments.flights, arguments.seed, arguments.shards, arguments.law)
     print(shown)
     return 0 if shown.holds else 1
 

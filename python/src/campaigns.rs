@@ -7,10 +7,12 @@ use host_sim::campaign::CampaignError;
 use host_sim::campaign::fly::{self, Orders};
 use host_sim::campaign::step;
 use host_sim::campaign::summary;
-use host_sim::flier::LawChoice;
+use host_sim::flier::{LawChoice, OURS};
+use host_sim::rivals::gains::Set;
+use host_sim::rivals::kind::Kind;
 use pyo3::prelude::*;
 use scenario::campaign::MOST_FLIGHTS;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a campaign showed. As text: what `host-sim campaign` prints.
 #[pyclass(frozen, module = "saturated_hybrid")]
@@ -77,12 +79,15 @@ impl Campaign {
 ///     flights, seed: of the whole campaign; left out: the scenario's.
 ///     shard: (I, N): part I of N, from 1; `merge` puts the parts together.
 ///     plant_step: s; left out: the longest of at most 5 ms that fits.
+///     law: whose flights, "ours" or one of docs/rivals.md: "lee", "px4", "mellinger", "indi", "nested", "continuous", "memoryless".
+///     gains: a file with that law's gains; left out: those built in for the vehicles of docs/rivals.md.
 ///
 /// Raises:
 ///     ValueError: names the argument, or says that the directory holds another campaign.
 ///     OSError: it cannot be written.
 #[pyfunction]
-#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(1, 1), plant_step=None))]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(1, 1), plant_step=None, law=OURS, gains=None))]
+#[allow(clippy::too_many_arguments)] // its user names them
 pub fn campaign(
     py: Python<'_>,
     scenario: &Scenario,
@@ -91,6 +96,8 @@ pub fn campaign(
     seed: Option<u64>,
     shard: (u64, u64),
     plant_step: Option<f64>,
+    law: &str,
+    gains: Option<PathBuf>,
 ) -> PyResult<Campaign> {
     let own = &scenario.read.campaign;
     let (flights, seed) = (flights.unwrap_or(own.flights), seed.unwrap_or(own.seed));
@@ -105,11 +112,27 @@ pub fn campaign(
         None => step::longest(&scenario.read),
         Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
     };
+    let law = chosen(law, &stepped, gains.as_deref())?;
     let orders = Orders { flights, seed, shard };
-    let flown = interruptible(py, |interrupt| {
-        fly::campaign(&stepped, &scenario.text, &LawChoice::Ours, &orders, &directory, interrupt)
-    })?;
+    let flown =
+        interruptible(py, |interrupt| fly::campaign(&stepped, &scenario.text, &law, &orders, &directory, interrupt))?;
     Ok(Campaign { summary: flown.map_err(raised)? })
+}
+
+/// The law of this name for the vehicle of `scenario`.
+fn chosen(name: &str, scenario: &scenario::Scenario, gains: Option<&Path>) -> PyResult<LawChoice> {
+    let Some(kind) = Kind::named(name) else {
+        return match gains {
+            _ if name != OURS => {
+                let names: Vec<&str> = std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)).collect();
+                Err(refused_field("law", format!("must be one of {}, found {name:?}", names.join(", "))))
+            }
+            Some(_) => Err(refused_field("gains", "our law's gains are the scenario's: choose another law")),
+            None => Ok(LawChoice::Ours),
+        };
+    };
+    let set = Set::read(scenario, gains).map_err(|error| refused_field("gains", error))?;
+    set.law(kind).ok_or_else(|| refused_field("law", format!("there are no gains of {name}")))
 }
 
 /// Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split.

@@ -2,20 +2,26 @@
 //!
 //! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the scenario has
 //! any. A row whose motion is no longer finite goes no further until it is put somewhere.
+//!
+//! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's vector registers
+//! ([`host_sim::plant::rows`]), to the bits that each has alone.
 
 use crate::laws::numbers;
 use crate::refused::{refused, refused_field};
 use crate::rows::{STATE, WRENCH, array, body, of_asked, of_body, of_told, rows, wrench};
 use crate::scenarios::Scenario;
+use host_sim::plant::body::Body;
+use host_sim::plant::rows::Rows;
 use host_sim::sensors::Sensors;
 use host_sim::vehicle::SimulatedVehicle;
 use numpy::{PyArray1, PyArray2};
+use pulp::Arch;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use scenario::body::{BodyState, GREATEST_TURN_PER_STEP};
 
-/// Rows that one core takes at a time.
-const ROWS_AT_ONCE: usize = 16;
+/// Rows of a stretch, which one core takes at a time.
+const STRETCH: usize = 16;
 
 /// One vehicle.
 struct Row {
@@ -49,17 +55,68 @@ impl Row {
             return false;
         }
         let held = self.vehicle.hold(&wrench(asked), steps);
-        self.tick += 1;
-        match held {
-            Ok((clipped, _)) => {
-                self.measure();
-                clipped
-            }
-            Err(_) => {
-                self.lost = true;
-                false
-            }
+        self.end(held.ok().map(|(clipped, _)| clipped))
+    }
+
+    /// The same for a body that was moved to `state`.
+    fn arrive(&mut self, state: BodyState, clipped: bool) -> bool {
+        if self.lost {
+            return false;
         }
+        self.vehicle.place(state);
+        self.end(state.is_finite().then_some(clipped))
+    }
+
+    /// Ends a period: whether anything was clipped, or nothing where the motion is no longer finite.
+    fn end(&mut self, clipped: Option<bool>) -> bool {
+        self.tick += 1;
+        self.lost = clipped.is_none();
+        if !self.lost {
+            self.measure();
+        }
+        clipped.unwrap_or(false)
+    }
+}
+
+/// Neighbouring rows.
+struct Stretch {
+    rows: Vec<Row>,
+    /// Their bodies, where nothing else of them moves.
+    bodies: Option<(Body, Rows)>,
+}
+
+impl Stretch {
+    fn new(scenario: &scenario::Scenario, count: usize) -> Self {
+        let rows: Vec<Row> = (0..count).map(|_| Row::new(scenario)).collect();
+        let bare = rows.first().and_then(|row| row.vehicle.bare());
+        let mut bodies = bare.map(|plant| (plant.body().clone(), Rows::new(Arch::new(), count)));
+        if let Some((_, bodies)) = &mut bodies {
+            rows.iter().enumerate().for_each(|(number, row)| bodies.place(number, row.vehicle.state()));
+        }
+        Self { rows, bodies }
+    }
+
+    fn place(&mut self, number: usize, row: Row) {
+        if let Some((_, bodies)) = &mut self.bodies {
+            bodies.place(number, row.vehicle.state());
+        }
+        self.rows[number] = row;
+    }
+
+    /// Which of them had anything clipped.
+    fn hold(&mut self, asked: &[[f64; WRENCH]], steps: u32) -> Vec<bool> {
+        let Some((body, bodies)) = &mut self.bodies else {
+            return self.rows.iter_mut().zip(asked).map(|(row, asked)| row.hold(asked, steps)).collect();
+        };
+        let command = |(number, asked): (usize, &[f64; WRENCH])| {
+            let (thrust, torque, clipped) = body.clipped(&wrench(asked));
+            bodies.command(number, thrust, &torque);
+            clipped
+        };
+        let clipped: Vec<bool> = asked.iter().enumerate().map(command).collect();
+        bodies.advance(body, steps);
+        let arrive = |(number, (row, clipped)): (usize, (&mut Row, bool))| row.arrive(bodies.state(number), clipped);
+        self.rows.iter_mut().zip(clipped).enumerate().map(arrive).collect()
     }
 }
 
@@ -67,7 +124,14 @@ impl Row {
 #[pyclass(module = "saturated_hybrid")]
 pub struct VehicleRows {
     scenario: scenario::Scenario,
-    rows: Vec<Row>,
+    count: usize,
+    stretches: Vec<Stretch>,
+}
+
+impl VehicleRows {
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.stretches.iter().flat_map(|stretch| &stretch.rows)
+    }
 }
 
 #[pymethods]
@@ -79,24 +143,26 @@ impl VehicleRows {
             return Err(refused_field(&scenario.file, problem));
         }
         let scenario = scenario.read.clone();
-        Ok(Self { rows: (0..rows).map(|_| Row::new(&scenario)).collect(), scenario })
+        let stretch = |first| Stretch::new(&scenario, STRETCH.min(rows - first));
+        let stretches = (0..rows).step_by(STRETCH).map(stretch).collect();
+        Ok(Self { count: rows, stretches, scenario })
     }
 
     fn __len__(&self) -> usize {
-        self.rows.len()
+        self.count
     }
 
     /// Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
     /// turbulence's. If one is refused, the error names the row and no row has changed.
     #[pyo3(signature = (states, chosen=None, seeds=None))]
     fn place(&mut self, states: &Bound<'_, PyAny>, chosen: Option<Vec<bool>>, seeds: Option<Vec<u64>>) -> PyResult<()> {
-        let states = rows::<STATE>(states, self.rows.len(), "states")?;
-        let seeds = seeds.unwrap_or_else(|| (0..self.rows.len() as u64).collect());
-        if seeds.len() != self.rows.len() {
-            let count = self.rows.len();
+        let states = rows::<STATE>(states, self.count, "states")?;
+        let seeds = seeds.unwrap_or_else(|| (0..self.count as u64).collect());
+        if seeds.len() != self.count {
+            let count = self.count;
             return Err(refused_field("seeds", format!("must have shape ({count},), found ({},)", seeds.len())));
         }
-        let chosen = numbers(chosen, self.rows.len())?;
+        let chosen = numbers(chosen, self.count)?;
         let step = self.scenario.timing.step();
         for number in &chosen {
             let start = start(&states[*number], step);
@@ -111,7 +177,7 @@ impl VehicleRows {
             if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
                 turbulence.seed = seeds[number];
             }
-            self.rows[number] = Row::new(&scenario);
+            self.stretches[number / STRETCH].place(number % STRETCH, Row::new(&scenario));
         }
         Ok(())
     }
@@ -124,29 +190,29 @@ impl VehicleRows {
         py: Python<'py>,
         wrenches: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<bool>>)> {
-        let wrenches = rows::<WRENCH>(wrenches, self.rows.len(), "wrenches")?;
+        let wrenches = rows::<WRENCH>(wrenches, self.count, "wrenches")?;
         if let Some(number) = wrenches.iter().position(|row| row.iter().any(|value| !value.is_finite())) {
             return Err(refused(format!("row {number}: wrench: must be finite")));
         }
-        let (vehicles, steps) = (&mut self.rows, self.scenario.timing.steps_per_tick);
-        let clipped = py.detach(|| {
-            let given = vehicles.par_iter_mut().zip(&wrenches).with_min_len(ROWS_AT_ONCE);
-            given.map(|(row, asked)| row.hold(asked, steps)).collect::<Vec<bool>>()
+        let (stretches, steps) = (&mut self.stretches, self.scenario.timing.steps_per_tick);
+        let clipped: Vec<Vec<bool>> = py.detach(|| {
+            let given = stretches.par_iter_mut().zip(wrenches.par_chunks(STRETCH));
+            given.map(|(stretch, asked)| stretch.hold(asked, steps)).collect()
         });
-        let lost = self.rows.iter().map(|row| row.lost).collect();
+        let (clipped, lost) = (clipped.concat(), self.rows().map(|row| row.lost).collect());
         Ok((PyArray1::from_vec(py, clipped), PyArray1::from_vec(py, lost)))
     }
 
     /// (rows, 13): the true ones.
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array(py, self.rows.iter().map(|row| of_body(row.vehicle.state())).collect())
+        array(py, self.rows().map(|row| of_body(row.vehicle.state())).collect())
     }
 
     /// (rows, 13): what controllers are told, by the scenario's `[sensors]`; the true ones where it has none.
     #[getter]
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array(py, self.rows.iter().map(|row| row.told).collect())
+        array(py, self.rows().map(|row| row.told).collect())
     }
 
     /// (rows, 19): the scenario's, each at its row's own time.
@@ -154,13 +220,13 @@ impl VehicleRows {
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let period = self.scenario.timing.period_us;
         let at = |row: &Row| of_asked(&self.scenario.trajectory.at(row.tick * period));
-        array(py, self.rows.iter().map(at).collect())
+        array(py, self.rows().map(at).collect())
     }
 
     /// (rows,): periods since each was placed.
     #[getter]
     fn ticks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
-        PyArray1::from_vec(py, self.rows.iter().map(|row| row.tick).collect())
+        PyArray1::from_vec(py, self.rows().map(|row| row.tick).collect())
     }
 }
 

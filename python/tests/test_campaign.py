@@ -42,6 +42,20 @@ def test_shards_merge_to_the_same_bytes(scenario, whole, tmp_path):
     assert files(tmp_path / "out") == whole
 
 
+def test_another_law_flies_the_programs_bytes_too(scenario, whole, host_sim, tmp_path):
+    done = host_sim("campaign", FILE, "--law", "lee", "--flights", 40, "--seed", SEED, "--out", tmp_path / "program")
+    assert done.returncode in (0, 1), done.stderr
+    shown = sh.campaign(scenario, tmp_path / "wheel", flights=40, seed=SEED, law="lee")
+    assert files(tmp_path / "wheel") == files(tmp_path / "program") and shown.flights == 40
+    with pytest.raises(ValueError, match='law: must be one of ours, lee, .*, found "nobody"'):
+        sh.campaign(scenario, tmp_path / "a", law="nobody")
+    with pytest.raises(ValueError, match="gains: our law's gains are the scenario's"):
+        sh.campaign(scenario, tmp_path / "a", gains="rivals.toml")
+    with pytest.raises(ValueError, match="gains: missing.toml: cannot be read"):
+        sh.campaign(scenario, tmp_path / "a", law="lee", gains="missing.toml")
+    assert not (tmp_path / "a").exists()
+
+
 def test_another_seed_is_another_campaign(scenario, whole, tmp_path):
     sh.campaign(scenario, tmp_path, flights=FLIGHTS, seed=SEED + 1)
     assert files(tmp_path)["campaign.arrow"] != whole["campaign.arrow"]

@@ -44,15 +44,18 @@ def fly(environment, actions, seed):
     return np.array(seen)
 
 
-def test_a_row_is_the_same_whatever_the_number_of_rows():
-    actions = np.random.default_rng(5).uniform([0, -0.1, -0.1, -0.1], [10, 0.1, 0.1, 0.1], (30, 6, 4))
-    noisy = HUMMINGBIRD.edited({"sensors": {"position_noise": 0.01}})
-    many = fly(VectorEnvironment(noisy, 6), actions, 7)
+@pytest.mark.parametrize("name", ["hummingbird", "paper"])
+def test_a_row_is_the_same_whatever_the_number_of_rows(name):
+    actions = np.random.default_rng(5).uniform([0, -0.1, -0.1, -0.1], [10, 0.1, 0.1, 0.1], (30, 21, 4))
+    noisy = sh.Scenario.built_in(name).edited({"sensors": {"position_noise": 0.01}})
+    many = fly(VectorEnvironment(noisy, 21), actions, 7)
     few = fly(VectorEnvironment(noisy, 2), actions[:, :2], 7)
     alone = fly(Environment(noisy), actions[:, 1], 8)
     assert np.array_equal(many[:, :2], few) and np.array_equal(many[:, 1], alone)
     assert not np.array_equal(many[:, 0], many[:, 1])
-    assert np.array_equal(fly(VectorEnvironment(noisy, 6), actions, 7), many)
+    # From where they were put, at rest.
+    assert np.abs(many[1, :, :3] - many[0, :, :3]).max() < 0.1
+    assert np.array_equal(fly(VectorEnvironment(noisy, 21), actions, 7), many)
 
 
 def test_random_starts_are_everywhere():

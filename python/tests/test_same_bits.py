@@ -69,10 +69,12 @@ def test_rows_of_laws_are_laws(name):
 def test_an_environment_flown_by_the_law_flies_the_scenarios_flight(name):
     scenario = sh.Scenario.built_in(name).edited({"duration": 5.0})
     flown = sh.fly(scenario).columns
-    environment, law = VectorEnvironment(scenario, 3, start="scenario"), sh.LawRows(scenario, 3)
+    # More than a stretch, and more than fills its vector registers.
+    rows = 19
+    environment, law = VectorEnvironment(scenario, rows, start="scenario"), sh.LawRows(scenario, rows)
     observations, _ = environment.reset(seed=1)
     for tick in range(scenario.ticks):
-        assert np.array_equal(environment.vehicles.states, np.repeat(stack(flown, STATE)[tick : tick + 1], 3, 0))
+        assert np.array_equal(environment.vehicles.states, np.repeat(stack(flown, STATE)[tick : tick + 1], rows, 0))
         wrenches = law.step(observations[:, :13], observations[:, 13:])
         assert np.array_equal(as_logged(wrenches[:1]), stack(flown, WRENCH)[tick : tick + 1])
         observations, _, terminated, truncated, info = environment.step(law.for_rotors(wrenches))

@@ -5,7 +5,7 @@ use clap::builder::PossibleValuesParser;
 use host_sim::campaign::fly::Orders;
 use host_sim::campaign::step;
 use host_sim::flier::{LawChoice, OURS};
-use host_sim::rivals::gains::{self, Set};
+use host_sim::rivals::gains::Set;
 use host_sim::rivals::kind::Kind;
 use scenario::Scenario;
 use scenario::campaign::MOST_FLIGHTS;
@@ -136,15 +136,7 @@ impl CampaignArguments {
                 None => Ok(LawChoice::Ours),
             };
         };
-        let set = match &self.gains {
-            Some(file) => {
-                let text = std::fs::read_to_string(file)
-                    .map_err(|error| format!("{}: cannot be read: {error}", file.display()))?;
-                Set::of(scenario, &text, &file.display().to_string())
-            }
-            None => Set::of(scenario, gains::BUILT_IN, gains::BUILT_IN_NAME),
-        };
-        let set = set.map_err(|error| error.to_string())?;
+        let set = Set::read(scenario, self.gains.as_deref()).map_err(|error| error.to_string())?;
         set.law(kind).ok_or_else(|| format!("--law: there are no gains of {}", kind.name()))
     }
 

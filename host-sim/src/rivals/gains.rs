@@ -22,13 +22,15 @@ use super::pilot::model;
 use crate::flier::LawChoice;
 use scenario::Scenario;
 use std::fmt::Write;
+use std::fs;
+use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
 /// Gains that were found with `host-sim compare --tune`, with the commands that find them again.
 pub const BUILT_IN: &str = include_str!("gains.toml");
 
 /// What messages call them.
-pub const BUILT_IN_NAME: &str = "the built-in gains";
+const BUILT_IN_NAME: &str = "the built-in gains";
 
 /// The gains of every rival on one vehicle.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +93,17 @@ impl Set {
             Ok((kind, gains, number("cost")?))
         });
         Ok(Self { rivals: rivals.into_iter().collect::<Result<_, _>>()? })
+    }
+
+    /// The set in `file`, or the one that is built in.
+    ///
+    /// # Errors
+    /// If the file cannot be read, and as [`Self::of`]'s.
+    pub fn read(scenario: &Scenario, file: Option<&Path>) -> Result<Self, GainsError> {
+        let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME) };
+        let name = file.display().to_string();
+        let text = fs::read_to_string(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
+        Self::of(scenario, &text, &name)
     }
 
     /// The laws, in the order of their names.

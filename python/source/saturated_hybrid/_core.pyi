@@ -402,6 +402,8 @@ def campaign(
     seed: int | None = None,
     shard: tuple[int, int] = ...,
     plant_step: float | None = None,
+    law: str = ...,
+    gains: str | PathLike[str] | None = None,
 ) -> Campaign:
     """Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
 
@@ -414,6 +416,8 @@ def campaign(
         flights, seed: of the whole campaign; left out: the scenario's.
         shard: (I, N): part I of N, from 1; `merge` puts the parts together.
         plant_step: s; left out: the longest of at most 5 ms that fits.
+        law: whose flights, "ours" or one of docs/rivals.md: "lee", "px4", "mellinger", "indi", "nested", "continuous", "memoryless".
+        gains: a file with that law's gains; left out: those built in for the vehicles of docs/rivals.md.
 
     Raises:
         ValueError: names the argument, or says that the directory holds another campaign.
