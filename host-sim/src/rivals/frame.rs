@@ -40,6 +40,8 @@ pub struct Frame {
 /// A force per mass shorter than this, m/s^2, points nowhere; an x or y axis shorter than the other has no direction.
 const LEAST_FORCE: f64 = 1e-2;
 const LEAST_AXIS: f64 = 1e-2;
+/// An axis shorter than this is none at all.
+const LEAST_LENGTH: f64 = 1e-9;
 
 impl Frame {
     /// For the force per mass `force`, m/s^2, and the heading's unit vector, both world, with their derivatives.
@@ -63,15 +65,24 @@ impl Frame {
             [a[0].dot(&b[1]), a[1].dot(&b[1]) + a[0].dot(&b[2])]
         };
         let [roll, pitch, yaw] = [turning(&z, &y), turning(&x, &z), turning(&y, &x)];
-        let matrix = Matrix3::from_columns(&[x.0[0], y.0[0], z.0[0]]);
-        // Where an axis has no direction the columns are no rotation: the nearest one is taken.
-        let rotation = Rotation3::from_matrix_eps(&matrix, 1e-9, 50, Rotation3::identity());
         Self {
-            attitude: UnitQuaternion::from_rotation_matrix(&rotation),
+            attitude: UnitQuaternion::from_rotation_matrix(&nearest(&x.0[0], &y.0[0], &z.0[0])),
             rate: Vector3::new(roll[0], pitch[0], yaw[0]),
             acceleration: Vector3::new(roll[1], pitch[1], yaw[1]),
         }
     }
+}
+
+/// The rotation nearest to three axes across each other, of which the first two are equally long, and shorter than one where the heading
+/// hardly says where they point.
+fn nearest(x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Rotation3<f64> {
+    let length = x.norm();
+    if length > LEAST_LENGTH {
+        return Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x / length, y / length, *z]));
+    }
+    // Nothing says it: of all that have this z, one near to level.
+    let matrix = Matrix3::from_columns(&[*x, *y, *z]);
+    Rotation3::from_matrix_eps(&matrix, LEAST_LENGTH, 50, Rotation3::identity())
 }
 
 #[cfg(test)]
@@ -123,6 +134,23 @@ mod tests {
         assert!(off(nose(Frame::new(&force, &jet, HeadingRule::Horizontal))) < 1e-6);
         let level = Jet::constant(Vector3::z() * 9.81);
         assert!(off(nose(Frame::new(&level, &jet, HeadingRule::Projected))) < 1e-6);
+    }
+
+    #[test]
+    fn axes_without_a_direction_become_a_rotation_all_the_same() {
+        let forward = Jet::constant(Vector3::x());
+        // Along the heading, where nothing says where the nose should point; next to it, where it is said faintly; and far from it.
+        for across in [0.0, 1e-12, 1e-6, 1e-3, 0.1, 5.0] {
+            for rule in [HeadingRule::Projected, HeadingRule::Horizontal] {
+                let force = Vector3::new(9.0, across, 0.0);
+                let attitude = Frame::new(&Jet::constant(force), &forward, rule).attitude;
+                let up = attitude * Vector3::z();
+                assert!(
+                    (attitude.norm() - 1.0).abs() < 1e-12 && (up - force.normalize()).amax() < 1e-8,
+                    "{across} {rule:?}"
+                );
+            }
+        }
     }
 
     #[test]
