@@ -70,6 +70,10 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
     for (name, logged) in [("start_px", "px"), ("start_qw", "qw"), ("start_wz", "wz"), ("wind_x", "wind_x")] {
         assert_eq!(row(name), column(logged)[0], "{name}");
     }
+    // What was drawn stands above the file in its report.
+    let report = fs::read_to_string(directory.join("flights/hummingbird-6/report.html")).unwrap();
+    let start = format!("initial.position = [{:?}, ", row("start_px"));
+    assert!(report.contains("# Flight 6 of the campaign with seed 4.") && report.contains(&start), "{start}");
     let heights = column("pz");
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(row("height_lost"), (heights[0] - lowest).max(0.0));

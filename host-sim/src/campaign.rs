@@ -7,6 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`draw`], [`throw`] | the circumstances of a flight, from seed and number; that flight under a law |
+//! | [`written`] | those circumstances for who reads the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
 //! | [`manifest`], [`store`] | what a directory holds; its files |
@@ -25,6 +26,7 @@ pub mod step;
 pub mod store;
 pub mod summary;
 pub mod throw;
+pub mod written;
 
 use crate::flight::Flight;
 use arrow_schema::ArrowError;

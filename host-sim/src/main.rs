@@ -10,7 +10,7 @@ use arguments::{
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
-use host_sim::campaign::{self, CampaignError};
+use host_sim::campaign::{self, CampaignError, written};
 use host_sim::certify::certify;
 use host_sim::claims;
 use host_sim::flier::LawChoice;
@@ -136,6 +136,7 @@ fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
     if let Some(number) = arguments.replay {
         let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{name}-{number}");
+        let text = written::above(&text, &thrown, orders.seed, number);
         return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
     let (directory, interrupt) = (arguments.directory(&name), watch()?);

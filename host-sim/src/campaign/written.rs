@@ -1,0 +1,124 @@
+//! What a flight of a campaign has in place of its scenario file: as comments above the file's text, in the file's own terms.
+//!
+//! The circumstances are drawn anew from seed and number wherever they are needed ([`super::draw`]); this is for who reads the report of
+//! one flight. Every number is written as it is, to the last bit.
+
+use nalgebra::Vector3;
+use scenario::Scenario;
+use scenario::reality::sensors::VelocitySource;
+use scenario::reference::ReferenceKind;
+
+/// The text of a scenario's file below what flight `number` from `seed`, which is `thrown`, has instead.
+#[must_use]
+pub fn above(text: &str, thrown: &Scenario, seed: u64, number: u64) -> String {
+    let mut comments =
+        format!("# Flight {number} of the campaign with seed {seed}. Drawn in place of what stands below:\n#\n");
+    for line in start(thrown).into_iter().chain(air(thrown)).chain(senses(thrown)).chain(truth(thrown)) {
+        comments += &format!("#   {line}\n");
+    }
+    format!("{comments}\n{text}")
+}
+
+/// How long it flies, on what reference, and where it starts.
+fn start(thrown: &Scenario) -> Vec<String> {
+    let initial = &thrown.initial;
+    let q = &initial.attitude;
+    let mut lines =
+        vec![format!("duration = {:?} s, plant.step = {:?} s", thrown.timing.duration(), thrown.timing.step())];
+    if let ReferenceKind::Hover { position, heading } = &thrown.reference {
+        lines.push(format!("reference: hover at {} m, heading {heading:?} rad", vector(position)));
+    }
+    lines.push(format!("initial.position = {} m", vector(&initial.position)));
+    lines.push(format!("initial.velocity = {} m/s", vector(&initial.velocity)));
+    lines.push(format!("initial attitude, w x y z = [{:?}, {:?}, {:?}, {:?}]", q.w, q.i, q.j, q.k));
+    lines.push(format!("initial.angular_velocity = {} rad/s", vector(&initial.angular_velocity)));
+    lines
+}
+
+/// How the air moves.
+fn air(thrown: &Scenario) -> Vec<String> {
+    let Some(wind) = &thrown.reality.wind else { return vec!["no wind".to_owned()] };
+    let mut lines = vec![format!("wind.steady = {} m/s", vector(&wind.steady))];
+    if let Some(drag) = &thrown.reality.drag {
+        lines.push(format!("drag.linear = {} N s/m", vector(&drag.linear)));
+    }
+    if let Some(gust) = &wind.gust {
+        lines.push(format!("wind.gust: a step of {} m/s at {:?} s", vector(&gust.velocity), gust.start));
+    }
+    if let Some(turbulence) = &wind.turbulence {
+        let (strength, seed) = (turbulence.wind_at_20_feet, turbulence.seed);
+        lines.push(format!("wind.turbulence: Dryden's, {strength:?} m/s at 20 feet, seed {seed}"));
+    }
+    lines
+}
+
+/// What the controller is told.
+fn senses(thrown: &Scenario) -> Vec<String> {
+    let reality = &thrown.reality;
+    if let Some(estimator) = &reality.estimator {
+        return vec![format!("estimator.seed = {}", estimator.seed)];
+    }
+    let Some(sensors) = &reality.sensors else { return vec!["no noise".to_owned()] };
+    let delay = sensors.delay_ticks as f64 * thrown.timing.period();
+    let velocity = match sensors.velocity {
+        VelocitySource::Exact { .. } => "exact",
+        VelocitySource::AlphaBeta { .. } => "alpha-beta",
+        VelocitySource::Observer { .. } => "observer",
+    };
+    vec![
+        format!("sensors.gyro_noise = {:?} rad/s, sensors.velocity = \"{velocity}\"", sensors.gyro_noise),
+        format!("sensors.position_noise = {:?} m", sensors.position_noise),
+        format!("sensors.attitude_noise_deg = {:?}", sensors.attitude_noise.to_degrees()),
+        format!("sensors.delay = {delay:?} s, sensors.seed = {}", sensors.seed),
+    ]
+}
+
+/// What the vehicle really is, where that was drawn or the file says it.
+fn truth(thrown: &Scenario) -> Vec<String> {
+    let Some(truth) = &thrown.reality.truth else { return vec![] };
+    vec![
+        format!("truth.mass = {:?} kg, truth.inertia = {} kg m^2", truth.mass, vector(&truth.inertia)),
+        format!("truth.centre_of_mass = {} m", vector(&truth.centre_of_mass)),
+        format!("truth.thrust_scale = {:?}, truth.rotor_scales = {:?}", truth.thrust_scale, truth.rotor_scales),
+    ]
+}
+
+fn vector(v: &Vector3<f64>) -> String {
+    format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::draw::circumstances;
+
+    #[test]
+    fn a_flight_s_circumstances_stand_above_its_file_which_stays_what_it_is() {
+        let text = "[campaign]\nmass = 0.1\ngust = 2.0\n";
+        let text = format!("{}\n{text}", include_str!("../../../vehicles/hummingbird.toml"));
+        let scenario = Scenario::parse(&text, "h").unwrap();
+        let thrown = circumstances(&scenario, &scenario.campaign.ranges, 3, 8);
+        let written = above(&text, &thrown, 3, 8);
+        assert!(written.starts_with("# Flight 8 of the campaign with seed 3. Drawn"), "{written}");
+        let reality = &thrown.reality;
+        for expected in [
+            "reference: hover at [0.0, 0.0, 0.0] m".to_owned(),
+            format!("initial.position = {} m", vector(&thrown.initial.position)),
+            format!("wind.steady = {} m/s", vector(&reality.wind.as_ref().unwrap().steady)),
+            "wind.gust: a step of ".to_owned(),
+            format!("sensors.position_noise = {:?} m", reality.sensors.as_ref().unwrap().position_noise),
+            format!("truth.mass = {:?} kg", reality.truth.as_ref().unwrap().mass),
+        ] {
+            assert!(written.contains(&format!("\n#   {expected}")), "{expected} is not in:\n{written}");
+        }
+        // A file with comments above it: whoever flies it flies the file.
+        assert_eq!(Scenario::parse(&written, "h").unwrap().initial, scenario.initial);
+    }
+
+    #[test]
+    fn what_is_not_there_is_said() {
+        let scenario = Scenario::paper().unwrap();
+        let written = above("", &scenario, 0, 1);
+        assert!(written.contains("#   no wind\n#   no noise\n") && !written.contains("truth"), "{written}");
+    }
+}
