@@ -1,7 +1,8 @@
 //! Flights side by side, one tick of all of them at a time: their bodies move together in the processor's vector registers.
 //!
 //! ```text
-//! each flight   state -> sensors -> law -> wrench, clipped      one after the other, on one reference for all
+//! each flight   state -> sensors                                one after the other
+//! each flight   law -> wrench, clipped                          likewise, on one reference for all
 //! all at once   plant steps until the next tick                 plant::rows
 //! ```
 //!
@@ -13,7 +14,7 @@
 use crate::flight::{Brief, Flight, FlightError};
 use crate::plant::body::Body;
 use crate::plant::rows::Rows;
-use controller_core::state::Wrench;
+use controller_core::state::{State, Wrench};
 use pulp::Arch;
 
 /// Flights under way, side by side.
@@ -37,6 +38,8 @@ struct Member {
 enum Stage {
     /// It waits for the next.
     Waiting,
+    /// The law is told this.
+    Told(State),
     /// The law has commanded this, of which the limits may have cut something.
     Commanded(Wrench, bool),
     /// The flight could not go on.
@@ -70,21 +73,22 @@ impl Batch {
         let Some(reference) = self.members.iter().find(going_on).map(|member| member.flight.reference()) else {
             return;
         };
+        // By themselves: a processor waits for numbers that it has written one by one, if it is to read two at once right away.
         for (number, Member { flight, stage }) in self.members.iter_mut().enumerate() {
-            if matches!(stage, Stage::Ended) {
-                continue;
+            if matches!(stage, Stage::Waiting) {
+                *stage = flight.measured().map_or_else(|error| Stage::ended(error, number, &mut observe), Stage::Told);
             }
-            match flight.set_off(&reference) {
+        }
+        for (number, Member { flight, stage }) in self.members.iter_mut().enumerate() {
+            let Stage::Told(told) = stage else { continue };
+            *stage = match flight.set_off(told, &reference) {
                 Ok((wrench, asked)) => {
                     let (thrust, torque, clipped) = self.body.clipped(&asked);
                     self.rows.command(number, thrust, &torque);
-                    *stage = Stage::Commanded(wrench, clipped);
+                    Stage::Commanded(wrench, clipped)
                 }
-                Err(error) => {
-                    *stage = Stage::Ended;
-                    observe(number, Err(error));
-                }
-            }
+                Err(error) => Stage::ended(error, number, &mut observe),
+            };
         }
         self.rows.advance(&self.body, self.steps_per_tick);
         for (number, Member { flight, stage }) in self.members.iter_mut().enumerate() {
@@ -94,6 +98,15 @@ impl Batch {
                 observe(number, brief.as_ref().map_err(|error| *error));
             }
         }
+    }
+}
+
+impl Stage {
+    /// The end of flight `number`, which `observe` hears of.
+    #[cold]
+    fn ended(error: FlightError, number: usize, observe: &mut impl FnMut(usize, Result<&Brief, FlightError>)) -> Self {
+        observe(number, Err(error));
+        Self::Ended
     }
 }
 

@@ -87,6 +87,9 @@ pub struct Brief {
 /// What a law answers, with what it says of it.
 type Answer<D> = Result<(Wrench, D), InputError>;
 
+/// The same in a flight.
+type Answered<D> = Result<(Wrench, D), FlightError>;
+
 /// A flight that could not go on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightError {
@@ -230,25 +233,30 @@ impl Flight {
     ) -> Result<(Option<State>, Brief, D), FlightError> {
         let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
         let reference = self.reference();
-        let (told, wrench, more) = self.ask(&reference, step)?;
+        let told = self.told()?;
+        let (wrench, more) = self.answer(&told.unwrap_or_else(|| state.measured()), &reference, step)?;
         let held = self.hold(&self.asked(&wrench));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         self.end(clipped || standing);
         Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts }, more))
     }
 
-    /// What the law is told where that is not the state, what it answers, and what `step` says of that.
+    /// What the law is told where that is not the state.
     #[inline(always)]
-    fn ask<D>(
+    fn told(&mut self) -> Result<Option<State>, FlightError> {
+        let state = *self.vehicle.state();
+        self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))
+    }
+
+    /// What the law answers, and what `step` says of that.
+    #[inline(always)]
+    fn answer<D>(
         &mut self,
+        told: &State,
         reference: &Reference,
         step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
-    ) -> Result<(Option<State>, Wrench, D), FlightError> {
-        let state = *self.vehicle.state();
-        let told = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
-        let answered = step(&mut self.controller, &told.unwrap_or_else(|| state.measured()), reference);
-        let (wrench, more) = answered.map_err(|error| self.error(Cause::Law(error)))?;
-        Ok((told, wrench, more))
+    ) -> Answered<D> {
+        step(&mut self.controller, told, reference).map_err(|error| self.error(Cause::Law(error)))
     }
 
     /// What the rotors are to be asked for.
@@ -333,10 +341,17 @@ impl Flight {
         self.vehicle.state()
     }
 
+    /// The beginning of a tick: what the law is told.
+    #[inline]
+    pub(crate) fn measured(&mut self) -> Result<State, FlightError> {
+        let told = self.told()?;
+        Ok(told.unwrap_or_else(|| self.vehicle.state().measured()))
+    }
+
     /// A tick up to the motion: the wrench that the law commands, and the one that the body is to be moved by.
     #[inline]
-    pub(crate) fn set_off(&mut self, reference: &Reference) -> Result<(Wrench, Wrench), FlightError> {
-        let (_, wrench, ()) = self.ask(reference, Controller::command)?;
+    pub(crate) fn set_off(&mut self, told: &State, reference: &Reference) -> Result<(Wrench, Wrench), FlightError> {
+        let (wrench, ()) = self.answer(told, reference, Controller::command)?;
         Ok((wrench, self.asked(&wrench)))
     }
 
