@@ -1,15 +1,16 @@
 //! How often `identify` is right: `cargo run --release -p host-sim --example identify_coverage -- [RUNS]`.
 //!
-//! For each of two vehicles, RUNS (100) vehicles drawn like it fly `scenarios/identify.toml`'s manoeuvre, each identified from its log and a
+//! For each of two vehicles, and for one with the air's forces at its rotors' hubs, RUNS (100) vehicles drawn like it fly `scenarios/identify.toml`'s manoeuvre, each identified from its log and a
 //! weighing. Printed: how many had every true value within its stated interval and how many were refused, with the quantity; and, for each
 //! quantity, the standard uncertainty, the error that really occurred, errors over uncertainties (root mean square, 1 if uncertainties are
-//! honest), and how many intervals missed. Fails if fewer than 95 of 100 were told, and rightly.
+//! honest), and how many intervals missed. Fails if of the first two fewer than 95 of 100 were told, and
+//! rightly.
 
 use host_sim::identify::flight_log::FlightLog;
 use host_sim::identify::identify;
 use host_sim::identify::quantities::Quantity;
 use host_sim::identify::telling;
-use host_sim::identify::trials::Trial;
+use host_sim::identify::trials::{Drag, Trial};
 use rayon::prelude::*;
 use scenario::{STUDY, Scenario};
 use std::error::Error;
@@ -17,8 +18,8 @@ use std::error::Error;
 /// A name, what is told, what is true.
 type Told = Vec<(&'static str, Quantity, f64)>;
 
-fn run(file: &str, seed: u64) -> Result<Told, String> {
-    let trial = Trial::flown(file, seed)?;
+fn run(file: &str, seed: u64, drag: Drag) -> Result<Told, String> {
+    let trial = Trial::flown(file, seed, drag)?;
     let scenario = Scenario::parse(file, "model").map_err(|error| error.to_string())?;
     let log = FlightLog::from_csv(&trial.log)?;
     let refused = |lines: Vec<String>| if lines.is_empty() { Ok(()) } else { Err(lines.join("; ")) };
@@ -31,8 +32,13 @@ fn run(file: &str, seed: u64) -> Result<Told, String> {
 fn main() -> Result<(), Box<dyn Error>> {
     let runs: u64 = std::env::args().nth(1).map_or(Ok(100), |runs| runs.parse())?;
     let mut right = true;
-    for (name, file) in [("hummingbird", include_str!("../../vehicles/hummingbird.toml")), ("study", STUDY)] {
-        let told: Vec<Result<Told, String>> = (1..=runs).into_par_iter().map(|seed| run(file, seed)).collect();
+    let hummingbird = include_str!("../../vehicles/hummingbird.toml");
+    for (name, file, drag) in [
+        ("hummingbird", hummingbird, Drag::Whole),
+        ("study", STUDY, Drag::Whole),
+        ("hummingbird, drag at the hubs", hummingbird, Drag::AtHubs),
+    ] {
+        let told: Vec<Result<Told, String>> = (1..=runs).into_par_iter().map(|seed| run(file, seed, drag)).collect();
         for (seed, refused) in
             told.iter().enumerate().filter_map(|(index, told)| Some((index + 1, told.as_ref().err()?)))
         {
@@ -56,7 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let name = told[0][index].0;
             println!("{name:18} {uncertainty:12.3e} {error:12.3e} {bias:12.3e} {ratio:12.2} {missed:7}");
         }
-        right &= 100 * all as u64 >= 95 * runs;
+        // What the air does at the hubs is known to be found in part only (docs/identify.md).
+        right &= drag == Drag::AtHubs || 100 * all as u64 >= 95 * runs;
     }
     if right { Ok(()) } else { Err("fewer than 95 of 100 runs are right".into()) }
 }

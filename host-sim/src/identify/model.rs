@@ -6,13 +6,15 @@
 //!
 //! ```text
 //! v_c' = (c/m) f R e3 - g e3 - R diag(D/m) R' V + b                   v_c = v + R (omega x r_c)
-//! omega_i' = (c/J_i) (tau - r_c x h)_i + ((J_j - J_k)/J_i) omega_j omega_k - beta_i omega_i + e_i
-//! h = (m/c) R' (v_c' + g e3)                                           all forces act at the body's origin
+//! omega_i' = (c/J_i) (tau + a - r_c x h)_i + ((J_j - J_k)/J_i) omega_j omega_k - beta_i omega_i + e_i
+//! h = (m/c) R' (v_c' + g e3)                                           all forces act at the body's origin, but for
+//! a = gamma_d (tau_xy . V_b) e3 - gamma_z V_bz tau_xy + lambda J_0x omega_z V_bxy           V_b = R' V: what the air does at the hubs
 //! ```
 //!
 //! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever share of it drag has: in h it
 //! is held while the unknowns move, and torques tell nothing of drag or thrust that forces do not. beta, and e about z alone, are what rotors in the air and unequal
-//! rotors may add: found, not reported. A steady torque about x or y is a centre of mass beside the origin: no flight near
+//! rotors may add: found, not reported. So is a: a rotor's drag goes with its own speed, so that rotors which turn unlike each other to tilt the vehicle are dragged unlike
+//! each other, and a rotor that moves into the wind as the vehicle yaws is lifted more than the one across from it (the equations of [`crate::reality::air`]). A steady torque about x or y is a centre of mass beside the origin: no flight near
 //! hover tells them apart. A steady vertical force is thrust: none is supposed.
 //!
 //! Both sides are integrated from tick to tick, never differentiated. What is left is the state told less the integral.
@@ -23,9 +25,9 @@ use controller_core::certificate::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
 
 /// How many unknowns there are.
-pub const UNKNOWNS: usize = 17;
+pub const UNKNOWNS: usize = 20;
 
-/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2.
+/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; gamma, s/m; lambda, 1/m.
 pub const STRENGTH: usize = 0;
 /// About x; y and z follow.
 pub const TURNING: usize = 1;
@@ -40,6 +42,8 @@ pub const DRAG: usize = 8;
 const WIND: usize = 11;
 const DAMPING: usize = 13;
 const YAWING: usize = 16;
+/// gamma_z, gamma_d, lambda.
+const HUBS: usize = 17;
 
 /// All unknowns.
 pub type Unknowns = SVector<f64, UNKNOWNS>;
@@ -66,11 +70,12 @@ pub struct Model<'a> {
 }
 
 /// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that a flight which can tell
-/// does not feel it.
+/// does not feel it; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are great.
 #[must_use]
 pub fn prior() -> (Unknowns, Unknowns) {
-    let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let wide = [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0];
+    let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let wide =
+        [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 0.05, 0.03, 0.1];
     (start.into(), wide.into())
 }
 
@@ -103,6 +108,7 @@ impl<'a> Model<'a> {
         let Numbers { strength, turning, drag, centre, wind } = self.numbers(unknowns);
         let damping = three(unknowns, DAMPING);
         let yawing = Vector3::new(0.0, 0.0, unknowns[YAWING]);
+        let hubs = Hubs { along: unknowns[HUBS], across: unknowns[HUBS + 1], lift: unknowns[HUBS + 2] };
         let of_one = turning.map(|turning| 1.0 / turning);
         let coupling = Vector3::new(of_one.y - of_one.z, of_one.z - of_one.x, of_one.x - of_one.y);
         let period = self.log.period;
@@ -118,11 +124,13 @@ impl<'a> Model<'a> {
                 left[3 + axis].push(turned[axis]);
             }
             let up = (now.attitude * Vector3::z() + next.attitude * Vector3::z()) * 0.5;
-            let dragged = now.attitude * dragged(pair, &drag, &wind);
+            let airspeed = airspeed(pair, &wind);
+            let dragged = now.attitude * -drag.component_mul(&airspeed);
             velocity += up * (strength * impulse.thrust) + (dragged - Vector3::z() * self.gravity) * period;
             let felt = felt.get(sample).copied().unwrap_or_else(|| Vector3::z() * (self.gravity * period));
-            let torque = impulse.torque - centre.cross(&(felt / strength));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
+            let at_hubs = hubs.of(impulse, &airspeed, omega.z * self.inertia.x * period);
+            let torque = impulse.torque + at_hubs - centre.cross(&(felt / strength));
             let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
             rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));
             rates += (yawing - damping.component_mul(&omega)) * period;
@@ -137,7 +145,8 @@ impl<'a> Model<'a> {
         let feel = |(sample, (pair, impulse)): (usize, (&[Moment], &Impulse))| {
             let gust = Vector3::from_fn(|axis, _| gusts[axis].get(sample).copied().unwrap_or(0.0));
             let gust = pair[0].attitude.inverse_transform_vector(&gust);
-            Vector3::z() * (strength * impulse.thrust) + (dragged(pair, &drag, &wind) + gust) * self.log.period
+            let dragged = -drag.component_mul(&airspeed(pair, &wind));
+            Vector3::z() * (strength * impulse.thrust) + (dragged + gust) * self.log.period
         };
         self.steps(impulses).enumerate().map(feel).collect()
     }
@@ -192,9 +201,28 @@ fn three(unknowns: &Unknowns, at: usize) -> Vector3<f64> {
     Vector3::new(unknowns[at], unknowns[at + 1], unknowns[at + 2])
 }
 
-/// - D V/m between two moments, m/s^2, body.
-fn dragged(pair: &[Moment], drag: &Vector3<f64>, wind: &Vector3<f64>) -> Vector3<f64> {
+/// R' V between two moments, m/s, body.
+fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
     let [now, next] = pair else { return Vector3::zeros() };
-    let airspeed = (now.velocity + next.velocity) * 0.5 - wind;
-    -drag.component_mul(&now.attitude.inverse_transform_vector(&airspeed))
+    now.attitude.inverse_transform_vector(&((now.velocity + next.velocity) * 0.5 - wind))
+}
+
+/// What the air does at the rotors' hubs.
+struct Hubs {
+    /// gamma_z, s/m.
+    along: f64,
+    /// gamma_d, s/m.
+    across: f64,
+    /// lambda, 1/m.
+    lift: f64,
+}
+
+impl Hubs {
+    /// Its impulse about the body's axes, N m s, at this airspeed, m/s; `turning` is J_0x omega_z over the sample.
+    fn of(&self, impulse: &Impulse, airspeed: &Vector3<f64>, turning: f64) -> Vector3<f64> {
+        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0);
+        let lifted = Vector3::new(airspeed.x, airspeed.y, 0.0) * (self.lift * turning);
+        let yawed = Vector3::z() * (self.across * tilting.dot(airspeed));
+        lifted + yawed - tilting * (self.along * airspeed.z)
+    }
 }

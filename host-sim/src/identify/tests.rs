@@ -5,7 +5,7 @@ use super::impulses::Commands;
 use super::noise::Noise;
 use super::output::{Values, rewritten};
 use super::quantities::COVERAGE;
-use super::trials::{Trial, fly};
+use super::trials::{Drag, MANOEUVRE, Trial, fly};
 use super::{bench, identify, telling, ulog};
 use crate::actuators::rotors::SpinningRotors;
 use controller_core::flight::Mode;
@@ -42,7 +42,7 @@ fn four_vehicles_are_found_within_what_is_stated() {
     // Vehicles that are told rightly. How many of a hundred are not, the example `identify_coverage` counts.
     let runs: Vec<(&str, u64)> = [(HUMMINGBIRD, 1), (HUMMINGBIRD, 3), (STUDY, 1), (STUDY, 3)].into();
     runs.into_par_iter().for_each(|(file, seed)| {
-        let trial = Trial::flown(file, seed).unwrap();
+        let trial = Trial::flown(file, seed, Drag::Whole).unwrap();
         let log = FlightLog::from_csv(&trial.log).unwrap();
         assert_eq!((log.source, telling::unmoved(&log)), (Source::Estimator, vec![]));
         let told = identify(&log, &parse(file), &trial.bench).unwrap();
@@ -54,6 +54,18 @@ fn four_vehicles_are_found_within_what_is_stated() {
         let j = &told.inertia[0];
         assert!(COVERAGE * j.uncertainty < 0.05 * j.value, "{j:?}");
     });
+}
+
+#[test]
+fn what_the_air_does_at_the_hubs_is_not_taken_for_inertia() {
+    // RotorPy's drag. Without a model of it the three are 2.7, 3.6 and -4.2 % off.
+    let log = FlightLog::from_csv(&fly(MANOEUVRE).unwrap()).unwrap();
+    let scenario = parse(MANOEUVRE);
+    let told = identify(&log, &scenario, &bench::Bench::default()).unwrap();
+    for (of_one, truth) in told.inertia_over_scale.iter().zip(&scenario.configuration.vehicle().inertia) {
+        let truth = f64::from(*truth);
+        assert!(of_one.holds(truth) && (of_one.value / truth - 1.0).abs() < 0.008, "{of_one:?}, truly {truth}");
+    }
 }
 
 #[test]

@@ -21,8 +21,21 @@ pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
 /// increment of the IMU ended 4 ms ago, not 5 ms.
 pub const RATES_YOUNGER: f64 = 0.001;
 
+/// What RotorPy says of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
+const AT_HUBS: [(&str, f64); 3] =
+    [("rotor_across", 1.19e-4), ("rotor_along", 2.32e-4), ("translational_lift", 3.39e-3)];
+
 /// What a trial's scale is good for: a standard uncertainty of so much of the mass.
 const SCALE: f64 = 1e-3;
+
+/// How the air pulls at a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drag {
+    /// As a whole, and linearly: what is found is what is.
+    Whole,
+    /// At the frame and at each rotor's hub, as RotorPy has it for the Hummingbird, each number drawn by 50 %. Nothing that is reported is its drag.
+    AtHubs,
+}
 
 /// One vehicle as it really is, its file and its log.
 #[derive(Debug, Clone)]
@@ -34,6 +47,7 @@ pub struct Trial {
     /// Its mass on a scale.
     pub bench: Bench,
     truths: Truths,
+    drag: Drag,
 }
 
 /// Numbers by the names of [`Trial::truths`].
@@ -49,11 +63,11 @@ struct Truths {
 }
 
 impl Trial {
-    /// Number `seed` of the vehicles like `file`'s.
+    /// Number `seed` of the vehicles like `file`'s, in an air that pulls at it like `drag`.
     ///
     /// # Errors
     /// If `file` is no scenario with rotors, or the flight fails.
-    pub fn flown(file: &str, seed: u64) -> Result<Self, String> {
+    pub fn flown(file: &str, seed: u64, drag: Drag) -> Result<Self, String> {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut document: DocumentMut = file.parse().map_err(|error| format!("{error}"))?;
         let manoeuvre: DocumentMut = MANOEUVRE.parse().map_err(|error| format!("{error}"))?;
@@ -67,7 +81,15 @@ impl Trial {
             document[section] = toml_edit::Item::Table(Table::new());
         }
         let mut within = |reach: f64| random.random_range(-reach..reach);
-        document["drag"]["linear"] = list(&truths.drag);
+        match drag {
+            Drag::Whole => document["drag"]["linear"] = list(&truths.drag),
+            Drag::AtHubs => {
+                for (key, usual) in AT_HUBS {
+                    document["drag"][key] = value(usual * (1.0 + within(0.5)));
+                }
+                document["drag"]["frame"] = list(&[5e-3, 5e-3, 1e-2]);
+            }
+        }
         document["wind"]["steady"] = list(&[within(3.0), within(3.0), 0.0]);
         let mut gust = Table::new();
         gust.insert("kind", value("one-cosine"));
@@ -87,14 +109,14 @@ impl Trial {
         let normal: f64 = StandardNormal.sample(&mut random);
         let weighed = truths.mass * (1.0 + SCALE * normal);
         let bench = Bench { mass: Some(Measured { value: weighed, uncertainty: SCALE * weighed }), ..Bench::default() };
-        Ok(Self { text, log, bench, truths })
+        Ok(Self { text, log, bench, truths, drag })
     }
 
     /// The name of each quantity, what is told of it, and what it is.
     #[must_use]
     pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, super::quantities::Quantity, f64)> {
         let t = &self.truths;
-        vec![
+        let mut truths = vec![
             ("mass", told.mass, t.mass),
             ("thrust scale", told.thrust_scale, t.thrust_scale),
             ("inertia x", told.inertia[0], t.inertia[0]),
@@ -108,7 +130,11 @@ impl Trial {
             ("drag x", told.drag[0], t.drag[0]),
             ("drag y", told.drag[1], t.drag[1]),
             ("drag z", told.drag[2], t.drag[2]),
-        ]
+        ];
+        if self.drag == Drag::AtHubs {
+            truths.truncate(truths.len() - told.drag.len());
+        }
+        truths
     }
 }
 
