@@ -41,7 +41,7 @@ const SETTLED: f64 = 0.1;
 
 /// Which uncertainties come out too small even so, and by what factor: errors over uncertainties of 300 trials of each of two vehicles
 /// (the example `identify_coverage`), root mean square.
-const UNDERSTATED: [(usize, f64); 3] = [(WHOLE_DELAY, 1.4), (SQUARED_LAG, 1.2), (DRAG, 1.3)];
+pub const UNDERSTATED: [(usize, f64); 3] = [(WHOLE_DELAY, 1.4), (SQUARED_LAG, 1.2), (DRAG, 1.3)];
 
 /// Whitened series, a channel each.
 type White = Vec<Vec<f64>>;
