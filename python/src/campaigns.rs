@@ -7,12 +7,11 @@ use host_sim::campaign::CampaignError;
 use host_sim::campaign::fly::{self, Orders};
 use host_sim::campaign::step;
 use host_sim::campaign::summary;
-use host_sim::flier::{LawChoice, OURS};
-use host_sim::rivals::gains::Set;
-use host_sim::rivals::kind::Kind;
+use host_sim::flier::OURS;
+use host_sim::rivals::gains as of_rivals;
 use pyo3::prelude::*;
 use scenario::campaign::MOST_FLIGHTS;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What a campaign showed. As text: what `host-sim campaign` prints.
 #[pyclass(frozen, module = "saturated_hybrid")]
@@ -112,27 +111,12 @@ pub fn campaign(
         None => step::longest(&scenario.read),
         Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
     };
-    let law = chosen(law, &stepped, gains.as_deref())?;
+    let law = of_rivals::chosen(law, &stepped, gains.as_deref());
+    let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
     let flown =
         interruptible(py, |interrupt| fly::campaign(&stepped, &scenario.text, &law, &orders, &directory, interrupt))?;
     Ok(Campaign { summary: flown.map_err(raised)? })
-}
-
-/// The law of this name for the vehicle of `scenario`.
-fn chosen(name: &str, scenario: &scenario::Scenario, gains: Option<&Path>) -> PyResult<LawChoice> {
-    let Some(kind) = Kind::named(name) else {
-        return match gains {
-            _ if name != OURS => {
-                let names: Vec<&str> = std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)).collect();
-                Err(refused_field("law", format!("must be one of {}, found {name:?}", names.join(", "))))
-            }
-            Some(_) => Err(refused_field("gains", "our law's gains are the scenario's: choose another law")),
-            None => Ok(LawChoice::Ours),
-        };
-    };
-    let set = Set::read(scenario, gains).map_err(|error| refused_field("gains", error))?;
-    set.law(kind).ok_or_else(|| refused_field("law", format!("there are no gains of {name}")))
 }
 
 /// Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split.

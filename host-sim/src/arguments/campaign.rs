@@ -5,7 +5,7 @@ use clap::builder::PossibleValuesParser;
 use host_sim::campaign::fly::Orders;
 use host_sim::campaign::step;
 use host_sim::flier::{LawChoice, OURS};
-use host_sim::rivals::gains::Set;
+use host_sim::rivals::gains;
 use host_sim::rivals::kind::Kind;
 use scenario::Scenario;
 use scenario::campaign::MOST_FLIGHTS;
@@ -130,14 +130,8 @@ impl CampaignArguments {
     /// # Errors
     /// Names the file of gains that is refused, and why.
     pub fn law(&self, scenario: &Scenario) -> Result<LawChoice, String> {
-        let Some(kind) = Kind::named(&self.law) else {
-            return match self.gains {
-                Some(_) => Err("--gains: our law's gains are the scenario's: choose another law with --law".to_owned()),
-                None => Ok(LawChoice::Ours),
-            };
-        };
-        let set = Set::read(scenario, self.gains.as_deref()).map_err(|error| error.to_string())?;
-        set.law(kind).ok_or_else(|| format!("--law: there are no gains of {}", kind.name()))
+        let chosen = gains::chosen(&self.law, scenario, self.gains.as_deref());
+        chosen.map_err(|(argument, problem)| format!("--{argument}: {problem}"))
     }
 
     /// Where the results go, of a campaign or a flight of this name.

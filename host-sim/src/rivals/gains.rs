@@ -19,7 +19,7 @@
 
 use super::kind::Kind;
 use super::pilot::model;
-use crate::flier::LawChoice;
+use crate::flier::{LawChoice, OURS};
 use scenario::Scenario;
 use std::fmt::Write;
 use std::fs;
@@ -131,6 +131,23 @@ impl Set {
         }
         text
     }
+}
+
+/// The law of this name on the vehicle of `scenario`, a rival's with gains from `file` or those that are built in.
+///
+/// # Errors
+/// The argument that is refused, `law` or `gains`, and why.
+pub fn chosen(name: &str, scenario: &Scenario, file: Option<&Path>) -> Result<LawChoice, (&'static str, String)> {
+    let Some(kind) = Kind::named(name) else {
+        let names: Vec<&str> = std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)).collect();
+        return match file {
+            _ if name != OURS => Err(("law", format!("must be one of {}, found {name:?}", names.join(", ")))),
+            Some(_) => Err(("gains", "our law's gains are the scenario's: choose another law".to_owned())),
+            None => Ok(LawChoice::Ours),
+        };
+    };
+    let set = Set::read(scenario, file).map_err(|error| ("gains", error.to_string()))?;
+    set.law(kind).ok_or_else(|| ("law", format!("there are no gains of {name}")))
 }
 
 /// What rivals know of the vehicle of `scenario`, by the keys of a table, in single precision.
