@@ -86,18 +86,30 @@ fn every_link_between_pages_leads_to_a_file() {
     assert!(followed > 20, "{followed}: the pages have lost their links");
 }
 
+/// The modes for which `InTheAir` stands.
+const IN_THE_AIR: [&str; 5] = ["TakingOff", "Flying", "Holding", "Landing", "Descending"];
+
 #[test]
-fn the_diagram_of_the_flight_modes_has_the_arrows_of_the_rules() {
+fn the_diagrams_of_the_flight_modes_have_the_arrows_of_the_rules() {
     let page = read("docs/firmware.md");
-    let (_, diagram) = page.split_once("```mermaid\n").unwrap();
-    let (diagram, _) = diagram.split_once("```").unwrap();
-    let arrows =
-        diagram.lines().filter_map(|line| line.split_once(':')).filter_map(|(arrow, _)| arrow.split_once("-->"));
-    let drawn: BTreeSet<(String, String)> =
-        arrows.map(|(from, to)| (from.trim().to_owned(), to.trim().to_owned())).collect();
+    let diagrams = page.split("```mermaid\n").skip(1).filter_map(|rest| rest.split_once("```")).map(|(drawn, _)| drawn);
+    let arrows = diagrams.flat_map(str::lines).filter_map(|line| line.split_once(':'));
+    let arrows = arrows.filter_map(|(arrow, _)| arrow.split_once("-->")).map(|(from, to)| (from.trim(), to.trim()));
+    let (entering, arrows): (Vec<_>, Vec<_>) = arrows.partition(|&(_, to)| to == "InTheAir");
+    let leaving = |from| if from == "InTheAir" { IN_THE_AIR.to_vec() } else { vec![from] };
+    let drawn: BTreeSet<(String, String)> = arrows
+        .into_iter()
+        .flat_map(|(from, to)| leaving(from).into_iter().map(move |from| (from.to_owned(), to.to_owned())))
+        .collect();
     let rules = TABLE.iter().filter(|row| row.from != row.to);
     let ruled = rules.map(|row| (format!("{:?}", row.from), format!("{:?}", row.to))).collect();
     assert_eq!(drawn, ruled);
+
+    // Where the air is entered from: drawn once for all of it, and once for each mode.
+    let entered: BTreeSet<&str> = entering.into_iter().map(|(from, _)| from).collect();
+    let outside =
+        ruled.iter().filter(|(from, to)| IN_THE_AIR.contains(&to.as_str()) && !IN_THE_AIR.contains(&from.as_str()));
+    assert_eq!(entered, outside.map(|(from, _)| from.as_str()).collect());
 }
 
 #[test]
