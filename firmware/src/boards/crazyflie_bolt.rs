@@ -6,7 +6,7 @@
 //! restarts.
 
 use super::stm32::board::Board;
-use super::stm32::clock::SystemClock;
+use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088};
@@ -23,6 +23,7 @@ use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3, USB_OTG_FS,
@@ -72,6 +73,9 @@ pub type BoardBattery = NoBattery;
 /// There is no slot for a memory card.
 pub type BoardCard = NoCard;
 
+/// The watchdog's registers, for whoever must have its patience.
+pub const WATCHDOG: Iwdg = pac::IWDG;
+
 /// What it is called.
 pub const NAME: &str = "Crazyflie Bolt 1.1";
 
@@ -91,6 +95,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let restart = restart::cause();
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
+    clock::halt_with_the_core();
     pac::FLASH.acr().modify(|w| {
         w.set_prften(true);
         w.set_icen(true);
@@ -142,7 +147,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         simulator_transmitter,
         radio: None,
         card: None,
-        storage: ParameterFlash::new(p.FLASH, pac::IWDG),
+        storage: ParameterFlash::new(p.FLASH, WATCHDOG),
         has_crystal,
         restart,
     }

@@ -7,8 +7,8 @@
 //! would stand between the core and the DMA buffers.
 
 use super::stm32::board::Board;
-use super::stm32::card::CardSlot;
-use super::stm32::clock::SystemClock;
+use super::stm32::card::{self, CardSlot};
+use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
@@ -27,6 +27,7 @@ use crate::redundant::Redundant;
 use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, SDMMC1, TIM1, USART1,
@@ -86,6 +87,9 @@ pub type BoardBattery = DividedBattery;
 /// The slot for a memory card.
 pub type BoardCard = CardSlot;
 
+/// The watchdog's registers, for whoever must have its patience.
+pub const WATCHDOG: Iwdg = pac::IWDG1;
+
 /// What it is called.
 pub const NAME: &str = "MicoAir H743 V2";
 
@@ -103,8 +107,10 @@ pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::SAI3;
 #[must_use]
 pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
     let restart = restart::cause();
+    spare_revision_y();
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
+    clock::halt_with_the_core();
     if let Some(mut core) = cortex_m::Peripherals::take() {
         core.SCB.enable_icache();
     }
@@ -143,7 +149,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         .then(|| Driver::new_fs(p.USB_OTG_FS, Interrupts, p.PA12, p.PA11, usb::packets(), usb::config()));
 
     let (clock, command) = (p.PC12, p.PD2);
-    let card = sdmmc::Config::default();
+    let mut card = sdmmc::Config::default();
+    card.data_transfer_timeout = card::TIMEOUT;
     let card = Sdmmc::new_4bit(p.SDMMC1, Interrupts, clock, command, p.PC8, p.PC9, p.PC10, p.PC11, card);
 
     Board {
@@ -159,9 +166,23 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         simulator_transmitter,
         radio: Some(radio),
         card: Some(CardSlot::new(card)),
-        storage: ParameterFlash::new(p.FLASH, pac::IWDG1),
+        storage: ParameterFlash::new(p.FLASH, WATCHDOG),
         has_crystal,
         restart,
+    }
+}
+
+/// Revision Y may read wrong data from the AXI SRAM, where everything but the stack lies (ST's errata sheet ES0392, 2.2.9). The remedy
+/// given there: no more than one read of it at a time.
+fn spare_revision_y() {
+    /// AXI_TARG7_FN_MOD, and its bit READ_ISS_OVERRIDE.
+    const AXI_SRAM: (*mut u32, u32) = (0x5100_8108 as *mut u32, 1);
+    /// The first revision without that fault has 0x2001.
+    const MENDED: u16 = 0x2000;
+    if pac::DBGMCU.idc().read().rev_id() < MENDED {
+        let (register, limit) = AXI_SRAM;
+        // SAFETY: a register of the bus matrix, which nothing else here uses.
+        unsafe { register.write_volatile(limit) };
     }
 }
 

@@ -17,8 +17,11 @@ use static_cell::{ConstStaticCell, StaticCell};
 /// The bus's clock: what every card bears without being asked.
 const FREQUENCY: Hertz = Hertz(25_000_000);
 
-/// The longest a transfer may take: a card may take half a second to write.
+/// The longest a transfer may take.
 const TRANSFER: Duration = Duration::from_millis(1_000);
+
+/// The longest the card may be busy in one, cycles of the bus: 0.8 s. The standard lets large cards take half a second to write.
+pub const TIMEOUT: u32 = 20_000_000;
 
 /// The slot.
 pub struct CardSlot {

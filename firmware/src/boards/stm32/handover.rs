@@ -1,19 +1,21 @@
 //! The first instructions: whatever ran before, here it begins as after a reset.
 //!
 //! A bootloader may hand over from a task of its own operating system (ArduPilot's does): on that task's stack, with its interrupts
-//! armed, its caches and memory protection on. A thread that stays on that stack overwrites memory that is somebody else's
-//! now; a data cache stands between the core and the DMA buffers; an interrupt that nobody expects is a fault.
+//! armed, its caches and memory protection on, its clocks running. A thread that stays on that stack overwrites memory that is
+//! somebody else's now; a data cache stands between the core and the DMA buffers; an interrupt that nobody expects is a fault; a PLL that
+//! runs takes no new settings.
 
 use cortex_m::Peripherals;
 
-// Before memory is set up, by the runtime's own hook, without using a stack: the main stack from here on, no interrupt
-// masked by its priority.
+// Before memory is set up, by the runtime's own hook, without using a stack: no interrupt until `begin_anew` has ended those that are
+// armed, the main stack from here on, no interrupt masked by its priority.
 core::arch::global_asm!(
     ".section .text.__pre_init, \"ax\"",
     ".global __pre_init",
     ".type __pre_init, %function",
     ".thumb_func",
     "__pre_init:",
+    "cpsid i",
     "mrs r0, CONTROL",
     "bic r0, r0, #2",
     "msr CONTROL, r0",
@@ -41,7 +43,10 @@ pub fn begin_anew() {
         core.MPU.ctrl.write(0);
     }
     #[cfg(feature = "micoair-h743")]
-    end_caching(core);
+    {
+        end_caching(core);
+        stop_plls();
+    }
     quiet_peripherals();
     // SAFETY: as above.
     unsafe { cortex_m::interrupt::enable() };
@@ -52,6 +57,24 @@ pub fn begin_anew() {
 fn end_caching(mut core: Peripherals) {
     if cortex_m::peripheral::SCB::dcache_enabled() {
         core.SCB.disable_dcache(&mut core.CPUID);
+    }
+}
+
+/// Looks at a clock that is to change. It changes within microseconds.
+#[cfg(feature = "micoair-h743")]
+const POLLS: usize = 100_000;
+
+/// Back to the chip's own oscillator. Embassy sets the PLLs as if none ran.
+#[cfg(feature = "micoair-h743")]
+fn stop_plls() {
+    use embassy_stm32::pac::{RCC, rcc::vals::Sw};
+    RCC.cr().modify(|w| w.set_hsion(true));
+    let _ = (0..POLLS).find(|_| RCC.cr().read().hsirdy());
+    RCC.cfgr().modify(|w| w.set_sw(Sw::HSI));
+    let _ = (0..POLLS).find(|_| RCC.cfgr().read().sws() == Sw::HSI);
+    for pll in 0..3 {
+        RCC.cr().modify(|w| w.set_pllon(pll, false));
+        let _ = (0..POLLS).find(|_| !RCC.cr().read().pllrdy(pll));
     }
 }
 

@@ -2,16 +2,15 @@
 //!
 //! Nothing outside the two sectors can be reached. Work on the flash blocks its task. On the F405 it also stalls the core, up
 //! to two seconds for an erase, because code runs from the same flash: the watchdog is given patience meanwhile, no control
-//! tick happens, and the clock, which counts overflows, falls behind. So nothing may be saved unless disarmed. The H743
+//! tick happens, and the [clock](super::clock) stands still. So nothing may be saved unless disarmed. The H743
 //! erases its second bank while code runs from the first.
 //!
 //! The registers are driven here and not by Embassy: its driver waits for the flash without end, and on the H743 leaves the
 //! flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part says what
 //! is its own: addresses, registers, and how a record that may be torn is read.
 
-use super::clock::SystemClock;
 use super::watchdog::Patience;
-use crate::hardware::{Clock, Fault, Flash, Record};
+use crate::hardware::{Fault, Flash, Record};
 use core::ptr;
 use embassy_stm32::Peri;
 use embassy_stm32::pac::iwdg::Iwdg;
@@ -26,9 +25,6 @@ mod chip;
 
 /// Bytes of a sector.
 const SECTOR: usize = 128 * 1024;
-
-/// The longest the flash may be at work, us: an erase takes up to four seconds.
-const DONE_WITHIN: u64 = 10_000_000;
 
 /// What opens the control register.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
@@ -53,15 +49,10 @@ fn words(place: usize) -> Result<*mut u32, Fault> {
     if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
-/// Waits for the flash, and asks whether it did as it was told.
+/// Waits for the flash, and asks whether it did as it was told. Counts instead of asking the clock, which may stand still.
 fn done() -> Result<(), Fault> {
-    let end = SystemClock.now() + DONE_WITHIN;
-    while chip::is_busy() {
-        if SystemClock.now() > end {
-            return Err(Fault);
-        }
-    }
-    if chip::has_failed() { Err(Fault) } else { Ok(()) }
+    let is_done = (0..chip::POLLS).any(|_| !chip::is_busy());
+    if is_done && !chip::has_failed() { Ok(()) } else { Err(Fault) }
 }
 
 /// Does `work` on the opened flash, and closes it again.
@@ -106,6 +97,8 @@ impl Flash for ParameterFlash {
     fn erase(&mut self, sector: usize) -> Result<(), Fault> {
         words(sector * Self::RECORDS)?;
         let _patience = Patience::new(self.watchdog);
+        #[cfg(feature = "crazyflie-bolt")]
+        let _halted = super::clock::halt();
         opened(|| {
             chip::erase(sector as u8);
             done()

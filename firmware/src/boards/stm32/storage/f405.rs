@@ -8,6 +8,10 @@ use embassy_stm32::pac::flash::vals::Psize;
 pub const START: usize = 0x080C_0000;
 const FIRST_SECTOR: u8 = 10;
 
+/// Looks at a flash at work, at most: each takes 6 cycles or more of a core at 168 MHz, so seven seconds together at the least. An
+/// erase takes up to two, and stalls most of them.
+pub const POLLS: u32 = 200_000_000;
+
 /// The flags of the status register that say what went wrong; writing them clears them.
 const FAILURES: u32 = 0b1111_0010;
 

@@ -15,6 +15,10 @@ use embassy_stm32::pac::flash::regs::Ccr;
 pub const START: usize = 0x081C_0000;
 const FIRST_SECTOR: u8 = 6;
 
+/// Looks at a flash at work, at most: each takes 16 cycles or more of a core at 400 MHz, for its barrier and two reads over a bus at half of
+/// that, so eight seconds together at the least. An erase takes up to four.
+pub const POLLS: u32 = 200_000_000;
+
 /// The flags of the status register that say what went wrong, and the same bits of the register that clears them.
 const FAILURES: u32 = 0x17EE_0000;
 
