@@ -64,6 +64,24 @@ pub fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
+/// The greater of two numbers; none if one of them is none. For proofs, where what is no number must not pass for the lesser one.
+#[must_use]
+pub fn greater_f64(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
+/// The lesser of two numbers; none if one of them is none.
+#[must_use]
+pub fn lesser_f64(a: f64, b: f64) -> f64 {
+    if a <= b || a.is_nan() { a } else { b }
+}
+
+/// The square root of a number that only rounding can have taken below zero.
+#[must_use]
+pub fn sqrt_of_rounded(x: f64) -> f64 {
+    sqrt_f64(greater_f64(x, 0.0))
+}
+
 /// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those in one
 /// instruction each, where the conversion of 64 bits is a call.
 #[must_use]

@@ -111,7 +111,7 @@ fn with_drag(bounds: &ReferenceBounds, drag: f32) -> ReferenceBounds {
 fn equilibrium(attitude: &AttitudeParameters) -> [Inequality; 2] {
     let qbar = switching_scalar(attitude.delta);
     let AttitudeParameters { w, eta, m_t, eta_t, .. } = attitude;
-    let pull = f64::from(*w) * f64::from(*eta_t) * math::sqrt_f64((1.0 - qbar * qbar).max(0.0));
+    let pull = f64::from(*w) * f64::from(*eta_t) * math::sqrt_of_rounded(1.0 - qbar * qbar);
     [
         Inequality::new("E switch qbar < eta", "1", qbar, f64::from(*eta)),
         Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", 2.0 * qbar * f64::from(*m_t), pull),

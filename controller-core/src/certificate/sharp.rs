@@ -77,8 +77,8 @@ impl DesiredRates {
     /// These bounds raised to hold for another cell too.
     fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
         Self {
-            angular_velocity: self.angular_velocity.max(velocity),
-            angular_acceleration: self.angular_acceleration.max(acceleration),
+            angular_velocity: math::greater_f64(self.angular_velocity, velocity),
+            angular_acceleration: math::greater_f64(self.angular_acceleration, acceleration),
             feedforward_torque: self.feedforward_torque.sup(&feedforward_torque(inertia, velocity, acceleration)),
         }
     }
@@ -103,8 +103,8 @@ impl Parts {
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { tilting: 0.0, yawing: 0.0 };
         all.iter().fold(nothing, |worst, parts| Self {
-            tilting: worst.tilting.max(parts.tilting),
-            yawing: worst.yawing.max(parts.yawing),
+            tilting: math::greater_f64(worst.tilting, parts.tilting),
+            yawing: math::greater_f64(worst.yawing, parts.yawing),
         })
     }
 
@@ -140,10 +140,10 @@ impl Shares {
     fn worst(all: &[Self]) -> Self {
         let nothing = Self { stretch: 0.0, length: 0.0, product: 0.0, mixed: 0.0 };
         all.iter().fold(nothing, |worst, shares| Self {
-            stretch: worst.stretch.max(shares.stretch),
-            length: worst.length.max(shares.length),
-            product: worst.product.max(shares.product),
-            mixed: worst.mixed.max(shares.mixed),
+            stretch: math::greater_f64(worst.stretch, shares.stretch),
+            length: math::greater_f64(worst.length, shares.length),
+            product: math::greater_f64(worst.product, shares.product),
+            mixed: math::greater_f64(worst.mixed, shares.mixed),
         })
     }
 }
@@ -185,7 +185,7 @@ impl Tilt {
         let flattened = self.sin_least * horizontal * direction.cos_least;
         let square = horizontal * horizontal + climbing * climbing - flattened * flattened
             + 2.0 * self.cos_greatest * horizontal * direction.cos_greatest * climbing;
-        let length = math::sqrt_f64(square.max(0.0)) / self.magnitude;
+        let length = math::sqrt_of_rounded(square) / self.magnitude;
         Tangential { length, mixed: 0.5 * (length + horizontal * direction.sin_greatest / self.magnitude) }
     }
 
@@ -210,7 +210,7 @@ impl Tilt {
             stretch: math::sqrt_f64(total - least * least) / self.magnitude,
             length,
             product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
-            mixed: 0.5 * (length + most.min(reach.horizontal_jerk) / self.magnitude),
+            mixed: 0.5 * (length + math::lesser_f64(most, reach.horizontal_jerk) / self.magnitude),
         }
     }
 
@@ -245,9 +245,10 @@ fn acceleration_square(
         }
         for shares in shares {
             let quadratic = tilt.quadratic_part(heading, shares);
-            if worst_linear.square_of_sum(&quadratic) > greatest {
+            let is_covered = worst_linear.square_of_sum(&quadratic) <= greatest;
+            if !is_covered {
                 for linear in linear {
-                    greatest = greatest.max(linear.square_of_sum(&quadratic));
+                    greatest = math::greater_f64(greatest, linear.square_of_sum(&quadratic));
                 }
             }
         }
@@ -257,8 +258,8 @@ fn acceleration_square(
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
 fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
-    let x = (0.5 * total).max(least).min(most);
-    math::sqrt_f64(x * (total - x).max(0.0))
+    let x = math::lesser_f64(math::greater_f64(0.5 * total, least), most);
+    math::sqrt_of_rounded(x * (total - x))
 }
 
 /// One cell of a horizontal vector's angle to the slope.
@@ -278,7 +279,7 @@ impl Direction {
             let cos_greatest = cos + OUTWARDS;
             (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
             // A cosine below zero must not come out: it is squared.
-            Self { cos_greatest, cos_least: (cos - OUTWARDS).max(0.0), sin_greatest: sin + OUTWARDS }
+            Self { cos_greatest, cos_least: math::greater_f64(cos - OUTWARDS, 0.0), sin_greatest: sin + OUTWARDS }
         })
     }
 }
@@ -296,7 +297,7 @@ impl HeadingCell {
     fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
-        let fastest = rate_bound.min(math::sqrt_f64(second_bound));
+        let fastest = math::lesser_f64(rate_bound, math::sqrt_f64(second_bound));
         core::array::from_fn(|place| Self::new(HEADING_CELLS - 1 - place, fastest, second_bound))
     }
 
@@ -305,7 +306,7 @@ impl HeadingCell {
     fn new(cell: usize, fastest: f64, second_bound: f64) -> Self {
         let [near, far] = [cell, cell + 1].map(|end| fastest * end as f64 / HEADING_CELLS as f64);
         let room = second_bound * second_bound - near * near * near * near;
-        Self { rate: far, acceleration: math::sqrt_f64(room.max(0.0)) }
+        Self { rate: far, acceleration: math::sqrt_of_rounded(room) }
     }
 }
 
@@ -322,14 +323,15 @@ pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
         let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
-        let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(0.0, f64::max).min(reach.jerk);
+        let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(0.0, math::greater_f64);
+        let longest = math::lesser_f64(longest, reach.jerk);
         let linear = Parts::worst(&directions.map(|direction| tilt.linear_part(reach, &direction)));
         for heading in &headings {
             let velocities = tangential.iter().map(|tangential| tilt.velocity(tangential, heading.rate).yawing);
-            rate = velocities.fold(rate, f64::max);
+            rate = velocities.fold(rate, math::greater_f64);
             for split in 0..SPLIT_CELLS {
                 let quadratic = tilt.quadratic_part(heading, &tilt.shares(reach, longest, split));
-                acceleration = acceleration.max(linear.yawing + quadratic.yawing);
+                acceleration = math::greater_f64(acceleration, linear.yawing + quadratic.yawing);
             }
         }
     }
@@ -357,11 +359,11 @@ pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vect
         for direction in &directions {
             let tangential = tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
             let velocity = tilt.velocity(&tangential, worst_heading.rate);
-            velocity_square = velocity_square.max(velocity.square_of_sum(&nothing));
-            longest = longest.max(tangential.length * tilt.magnitude);
+            velocity_square = math::greater_f64(velocity_square, velocity.square_of_sum(&nothing));
+            longest = math::greater_f64(longest, tangential.length * tilt.magnitude);
         }
         let velocity = math::sqrt_f64(velocity_square);
-        let longest = longest.min(reach.jerk);
+        let longest = math::lesser_f64(longest, reach.jerk);
         let linear = directions.map(|direction| tilt.linear_part(reach, &direction));
         let shares = core::array::from_fn(|split| tilt.shares(reach, longest, split));
 

@@ -90,3 +90,18 @@ fn integers_and_their_whole_parts_convert_in_halves_as_well_as_in_one() {
     assert_eq!((whole(f32::NAN), whole(0.99), whole(-0.99)), (0, 0, 0));
     assert!(whole(1e30) >= 1 << 61 && whole(-1e30) <= -(1 << 61));
 }
+
+#[test]
+fn what_is_no_number_is_neither_greater_nor_lesser_and_stays_none() {
+    assert_eq!(
+        (greater_f64(1.0, 2.0), greater_f64(2.0, 1.0), lesser_f64(1.0, 2.0), lesser_f64(2.0, 1.0)),
+        (2.0, 2.0, 1.0, 1.0)
+    );
+    for number in [f64::NEG_INFINITY, 0.0, f64::INFINITY] {
+        for of_two in [greater_f64, lesser_f64] {
+            assert!(of_two(f64::NAN, number).is_nan() && of_two(number, f64::NAN).is_nan());
+        }
+    }
+    assert!(sqrt_of_rounded(f64::NAN).is_nan());
+    assert_eq!((sqrt_of_rounded(-1e-17), sqrt_of_rounded(4.0)), (0.0, 2.0));
+}

@@ -57,13 +57,15 @@ pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<Ex
     let (mut rate, mut swing) = (0.0_f64, 0.0_f64);
     let mut floor = [margin, mass * reach.vertical_least];
     for cell in cells(&reach) {
-        rate = rate.max(cell.rate());
-        swing = swing.max(cell.acceleration(turn));
+        rate = math::greater_f64(rate, cell.rate());
+        swing = math::greater_f64(swing, cell.acceleration(turn));
         let available = mass * cell.least;
         for row in &rows {
             let away = -row.torque;
             let asked = (row.least + torques.feedforward(&away, &cell) + torques.bias(&away)) / row.thrust + margin;
-            if asked * floor[1] > floor[0] * available {
+            // What is no number is the nearest, and stays it: the inequality then fails.
+            let is_further = asked * floor[1] <= floor[0] * available || floor[0].is_nan();
+            if !is_further {
                 floor = [asked, available];
             }
         }
@@ -72,14 +74,14 @@ pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<Ex
     let support =
         |b: &Vector3<f64>, tilt: &TiltCell, swing: f64| torques.feedback(b, tilt) + torques.swung(b, tilt, swing);
     let worst = |b: &Vector3<f64>| -> Result<f64, ParameterError> {
-        let over_tilts = torques.tilt_cells().map(|tilt| support(b, &tilt, swing)).fold(0.0, f64::max);
+        let over_tilts = torques.tilt_cells().map(|tilt| support(b, &tilt, swing)).fold(0.0, math::greater_f64);
         Ok(over_tilts + torques.gyroscopic(b, rate)?)
     };
     let torque = Vector3::new(worst(&Vector3::x())?, worst(&Vector3::y())?, worst(&Vector3::z())?);
 
     let mut greatest = mass * math::hypot(reach.across, reach.vertical_greatest);
     for row in &rows {
-        greatest = greatest.max((row.least + worst(&-row.torque)?) / row.thrust + margin);
+        greatest = math::greater_f64(greatest, (row.least + worst(&-row.torque)?) / row.thrust + margin);
     }
     let mut commanded = Vec::new();
     for row in &rows {
@@ -88,14 +90,15 @@ pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<Ex
         for other in &rows {
             let share = row.thrust / other.thrust;
             let difference = row.torque - other.torque * share;
-            most = most.max(share * other.least + worst(&difference)? + row.thrust * margin);
+            most = math::greater_f64(most, share * other.least + worst(&difference)? + row.thrust * margin);
         }
         let gyroscopic = torques.gyroscopic(&row.torque, rate)?;
         for cell in cells(&reach) {
             let lift = row.thrust * mass * cell.greatest;
             let swing = cell.acceleration(turn);
             for tilt in torques.tilt_cells() {
-                most = most.max(lift * tilt.cosine().max(0.0) + support(&row.torque, &tilt, swing) + gyroscopic);
+                let along = lift * math::greater_f64(tilt.cosine(), 0.0);
+                most = math::greater_f64(most, along + support(&row.torque, &tilt, swing) + gyroscopic);
             }
         }
         // As many as there are rotors: it fits.

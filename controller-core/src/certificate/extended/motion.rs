@@ -67,12 +67,12 @@ impl Cell {
     #[must_use]
     pub fn curl(&self, turn: f64) -> f64 {
         let Self { least: n, tangential, radial, square, .. } = *self;
-        let most = (tangential * tangential).min(square);
+        let most = math::lesser_f64(tangential * tangential, square);
         // In x = p^2 with r^2 the lesser of its own bound and what p leaves: rising, then a parabola.
-        let together = (square - radial * radial).max(0.0).min(most);
+        let together = math::lesser_f64(math::greater_f64(square - radial * radial, 0.0), most);
         let peak = 0.5 * (square + 0.25 * turn * turn * n * n);
-        let x = peak.max(together).min(most);
-        let r_squared = (square - x).min(radial * radial).max(0.0);
+        let x = math::lesser_f64(math::greater_f64(peak, together), most);
+        let r_squared = math::greater_f64(math::lesser_f64(square - x, radial * radial), 0.0);
         math::sqrt_f64(x * (4.0 * r_squared / (n * n) + turn * turn)) / n
     }
 

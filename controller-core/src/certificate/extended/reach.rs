@@ -95,7 +95,7 @@ impl Reach {
         let (low, high) = self.feedback;
         let from_below = greatest + self.slack - low;
         let from_above = high - (least - self.slack);
-        let room = from_below.min(from_above).max(0.0);
+        let room = math::greater_f64(math::lesser_f64(from_below, from_above), 0.0);
         let found = self.arc.iter().find(|(x, _)| *x >= room);
         let [.., (_, most)] = self.arc;
         self.other_vertical_rate + found.map_or(most, |(_, rate)| *rate)
@@ -114,7 +114,7 @@ fn arc(k_f: f64, k_s: f64, span: f64) -> [(f64, f64); ARC_POINTS + 1] {
         // E_f - E_s = E_s (e^(spread t) - 1).
         let y = span * k_s * slow * x_s;
         let x = -span * math::exp_m1(-k_s * time) - y;
-        (x.max(0.0), k_f * y)
+        (math::greater_f64(x, 0.0), k_f * y)
     })
 }
 

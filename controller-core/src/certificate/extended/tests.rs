@@ -1,8 +1,8 @@
 use super::*;
-use crate::allocation::{QuadX, Rotors};
+use crate::allocation::{QuadX, Rotor, Rotors, Spin};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::example;
-use crate::vehicle::{LimitParameters, Limits};
+use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
 #[test]
@@ -34,4 +34,35 @@ fn every_rotor_has_a_row_and_weak_rotors_fail_theirs() {
     let failing = ExtendedCertificate::new(&weak, &law).unwrap();
     let rows = failing.inequalities.iter().filter(|row| row.name.starts_with('R'));
     assert_eq!(rows.filter(|row| !row.holds()).count(), 4);
+}
+
+/// A body as flat as a plate, J_y = J_x + J_z to the bit, on rotors in line with its axes: no row may be left out where a part of
+/// its feed-forward vanishes.
+#[test]
+fn a_flat_body_has_the_floor_of_one_that_is_nearly_flat() {
+    let floor = |height: f32| {
+        let inertia = Vector3::new(2.0e-3, height, 2.0e-3);
+        let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap();
+        let parameters = Extended::new(example::PARAMETERS, &vehicle).unwrap();
+        let limits = LimitParameters { thrust_max: 200.0, torque_max: Vector3::repeat(20.0) };
+        let limits = Limits::new(limits, &vehicle).unwrap();
+        let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+        let rotor = |x: f32, y: f32, spin| Rotor {
+            position: Vector3::new(x, y, 0.0),
+            spin,
+            thrust_coefficient: 5.57e-6,
+            drag_coefficient: 1.36e-7,
+            thrust_min: 0.0,
+            thrust_max: 400.0,
+        };
+        let (forth, back) = (rotor(0.25, 0.0, Spin::Clockwise), rotor(-0.25, 0.0, Spin::Clockwise));
+        let (left, right) = (rotor(0.0, 0.06, Spin::CounterClockwise), rotor(0.0, -0.06, Spin::CounterClockwise));
+        let rotors = Rotors::new(&[forth, left, back, right]).unwrap();
+        let references = ReferenceBounds { horizontal_acceleration: 1.0, ..ReferenceBounds::REST };
+        let configuration = Configuration::extended(vehicle, limits, law, references).unwrap();
+        let configuration = configuration.with_rotors(rotors).unwrap();
+        ExtendedCertificate::new(&configuration, &law).unwrap().bounds.floor
+    };
+    let ([flat, _], [nearly, _]) = (floor(4.0e-3), floor(4.0001e-3));
+    assert!((flat - nearly).abs() < 1e-3 * nearly, "{flat} and {nearly}");
 }

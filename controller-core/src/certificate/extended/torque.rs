@@ -81,7 +81,7 @@ impl Torques {
         // Equal steps of r = sin(theta / 2): theta = 2 asin r, cos theta = 1 - 2 r^2, sin theta = 2 r sqrt(1 - r^2).
         (0..TILT_CELLS).map(move |cell| {
             let [near, far] = [cell, cell + 1].map(|end| end as f64 / TILT_CELLS as f64);
-            let angle = |r: f64| (2.0 * r * math::sqrt_f64((1.0 - r * r).max(0.0)), 1.0 - 2.0 * r * r);
+            let angle = |r: f64| (2.0 * r * math::sqrt_of_rounded(1.0 - r * r), 1.0 - 2.0 * r * r);
             TiltCell { ends: [angle(near), angle(far)], tilting: self.tilting(near, far), yawing: self.yawing(near) }
         })
     }
@@ -89,7 +89,7 @@ impl Torques {
     /// Greatest w r / 2 + G r sqrt(1 - r^2) for r from `near` to `far`.
     fn tilting(&self, near: f64, far: f64) -> f64 {
         let [w, _, k_t, m_t, eta_t, ..] = self.attitude;
-        let rest = |r: f64| math::sqrt_f64((1.0 - r * r).max(0.0));
+        let rest = |r: f64| math::sqrt_of_rounded(1.0 - r * r);
         // k_t r / sqrt(M_t^2 + k_t^2 r^2) rises with r, sqrt(1 - r^2) / sqrt(1 - r^2 + eta_t^2) falls.
         let rising = m_t * k_t * far / math::hypot(m_t, k_t * far);
         0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
@@ -148,9 +148,9 @@ impl Torques {
         let farthest = if beyond { -1.0 } else { cos_far * cos - sin_far * sin };
         // swing sin alpha + turn |cos alpha| has its greatest value on either side of a right angle, and between the two its least.
         let reaches = |cosine: f64| nearest >= cosine && cosine >= farthest;
-        let there = |cosine: f64| swing * math::sqrt_f64((1.0 - cosine * cosine).max(0.0)) + turn * cosine.abs();
+        let there = |cosine: f64| swing * math::sqrt_of_rounded(1.0 - cosine * cosine) + turn * cosine.abs();
         let peak = turn / most;
-        length * if reaches(peak) || reaches(-peak) { most } else { there(nearest).max(there(farthest)) }
+        length * if reaches(peak) || reaches(-peak) { most } else { math::greater_f64(there(nearest), there(farthest)) }
     }
 
     /// Greatest gyroscopic torque along `b` for |omega_12| of at most `rate`, rad/s.
@@ -177,8 +177,8 @@ impl Torques {
         let c = Vector2::new((j.x + j.z - j.y) * b.x, (j.y + j.z - j.x) * b.y);
         let (length, other) = (math::hypot(a.x, a.y), math::hypot(c.x, c.y));
         let tilting = if length > 0.0 {
-            // The cross term is second order in J_2 - J_1: half of its square is charged to each side.
-            let skew = (a.x * c.y - a.y * c.x).abs() / (length * other);
+            // The cross term is second order in J_2 - J_1: half of its square is charged to each side. A flat body may have no c.
+            let skew = if other > 0.0 { (a.x * c.y - a.y * c.x).abs() / (length * other) } else { 0.0 };
             length * (cell.swing + cell.curl(rate * other / length) * math::sqrt_f64(1.0 + skew))
         } else {
             0.0
