@@ -26,7 +26,7 @@ fn the_force_estimate_never_leaves_its_levels_up_to_the_longest_ticks() {
             force_snap_vertical: snap,
             ..EXAMPLE.estimates
         };
-        let generator = ForceGenerator::new(&parameters, 9.81, period).unwrap();
+        let generator = ForceGenerator::new(&parameters, period).unwrap();
         let (mut estimate, mut input, mut left) = (ForceEstimate::NONE, Vector3::zeros(), 0);
         for tick in 0..2_000 {
             if left == 0 {
@@ -63,6 +63,6 @@ fn the_force_estimate_never_leaves_its_levels_up_to_the_longest_ticks() {
 #[test]
 fn ticks_that_are_too_long_for_the_generator_are_refused() {
     let parameters = EstimateParameters { force_bandwidth_across: 61.0, ..EXAMPLE.estimates };
-    let refused = ForceGenerator::new(&parameters, 9.81, 0.01).unwrap_err();
+    let refused = ForceGenerator::new(&parameters, 0.01).unwrap_err();
     assert_eq!(refused.field, "estimates.force_bandwidth_across");
 }

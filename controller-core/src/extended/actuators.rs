@@ -30,8 +30,8 @@ impl ActuatorParameters {
     /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up, and one.
     #[must_use]
     pub fn settling(&self, period: f32) -> u32 {
-        // Converting to an integer rounds towards zero.
-        ((self.delay + 5.0 * self.lag) / period) as u32 + 2
+        // Converting to an integer rounds towards zero, and ends at the greatest.
+        (((self.delay + 5.0 * self.lag) / period) as u32).saturating_add(2)
     }
 }
 

@@ -12,9 +12,9 @@
 
 use super::actuators::{ActuatorModel, ActuatorState};
 use super::attitude::{AttitudeLaw, AttitudeTorque};
-use super::force::{ForceEstimate, ForceGenerator};
+use super::force::{ForceEstimate, ForceGenerator, ForceObserver};
 use super::heading::{self, HeadingLag};
-use super::parameters::{AttitudeParameters, Extended};
+use super::parameters::{AttitudeParameters, EstimateParameters, Extended};
 use super::position::PositionLaw;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
@@ -76,6 +76,25 @@ pub struct Memory {
     acted: Vector4<f32>,
 }
 
+/// What the estimates learn of an interval with. That is the one since the last tick, and not the one to come, where a period
+/// has been changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Learning {
+    force: ForceObserver,
+    torque: TorqueBias,
+    scale: ThrustScale,
+}
+
+impl Learning {
+    fn new(estimates: &EstimateParameters, vehicle: &Vehicle, period: f32) -> Self {
+        Self {
+            force: ForceObserver::new(estimates, vehicle.gravity, period),
+            torque: TorqueBias::new(estimates, &vehicle.inertia, period),
+            scale: ThrustScale::new(estimates, period),
+        }
+    }
+}
+
 /// The extended law for one vehicle, one set of constants and one period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
@@ -85,15 +104,16 @@ pub struct Controller {
     parameters: Extended,
     period: f32,
     per_mass: f32,
-    per_period: f32,
     switching_scalar: f32,
     /// M_z- + D_z - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
     position: PositionLaw,
     force: ForceGenerator,
     attitude: AttitudeLaw,
-    torque_bias: TorqueBias,
-    thrust_scale: ThrustScale,
+    /// Of the interval since the last tick.
+    learning: Learning,
+    /// Of the one to come, if it is another.
+    changed: Option<Learning>,
     floor: ThrustFloor,
     actuators: ActuatorModel,
     /// Ticks for which the wrench that acts still depends on one that was not delivered.
@@ -106,8 +126,8 @@ impl Controller {
     /// (0, 0.1].
     ///
     /// # Errors
-    /// Names `control.period` if it is outside, `estimates.force_bandwidth_…` or `sampling.delay` if it is beyond what they
-    /// allow, `control.law` if the configuration's is another.
+    /// Names `control.period` if it is outside, `estimates.force_bandwidth_…`, `gains.c_1`, `gains.c_2` or `sampling.delay` if it is
+    /// beyond what they allow, `control.law` if the configuration's is another.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         let LawParameters::Extended(law) = configuration.law() else {
@@ -126,6 +146,7 @@ impl Controller {
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
+        heading::check(&parameters.heading, period)?;
         let p = &parameters.position;
         Ok(Self {
             vehicle: *vehicle,
@@ -134,14 +155,13 @@ impl Controller {
             parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
-            per_period: 1.0 / period,
             switching_scalar: path_lifting::switching_scalar(parameters.attitude.delta),
             steepest_fall: p.m_down + parameters.estimates.force_vertical - vehicle.gravity,
             position: PositionLaw::new(p, period)?,
-            force: ForceGenerator::new(&parameters.estimates, vehicle.gravity, period)?,
+            force: ForceGenerator::new(&parameters.estimates, period)?,
             attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
-            torque_bias: TorqueBias::new(&parameters.estimates, &vehicle.inertia, period),
-            thrust_scale: ThrustScale::new(&parameters.estimates, period),
+            learning: Learning::new(&parameters.estimates, vehicle, period),
+            changed: None,
             floor: ThrustFloor::new(rotors, parameters.floor_margin),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
@@ -188,13 +208,13 @@ impl Controller {
         self.memory.estimates.scale
     }
 
-    /// Changes the time between steps, s.
+    /// Changes the time to the next step, s, and from there on.
     ///
     /// # Errors
     /// As [`Self::new`]; the period then stays what it was.
     pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
         let rebuilt = Self::build(&self.vehicle, &self.law, self.rotors.as_ref(), period)?;
-        *self = Self { memory: self.memory, ..rebuilt };
+        *self = Self { memory: self.memory, learning: self.learning, changed: Some(rebuilt.learning), ..rebuilt };
         Ok(())
     }
 
@@ -208,7 +228,7 @@ impl Controller {
     #[must_use]
     pub fn estimates(&self) -> Estimates {
         let estimates = self.memory.estimates;
-        Estimates { torque: self.torque_bias.estimate(&estimates.torque), ..estimates }
+        Estimates { torque: self.learning.torque.estimate(&estimates.torque), ..estimates }
     }
 
     /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
@@ -266,10 +286,13 @@ impl Controller {
             self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
         let average = self.torque_average(state, scale);
         self.memory.estimates.torque = average;
-        let torque = torque - self.torque_bias.estimate(&average);
+        let torque = torque - self.learning.torque.estimate(&average);
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.floor.raised(along, &torque, scale);
 
+        if let Some(changed) = self.changed.take() {
+            self.learning = changed;
+        }
         let memory = &mut self.memory;
         memory.held = memory.held.saturating_sub(1);
         memory.last =
@@ -312,10 +335,11 @@ impl Controller {
         };
         let commanded = acted.x * self.per_mass;
         let thrust = (last.thrust_axis + axis) * (0.5 * commanded);
-        let lift = (state.velocity.z - last.velocity.z) * self.per_period + self.vehicle.gravity;
-        let scale = self.thrust_scale.learnt(estimates.scale, commanded, thrust.z, lift);
-        let force = self.force.observed([&last.velocity, &state.velocity], &(thrust * scale));
-        (self.force.averaged(&estimates.force, &force), scale)
+        let Learning { force: observer, scale: learner, .. } = &self.learning;
+        let lift = observer.lift(&last.velocity, &state.velocity);
+        let scale = learner.learnt(estimates.scale, commanded, thrust.z, lift);
+        let force = observer.observed([&last.velocity, &state.velocity], &(thrust * scale));
+        (observer.averaged(&estimates.force, &force), scale)
     }
 
     /// The average of the torque bias with what happened since the last tick.
@@ -325,8 +349,9 @@ impl Controller {
             return estimates.torque;
         };
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale;
-        let torque = self.torque_bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
-        self.torque_bias.averaged(&estimates.torque, &torque)
+        let learner = &self.learning.torque;
+        let torque = learner.observed([&last.angular_velocity, &state.angular_velocity], &torque);
+        learner.averaged(&estimates.torque, &torque)
     }
 
     /// u = u_f + g e3 + p_d'' + kappa p_d' - d.

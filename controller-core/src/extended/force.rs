@@ -3,9 +3,9 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`ForceGenerator::observed`] | a = (v_k - v_(k-1)) / h - (bbar F / m - g e3 - kappa v): what accelerates the vehicle beside its thrust and its known drag |
-//! | `average` | zeta += (1 - e^(-L h)) (a - zeta) |
-//! | `value`, `rate` | d'' = sat(k_d^2 (P(zeta) - d) - 2 k_d d'; S), and so much less that \|d'\| <= S / k_d |
+//! | [`ForceObserver::observed`] | a = (v_k - v_(k-1)) / h - (bbar F / m - g e3 - kappa v): what accelerates the vehicle beside its thrust and its known drag |
+//! | [`ForceObserver::averaged`] | zeta += (1 - e^(-L h)) (a - zeta) |
+//! | [`ForceGenerator`] | d'' = sat(k_d^2 (P(zeta) - d) - 2 k_d d'; S), and so much less that \|d'\| <= S / k_d |
 //!
 //! P cuts each axis to its level D. The generator d does not copy zeta but moves towards it, so that d, d' and d'' have bounds
 //! that the certificate can count on: D, S / k_d and S on each axis. Small changes pass with a double pole at k_d; large
@@ -38,89 +38,30 @@ impl ForceEstimate {
     };
 }
 
-/// One axis' constants.
+/// What is learnt of an interval: its constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
-    /// 1 - e^(-L h).
-    averaging: f32,
-    /// k_d^2, 1/s^2.
-    stiffness: f32,
-    /// 2 k_d, 1/s.
-    damping: f32,
-    /// D, m/s^2.
-    level: f32,
-    /// S, m/s^4.
-    snap: f32,
-    /// S / k_d, m/s^3.
-    jerk: f32,
-}
-
-impl Axis {
-    fn new(smoothing: f32, bandwidth: f32, level: f32, snap: f32, period: f32) -> Self {
-        let averaging = -math::exp_m1(-f64::from(smoothing) * f64::from(period)) as f32;
-        let (stiffness, damping) = (bandwidth * bandwidth, 2.0 * bandwidth);
-        Self { averaging, stiffness, damping, level, snap, jerk: snap / bandwidth }
-    }
-
-    fn averaged(&self, zeta: f32, observed: f32) -> f32 {
-        zeta + self.averaging * (observed - zeta)
-    }
-
-    fn acceleration(&self, zeta: f32, d: f32, rate: f32, period: f32) -> f32 {
-        let wanted = self.stiffness * (within(zeta, self.level) - d) - self.damping * rate;
-        within_rate(within(wanted, self.snap), rate, self.jerk, period)
-    }
-}
-
-/// The estimate's constants.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForceGenerator {
-    period: f32,
+pub struct ForceObserver {
     per_period: f32,
     gravity: f32,
     /// kappa / 2, 1/s.
     half_drag: f32,
-    across: Axis,
-    vertical: Axis,
+    /// 1 - e^(-L h).
+    averaging_across: f32,
+    averaging_vertical: f32,
 }
 
-impl ForceGenerator {
-    /// The greatest k_d h: up to there the generator never leaves its levels.
-    pub const STEP_MAX: f32 = 0.6;
-
-    /// For steps of `period`, s, under `gravity`, m/s^2.
-    ///
-    /// # Errors
-    /// Names `estimates.force_bandwidth` where k_d h is beyond [`Self::STEP_MAX`].
-    pub fn new(parameters: &EstimateParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
-        let e = parameters;
-        let greatest = Self::STEP_MAX / period;
-        for (bandwidth, field) in [
-            (e.force_bandwidth_across, "estimates.force_bandwidth_across"),
-            (e.force_bandwidth_vertical, "estimates.force_bandwidth_vertical"),
-        ] {
-            require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
-        }
-        Ok(Self {
-            period,
+impl ForceObserver {
+    /// For intervals of `period`, s, under `gravity`, m/s^2.
+    #[must_use]
+    pub fn new(parameters: &EstimateParameters, gravity: f32, period: f32) -> Self {
+        let averaging = |smoothing: f32| -math::exp_m1(-f64::from(smoothing) * f64::from(period)) as f32;
+        Self {
             per_period: 1.0 / period,
             gravity,
-            half_drag: 0.5 * e.drag_across,
-            across: Axis::new(
-                e.force_smoothing_across,
-                e.force_bandwidth_across,
-                e.force_across,
-                e.force_snap_across,
-                period,
-            ),
-            vertical: Axis::new(
-                e.force_smoothing_vertical,
-                e.force_bandwidth_vertical,
-                e.force_vertical,
-                e.force_snap_vertical,
-                period,
-            ),
-        })
+            half_drag: 0.5 * parameters.drag_across,
+            averaging_across: averaging(parameters.force_smoothing_across),
+            averaging_vertical: averaging(parameters.force_smoothing_vertical),
+        }
     }
 
     /// What accelerated the vehicle over an interval beside its thrust, gravity and known drag, m/s^2, world frame.
@@ -136,16 +77,81 @@ impl ForceGenerator {
         rest
     }
 
+    /// The mean vertical acceleration over an interval less gravity's, v_z' + g, m/s^2.
+    #[must_use]
+    pub fn lift(&self, start: &Vector3<f32>, end: &Vector3<f32>) -> f32 {
+        (end.z - start.z) * self.per_period + self.gravity
+    }
+
     /// Takes what was [observed](Self::observed) into the average.
     #[must_use]
     pub fn averaged(&self, estimate: &ForceEstimate, observed: &Vector3<f32>) -> ForceEstimate {
         let ForceEstimate { average, .. } = estimate;
         let average = Vector3::new(
-            self.across.averaged(average.x, observed.x),
-            self.across.averaged(average.y, observed.y),
-            self.vertical.averaged(average.z, observed.z),
+            average.x + self.averaging_across * (observed.x - average.x),
+            average.y + self.averaging_across * (observed.y - average.y),
+            average.z + self.averaging_vertical * (observed.z - average.z),
         );
         ForceEstimate { average, ..*estimate }
+    }
+}
+
+/// One axis' constants of the generator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Axis {
+    /// k_d^2, 1/s^2.
+    stiffness: f32,
+    /// 2 k_d, 1/s.
+    damping: f32,
+    /// D, m/s^2.
+    level: f32,
+    /// S, m/s^4.
+    snap: f32,
+    /// S / k_d, m/s^3.
+    jerk: f32,
+}
+
+impl Axis {
+    fn new(bandwidth: f32, level: f32, snap: f32) -> Self {
+        Self { stiffness: bandwidth * bandwidth, damping: 2.0 * bandwidth, level, snap, jerk: snap / bandwidth }
+    }
+
+    fn acceleration(&self, zeta: f32, d: f32, rate: f32, period: f32) -> f32 {
+        let wanted = self.stiffness * (within(zeta, self.level) - d) - self.damping * rate;
+        within_rate(within(wanted, self.snap), rate, self.jerk, period)
+    }
+}
+
+/// The generator's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceGenerator {
+    period: f32,
+    across: Axis,
+    vertical: Axis,
+}
+
+impl ForceGenerator {
+    /// The greatest k_d h: up to there the generator never leaves its levels.
+    pub const STEP_MAX: f32 = 0.6;
+
+    /// For steps of `period`, s.
+    ///
+    /// # Errors
+    /// Names `estimates.force_bandwidth_…` where k_d h is beyond [`Self::STEP_MAX`].
+    pub fn new(parameters: &EstimateParameters, period: f32) -> Result<Self, ParameterError> {
+        let e = parameters;
+        let greatest = Self::STEP_MAX / period;
+        for (bandwidth, field) in [
+            (e.force_bandwidth_across, "estimates.force_bandwidth_across"),
+            (e.force_bandwidth_vertical, "estimates.force_bandwidth_vertical"),
+        ] {
+            require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
+        }
+        Ok(Self {
+            period,
+            across: Axis::new(e.force_bandwidth_across, e.force_across, e.force_snap_across),
+            vertical: Axis::new(e.force_bandwidth_vertical, e.force_vertical, e.force_snap_vertical),
+        })
     }
 
     /// d'', m/s^4, to be held for the period to come.

@@ -16,6 +16,7 @@
 
 use super::parameters::HeadingParameters;
 use crate::attitude_reference::AngularMotion;
+use crate::error::{ParameterError, Reason, require};
 use crate::math;
 use nalgebra::{Quaternion, Vector2, Vector3};
 
@@ -42,6 +43,18 @@ impl HeadingLag {
         let (w, x, y, z) = (error.w, error.i, error.j, error.k);
         Quaternion::new(c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w)
     }
+}
+
+/// Checks the gains for ticks `period` seconds apart. In samples, small chi and W - w*_3 follow z^2 - (2 - h c_2) z + 1 - h c_2 + h^2 c_1,
+/// whose roots are inside the unit circle if h c_1 < c_2 and 2 h c_2 < 4 + h^2 c_1. Half of either is asked for.
+///
+/// # Errors
+/// Names `gains.c_1` or `gains.c_2`.
+pub fn check(parameters: &HeadingParameters, period: f32) -> Result<(), ParameterError> {
+    let HeadingParameters { c_1, c_2, .. } = *parameters;
+    require(c_2 * period <= 1.0, "gains.c_2", Reason::NotBelow(1.0 / period))?;
+    let most = 0.5 * c_2 / period;
+    require(c_1 <= most, "gains.c_1", Reason::NotBelow(most))
 }
 
 /// The desired frame's motion, and the lag's.

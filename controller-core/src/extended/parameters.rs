@@ -168,6 +168,10 @@ impl Extended {
     /// The least of all gains and levels that must not be zero: their squares stay above zero, so that no saturation divides by it.
     pub const LEAST: f32 = 1e-7;
 
+    /// The least margin of the thrust floor, in weights: rounding in single precision moves a rotor's thrust by a tenth of it at most, up to
+    /// ten times the thrust that hovers.
+    pub const FLOOR_MARGIN_LEAST: f32 = 1e-5;
+
     /// Checks every constant, and that the vehicle can never be asked to push down.
     ///
     /// # Errors
@@ -211,7 +215,6 @@ impl Extended {
             (h.rate, "gains.yaw_rate"),
             (h.c_1, "gains.c_1"),
             (h.c_2, "gains.c_2"),
-            (*floor_margin, "gains.floor_margin"),
         ] {
             require_positive(value, field)?;
             require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
@@ -241,6 +244,10 @@ impl Extended {
             require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
             require(value <= most, field, Reason::NotBelow(most))?;
         }
+        require_positive(*floor_margin, "gains.floor_margin")?;
+        let least = Self::FLOOR_MARGIN_LEAST * vehicle.mass * vehicle.gravity;
+        require(*floor_margin >= least, "gains.floor_margin", Reason::NotAbove(least))?;
+        require(*floor_margin < Self::GREATEST, "gains.floor_margin", Reason::NotBelow(Self::GREATEST))?;
         require(a.alpha < 1.0, "gains.alpha", Reason::NotBelow(1.0))?;
         require((0.0..1.0).contains(&a.ease), "gains.ease", Reason::NotBelow(1.0))?;
         require(e.scale_least > 0.1 && e.scale_least <= 1.0, "estimates.scale_least", Reason::NotBelow(1.0))?;

@@ -6,9 +6,9 @@ use super::actuators::ActuatorParameters;
 use super::attitude::AttitudeLaw;
 use super::controller::Controller;
 use super::example;
-use super::force::{ForceEstimate, ForceGenerator};
-use super::heading::{HeadingLag, advanced, turning};
-use super::parameters::{AttitudeParameters, EstimateParameters, Extended, ExtendedParameters};
+use super::force::{ForceEstimate, ForceGenerator, ForceObserver};
+use super::heading::{self, HeadingLag, advanced, turning};
+use super::parameters::{AttitudeParameters, EstimateParameters, Extended, ExtendedParameters, HeadingParameters};
 use super::saturation::Saturation;
 use super::thrust_floor::ThrustFloor;
 use super::thrust_scale::ThrustScale;
@@ -66,7 +66,8 @@ fn a_saturation_is_monotone_shorter_than_its_level_and_never_steeper_than_its_ga
 #[test]
 fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_stays() {
     let parameters = EstimateParameters { force_bandwidth_across: 12.0, ..example::PARAMETERS.estimates };
-    let generator = ForceGenerator::new(&parameters, 9.81, 0.01).unwrap();
+    let generator = ForceGenerator::new(&parameters, 0.01).unwrap();
+    let observer = ForceObserver::new(&parameters, 9.81, 0.01);
     let mut random = Random(2);
     let (mut estimate, mut nearest) = (ForceEstimate::NONE, [0.0_f32; 3]);
     let levels = [parameters.force_across, parameters.force_vertical];
@@ -78,7 +79,7 @@ fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_
         let beat = 1 + (tick / 5_000) % 60;
         let side = if tick / beat % 2 == 0 { 1.0 } else { -1.0 };
         let force = if tick / 20_000 % 2 == 0 { Vector3::repeat(side * 50.0) } else { random.vector(size) };
-        estimate = generator.averaged(&estimate, &force);
+        estimate = observer.averaged(&estimate, &force);
         let acceleration = generator.acceleration(&estimate);
         estimate = generator.advanced(&estimate, &acceleration);
         for (axis, kind) in [(0, 0), (1, 0), (2, 1)] {
@@ -94,7 +95,7 @@ fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_
     assert!(nearest.iter().all(|share| *share > 0.99), "{nearest:?}");
     let steady = Vector3::new(1.0, -0.7, 0.3);
     for _ in 0..1_000 {
-        estimate = generator.averaged(&estimate, &steady);
+        estimate = observer.averaged(&estimate, &steady);
         estimate = generator.advanced(&estimate, &generator.acceleration(&estimate));
     }
     assert!((estimate.value - steady).norm() < 1e-5 && estimate.rate.norm() < 1e-5, "{estimate:?}");
@@ -102,13 +103,13 @@ fn the_force_estimate_keeps_its_bounds_whatever_it_observes_and_arrives_at_what_
 
 #[test]
 fn a_vehicle_that_does_as_commanded_shows_no_force() {
-    let generator = ForceGenerator::new(&example::PARAMETERS.estimates, 9.81, 0.01).unwrap();
+    let observer = ForceObserver::new(&example::PARAMETERS.estimates, 9.81, 0.01);
     let axis = Vector3::new(0.6, 0.0, 0.8);
     let drag = example::PARAMETERS.estimates.drag_across;
     let (start, thrust) = (Vector3::new(2.0, -1.0, 0.5), 15.0);
     let acceleration = axis * thrust - Vector3::new(0.0, 0.0, 9.81) - Vector3::new(drag * start.x, drag * start.y, 0.0);
     let end = start + acceleration * 0.01;
-    let force = generator.observed([&start, &end], &(axis * thrust));
+    let force = observer.observed([&start, &end], &(axis * thrust));
     assert!(force.norm() < 0.03, "{force}");
 }
 
@@ -363,6 +364,63 @@ fn held_estimates_stay_as_they_are() {
     assert!(fly(&mut controller, 5).force.average.x > learnt.force.average.x);
 }
 
+/// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of, not the one to
+/// come.
+#[test]
+fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
+    let estimates = EstimateParameters { drag_across: 0.0, ..example::PARAMETERS.estimates };
+    let parameters = ExtendedParameters { estimates, ..example::PARAMETERS };
+    let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
+    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    let learnt = |periods: [f32; 2]| {
+        let mut controller = controller(&parameters);
+        let mut state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
+        for tick in 0..400 {
+            let period = periods[tick % 2];
+            controller.set_period(period).unwrap();
+            controller.step(&state, &reference).unwrap();
+            state.velocity.x += 0.5 * period;
+            state.angular_velocity.z += 0.2 * period;
+        }
+        controller.memory().estimates
+    };
+    let (steady, uneven) = (learnt([0.01; 2]), learnt([0.005, 0.015]));
+    assert!((uneven.force.average.x - 0.5).abs() < 1e-3, "{}", uneven.force.average.x);
+    assert!((uneven.torque.z / steady.torque.z - 1.0).abs() < 0.02, "{} and {}", uneven.torque.z, steady.torque.z);
+}
+
+#[test]
+fn ticks_too_long_for_the_generator_of_the_heading_are_refused_by_name() {
+    let refused = |c_1: f32, c_2: f32| {
+        let heading = HeadingParameters { c_1, c_2, ..example::PARAMETERS.heading };
+        heading::check(&heading, 0.01).map_err(|error| error.field)
+    };
+    assert_eq!(refused(9.0, 6.0), Ok(()));
+    assert_eq!(refused(30.0, 0.15), Err("gains.c_1"));
+    assert_eq!(refused(900.0, 6.0), Err("gains.c_1"));
+    assert_eq!(refused(9.0, 250.0), Err("gains.c_2"));
+    // All that are let through die out: the greatest root of their polynomial is inside the unit circle.
+    for c_2 in [0.1_f32, 1.0, 10.0, 100.0] {
+        for share in [0.001, 0.1, 1.0] {
+            let c_1 = share * 0.5 * c_2 / 0.01;
+            assert_eq!(refused(c_1, c_2), Ok(()));
+            let (half, product) = (f64::from(1.0 - 0.005 * c_2), f64::from(1.0 - 0.01 * c_2 + 1e-4 * c_1));
+            let square = half * half - product;
+            let greatest = if square > 0.0 { half.abs() + square.sqrt() } else { product.sqrt() };
+            assert!(greatest < 1.0, "{c_1} {c_2}: {greatest}");
+        }
+    }
+    let heading = HeadingParameters { c_1: 30.0, c_2: 0.15, ..example::PARAMETERS.heading };
+    let parameters = Extended::new(ExtendedParameters { heading, ..example::PARAMETERS }, &example::vehicle()).unwrap();
+    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+    assert_eq!(Controller::build(&example::vehicle(), &law, None, 0.01).unwrap_err().field, "gains.c_1");
+}
+
+#[test]
+fn a_lag_longer_than_anything_is_held_for_as_long_as_can_be_counted() {
+    assert_eq!(ActuatorParameters { lag: 1e9, delay: 0.0 }.settling(0.1), u32::MAX);
+}
+
 #[test]
 fn constants_out_of_their_range_are_refused_by_name() {
     let vehicle = example::vehicle();
@@ -381,4 +439,6 @@ fn constants_out_of_their_range_are_refused_by_name() {
     assert_eq!(refused(&|p| p.estimates.scale_least = 1.1).field, "estimates.scale_least");
     assert_eq!(refused(&|p| p.estimates.force_across = f32::NAN).field, "estimates.force_across");
     assert_eq!(refused(&|p| p.floor_margin = 0.0).field, "gains.floor_margin");
+    // Below it the rounding of a rotor's thrust would show.
+    assert_eq!(refused(&|p| p.floor_margin = 2e-7).field, "gains.floor_margin");
 }

@@ -285,6 +285,15 @@ impl<'m> Chain<'m> {
 
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
+        let flown = self.command(state);
+        if flown.is_err() {
+            // The rotors keep their last thrusts for a tick that the law knows nothing of.
+            self.law.hold_estimates();
+        }
+        flown
+    }
+
+    fn command(&mut self, state: &State) -> Result<Flown, InputError> {
         let Command { wrench, mrp } = self.law.command(state, &self.reference)?;
         let position_error = state.position - self.reference.position;
         let scale = self.law.thrust_scale();

@@ -22,7 +22,7 @@ pub struct Histories {
 
 impl Histories {
     /// Drives the generator, which the core's own arithmetic advances.
-    pub fn new(parameters: &EstimateParameters, gravity: f32) -> Self {
+    pub fn new(parameters: &EstimateParameters) -> Self {
         let slowest = parameters.force_bandwidth_across.min(parameters.force_bandwidth_vertical);
         let fastest = parameters.force_bandwidth_across.max(parameters.force_bandwidth_vertical);
         let level = parameters.force_across;
@@ -33,7 +33,7 @@ impl Histories {
             0.0
         };
         let period = (crossing / AWAY as f32).max(0.02 / fastest).min(0.3 / fastest);
-        let generator = ForceGenerator::new(parameters, gravity, period).unwrap();
+        let generator = ForceGenerator::new(parameters, period).unwrap();
         let levels = Vector3::new(level, level, parameters.force_vertical);
         let advanced = |estimate: &ForceEstimate, side: f32| {
             let estimate = ForceEstimate { average: levels * side, ..*estimate };

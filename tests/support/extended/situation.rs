@@ -105,7 +105,7 @@ impl World {
                 bounds.snap,
             ]
             .map(f64::from),
-            histories: Histories::new(&parameters.estimates, vehicle.gravity),
+            histories: Histories::new(&parameters.estimates),
             attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
             floor: ThrustFloor::new(configuration.rotors(), parameters.floor_margin),
             rotors: configuration.rotors().cloned(),
