@@ -11,6 +11,7 @@ use scenario::Scenario;
 use std::time::Instant;
 
 const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird-paper-law.toml");
+const EXTENDED: &str = include_str!("../vehicles/hummingbird.toml");
 const DRAG: &str = include_str!("hummingbird_drag.toml");
 /// Settled is nearer than this, m.
 const NEAR: f64 = 0.1;
@@ -23,10 +24,16 @@ fn circling(sections: &str) -> Scenario {
 
 /// The Hummingbird in hover for so many seconds, with further sections.
 fn hovering(duration: f64, sections: &str) -> Scenario {
-    let (head, tail) = HUMMINGBIRD.split_once("[initial]").unwrap();
+    hovering_as(HUMMINGBIRD, duration, "", sections)
+}
+
+/// The vehicle of a file in hover for so many seconds, with these lines in `[initial]` and further sections.
+fn hovering_as(file: &str, duration: f64, initial: &str, sections: &str) -> Scenario {
+    let (head, tail) = file.split_once("[initial]").unwrap();
     let (_, bounds) = tail.split_once("[reference_bounds]").unwrap();
     let head = head.replace("duration = 40.0", &format!("duration = {duration:?}"));
-    let reference = "[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 1.5]\n[reference_bounds]";
+    let start = if initial.is_empty() { String::new() } else { format!("[initial]\n{initial}\n") };
+    let reference = format!("{start}[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 1.5]\n[reference_bounds]");
     Scenario::parse(&format!("{head}{reference}{bounds}{sections}"), "f").unwrap()
 }
 
@@ -63,6 +70,30 @@ fn drag_and_wind_cost_the_papers_law_what_they_should() {
     // At 5 m/s the wind pushes with more than M_p: the vehicle drifts away.
     let lost = course(&hovering(40.0, &format!("{DRAG}[wind]\nsteady = [5.0, 0.0, 0.0]\n")));
     assert!(lost.settled.is_none() && lost.end_error > 20.0);
+}
+
+/// A velocity from positions alone is late. How slow its filter may be, the sampled loops say, and the vehicle flies so.
+#[test]
+fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
+    let (head, tail) = EXTENDED.split_once("[drag]").unwrap();
+    let still = format!("{head}[initial]{}", tail.split_once("[initial]").unwrap().1);
+    let told = |bandwidth: f64| {
+        let sections = format!("[sensors]\nvelocity = \"alpha-beta\"\nvelocity_bandwidth = {bandwidth:?}\n");
+        hovering_as(&still, 60.0, "position = [0.0, 0.0, 1.5]\neuler_deg = [0.2, 0.0, 0.0]", &sections)
+    };
+    let radius = |bandwidth: f64| {
+        let loops = told(bandwidth).loops().unwrap();
+        loops.reports().map(|report| report.spectral_radius).into_iter().fold(0.0, f64::max)
+    };
+    let (mut slow, mut quick) = (1.0_f64, 1000.0);
+    assert!(radius(slow) > 1.0 && radius(quick) < 1.0);
+    while quick / slow > 1.01 {
+        let middle = (slow * quick).sqrt();
+        if radius(middle) > 1.0 { slow = middle } else { quick = middle }
+    }
+    println!("slowest filter, rad/s: {quick:.1}");
+    let [lost, kept] = [0.9, 1.1].map(|share| course(&told(share * quick)).end_error);
+    assert!(lost > 0.01 && kept < 1e-4, "{quick} rad/s: {lost} and {kept} m");
 }
 
 #[test]

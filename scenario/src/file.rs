@@ -2,7 +2,8 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
-use crate::reality::{self, Reality, estimator, sensors};
+use crate::reality::sensors::{self, VelocitySource};
+use crate::reality::{self, Reality, estimator};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
@@ -146,12 +147,18 @@ impl Scenario {
         sensors + self.reality.estimator.map_or(0.0, |_| estimator::rates_delay())
     }
 
-    /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together.
+    /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together, and where the velocity
+    /// comes from.
     ///
     /// # Errors
     /// If the timing is outside the model's range; no file that was read leads there.
     pub fn loops(&self) -> Result<LoopModel, ParameterError> {
-        LoopModel::new(self.configuration.vehicle(), self.configuration.law(), self.loop_timing())
+        let known = LoopModel::new(self.configuration.vehicle(), self.configuration.law(), self.loop_timing())?;
+        Ok(match self.reality.sensors.map(|sensors| sensors.velocity) {
+            Some(VelocitySource::AlphaBeta { bandwidth }) => known.with_velocity_from_positions(bandwidth),
+            // An observer with an accelerometer errs by itself, whatever the vehicle does.
+            _ => known,
+        })
     }
 
     /// When commands are computed and how they reach the vehicle, for its sampled loops.

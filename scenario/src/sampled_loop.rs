@@ -30,7 +30,7 @@ use chain::SampledLoop;
 use controller_core::certificate::configuration::LawParameters;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
-use law::Law;
+use law::{Law, Tracker};
 use slopes::Slopes;
 
 /// The longest period between ticks, s; the law's own limit.
@@ -115,6 +115,8 @@ pub struct LoopModel {
     inertia: [f64; 3],
     slopes: Slopes,
     timing: Timing,
+    /// Of the filter that the velocity comes from, rad/s; none if it is known.
+    velocity_bandwidth: Option<f64>,
 }
 
 impl LoopModel {
@@ -134,7 +136,13 @@ impl LoopModel {
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
         require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::NotBelow(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        Ok(Self { inertia, slopes: Slopes::of(law, vehicle), timing })
+        Ok(Self { inertia, slopes: Slopes::of(law, vehicle), timing, velocity_bandwidth: None })
+    }
+
+    /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`, rad/s.
+    #[must_use]
+    pub fn with_velocity_from_positions(&self, bandwidth: f64) -> Self {
+        Self { velocity_bandwidth: Some(bandwidth), ..*self }
     }
 
     /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
@@ -184,13 +192,14 @@ impl LoopModel {
         let actuator = slopes.actuator(period);
         let (across, vertical) = (slopes.estimated_across(period), slopes.estimated_vertical(period));
         let torque = |body: usize| slopes.torque(body, self.inertia[body], period);
+        let tracker = self.velocity_bandwidth.map(|bandwidth| Tracker::new(bandwidth * period));
         match axis {
             Axis::Roll => Law::attitude(torque(0), across, actuator),
             Axis::Pitch => Law::attitude(torque(1), across, actuator),
             Axis::Yaw => Law::attitude(torque(2), vertical, actuator),
-            Axis::LateralX => Law::lateral(slopes.across(period), torque(1), across, actuator),
-            Axis::LateralY => Law::lateral(slopes.across(period), torque(0), across, actuator),
-            Axis::Vertical => Law::vertical(slopes.vertical(period), vertical, actuator),
+            Axis::LateralX => Law::lateral(slopes.across(period), torque(1), across, actuator).tracking(tracker),
+            Axis::LateralY => Law::lateral(slopes.across(period), torque(0), across, actuator).tracking(tracker),
+            Axis::Vertical => Law::vertical(slopes.vertical(period), vertical, actuator).tracking(tracker),
         }
     }
 }

@@ -30,6 +30,7 @@ use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::Vehicle;
+use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// What the law knows beyond its filters and its lift.
@@ -290,8 +291,10 @@ impl Controller {
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.floor.raised(along, &torque, scale);
 
-        if let Some(changed) = self.changed.take() {
+        if let Some(changed) = self.changed {
+            cold_path();
             self.learning = changed;
+            self.changed = None;
         }
         let memory = &mut self.memory;
         memory.held = memory.held.saturating_sub(1);

@@ -96,6 +96,18 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         "delay",
         "seed",
     ])?;
+    let velocity = read_velocity(&section)?;
+    let pose_every = read_pose_rate(&section, timing)?;
+    let dropout = Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", 0.0)?;
+    if let VelocitySource::AlphaBeta { .. } = velocity {
+        for (is_left_out, key) in [(pose_every > 1, "pose_rate"), (dropout > 0.0, "dropout")] {
+            if is_left_out {
+                let problem = "leaves ticks without a pose, for which loops cannot be judged with sensors.velocity = \"alpha-beta\": \
+                               leave it out, or take \"observer\"";
+                return Err(FieldError::new(section.path_of(key), problem));
+            }
+        }
+    }
     Ok(Some(Sensors {
         gyro_noise: Allowed::new(0.0..=10.0, "rad/s").number_or(&section, "gyro_noise", 0.0)?,
         gyro_bias: Allowed::new(-10.0..=10.0, "rad/s").vector_or_zero(&section, "gyro_bias")?,
@@ -103,9 +115,9 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         attitude_noise: Allowed::new(0.0..=30.0, "degrees")
             .number_or(&section, "attitude_noise_deg", 0.0)?
             .to_radians(),
-        velocity: read_velocity(&section)?,
-        pose_every: read_pose_rate(&section, timing)?,
-        dropout: Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", 0.0)?,
+        velocity,
+        pose_every,
+        dropout,
         delay_ticks: read_delay(&section, timing, sampling)?,
         seed: seed(&section)?,
     }))

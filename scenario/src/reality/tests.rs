@@ -146,6 +146,20 @@ fn any_difference_in_reality_makes_another_flight() {
 }
 
 #[test]
+fn a_velocity_from_positions_is_part_of_the_sampled_loops_and_needs_a_pose_at_every_tick() {
+    let tracked = "[sensors]\nvelocity = \"alpha-beta\"\nvelocity_bandwidth = 20.0\n";
+    let [known, filtered] = ["", tracked].map(|sections| read(sections).unwrap().loops().unwrap().reports());
+    // Roll, pitch and yaw do not depend on it.
+    assert_eq!(known[..3], filtered[..3]);
+    assert!(known[3..].iter().zip(&filtered[3..]).all(|(known, filtered)| known != filtered));
+    for (key, field) in [("pose_rate = 50.0", "sensors.pose_rate"), ("dropout = 0.01", "sensors.dropout")] {
+        let refused = read(&format!("{tracked}{key}")).err().unwrap();
+        assert!(refused.contains(field) && refused.contains("loops cannot be judged"), "{refused}");
+        read(&format!("{}{key}", tracked.replace("alpha-beta", "observer"))).unwrap();
+    }
+}
+
+#[test]
 fn late_inputs_are_part_of_the_sampled_loops() {
     let late = |delay: &str| {
         let model = read(&format!("[sensors]\ndelay = {delay}")).unwrap().loops().unwrap();

@@ -14,6 +14,8 @@
 //! Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and B = k_omega / J_i under the paper's law;
 //! laterally the desired tilt is u_f - d, with omega_d and omega_d' its derivatives.
 //!
+//! Where the velocity comes from the positions, by an alpha-beta filter with a double pole ([`Tracker`]), the law sees the filter's.
+//!
 //! [`Law::tick`] is one tick in the flight code's order, estimates first; the matrices are its columns.
 
 use super::compensator::Compensator;
@@ -29,6 +31,21 @@ enum Chain {
     Lateral(PositionGains, TorqueGains),
 }
 
+/// An alpha-beta filter with the double pole rho: x += v; then, with r = position - x, x += (1 - rho^2) r and v += (1 - rho)^2 r.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tracker {
+    position: f64,
+    velocity: f64,
+}
+
+impl Tracker {
+    /// The filter of this bandwidth, times the period.
+    pub fn new(bandwidth: f64) -> Self {
+        let pole = (-bandwidth).exp();
+        Self { position: 1.0 - pole * pole, velocity: (1.0 - pole) * (1.0 - pole) }
+    }
+}
+
 /// The law for one axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
@@ -36,6 +53,8 @@ pub(super) struct Law {
     estimates: EstimateGains,
     /// What the law takes its actuator for.
     actuator: Arrival,
+    /// Where the velocity comes from, if it is not known.
+    tracker: Option<Tracker>,
 }
 
 /// A number and its derivatives, per sample.
@@ -62,6 +81,9 @@ impl Sub for Moving {
 /// (1 - share) x + share past, to which the next tick adds share now.
 #[derive(Debug, Clone, Default)]
 struct Memory {
+    /// The tracker's x and v.
+    tracked: f64,
+    speed: f64,
     /// u_f.
     filtered: f64,
     /// u_s.
@@ -86,19 +108,24 @@ impl Law {
     /// The attitude law about one axis, its reference at rest.
     pub fn attitude(torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
         let estimates = EstimateGains { force: None, scale: None, ..estimates };
-        Self { chain: Chain::Attitude(torque), estimates, actuator }
+        Self { chain: Chain::Attitude(torque), estimates, actuator, tracker: None }
     }
 
     /// The position law along the thrust.
     pub fn vertical(position: PositionGains, estimates: EstimateGains, actuator: Arrival) -> Self {
         let estimates = EstimateGains { torque: None, ..estimates };
-        Self { chain: Chain::Vertical(position), estimates, actuator }
+        Self { chain: Chain::Vertical(position), estimates, actuator, tracker: None }
     }
 
     /// The position law across the thrust, realised by tilting through the attitude law.
     pub fn lateral(position: PositionGains, torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
         let estimates = EstimateGains { scale: None, ..estimates };
-        Self { chain: Chain::Lateral(position, torque), estimates, actuator }
+        Self { chain: Chain::Lateral(position, torque), estimates, actuator, tracker: None }
+    }
+
+    /// The same with the velocity from `tracker`; the attitude's loops have none.
+    pub fn tracking(self, tracker: Option<Tracker>) -> Self {
+        Self { tracker, ..self }
     }
 
     /// Number of integrators behind the actuator; y_m beyond it do not exist.
@@ -132,6 +159,9 @@ impl Law {
         let mut used = Vec::new();
         if !matches!(self.chain, Chain::Attitude(_)) {
             used.extend([&mut memory.filtered, &mut memory.intermediate]);
+            if self.tracker.is_some() {
+                used.extend([&mut memory.tracked, &mut memory.speed]);
+            }
         }
         if force.is_some() {
             used.extend([&mut memory.average, &mut memory.force, &mut memory.force_rate]);
@@ -167,6 +197,7 @@ impl Law {
             }
             Chain::Vertical(position) => {
                 let [velocity, height, ..] = *measured;
+                let velocity = self.tracked(memory, velocity, height);
                 let scale = memory.scale + scale_share * velocity;
                 let average = memory.average + share * (velocity - scale);
                 let force = self.force(memory, average);
@@ -178,6 +209,7 @@ impl Law {
             }
             Chain::Lateral(position, torque) => {
                 let [rate, tilt, velocity, place] = *measured;
+                let velocity = self.tracked(memory, velocity, place);
                 let half_drag = force.map_or(0.0, |force| 0.5 * force.drag);
                 let average = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt);
                 let bias = memory.torque + bias_share * rate;
@@ -191,6 +223,18 @@ impl Law {
                 command
             }
         }
+    }
+
+    /// The velocity that the law is told.
+    fn tracked(&self, memory: &mut Memory, velocity: f64, position: f64) -> f64 {
+        let Some(tracker) = &self.tracker else {
+            return velocity;
+        };
+        let predicted = memory.tracked + memory.speed;
+        let residual = position - predicted;
+        memory.tracked = predicted + tracker.position * residual;
+        memory.speed += tracker.velocity * residual;
+        memory.speed
     }
 
     /// d as it stands, with the second derivative that `average`, zeta, gives it; then it advances.
