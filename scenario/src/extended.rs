@@ -71,13 +71,15 @@ pub const ESTIMATES: [&str; 15] = [
     "scale_rate",
 ];
 
-/// Reads both sections for `vehicle`.
+/// Reads both sections for `vehicle` and ticks `period` seconds apart.
 ///
 /// # Errors
 /// Names the field that is missing, unknown or refused.
-pub fn read_extended(root: &Section, vehicle: &Vehicle) -> Result<Extended, FieldError> {
+pub fn read_extended(root: &Section, vehicle: &Vehicle, period: f64) -> Result<Extended, FieldError> {
     let parameters = read_gains(&root.section("gains")?, read_estimates(root)?)?;
-    Extended::new(parameters, vehicle).map_err(|error| root.refused(&error))
+    let extended = Extended::new(parameters, vehicle).map_err(|error| root.refused(&error))?;
+    extended.check_period(period as f32).map_err(|error| root.refused(&error))?;
+    Ok(extended)
 }
 
 fn read_gains(section: &Section, estimates: EstimateParameters) -> Result<ExtendedParameters, FieldError> {

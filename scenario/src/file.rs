@@ -114,7 +114,7 @@ impl Scenario {
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
-        let configuration = vehicle::read_configuration(root, &bounds, actuators)?;
+        let configuration = vehicle::read_configuration(root, &bounds, actuators, timing.period())?;
         let configuration = actuation::read_rotors(root, configuration)?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;

@@ -20,11 +20,12 @@ pub fn read_configuration(
     root: &Section,
     bounds: &ReferenceBounds,
     actuators: ActuatorParameters,
+    period: f64,
 ) -> Result<Configuration, FieldError> {
     let vehicle = read_vehicle(root)?;
     let limits = read_limits(root, &vehicle)?;
     let configuration = if is_extended(root)? {
-        let parameters = read_extended(root, &vehicle)?;
+        let parameters = read_extended(root, &vehicle, period)?;
         Configuration::extended(vehicle, limits, ExtendedLaw { parameters, actuators }, *bounds)
     } else if root.has("estimates") {
         let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";

@@ -147,7 +147,7 @@ impl Controller {
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
-        heading::check(&parameters.heading, period)?;
+        parameters.check_period(period)?;
         let p = &parameters.position;
         Ok(Self {
             vehicle: *vehicle,

@@ -134,11 +134,11 @@ impl ForceGenerator {
     /// The greatest k_d h: up to there the generator never leaves its levels.
     pub const STEP_MAX: f32 = 0.6;
 
-    /// For steps of `period`, s.
+    /// Checks the bandwidths for steps of `period`, s.
     ///
     /// # Errors
     /// Names `estimates.force_bandwidth_…` where k_d h is beyond [`Self::STEP_MAX`].
-    pub fn new(parameters: &EstimateParameters, period: f32) -> Result<Self, ParameterError> {
+    pub fn check(parameters: &EstimateParameters, period: f32) -> Result<(), ParameterError> {
         let e = parameters;
         let greatest = Self::STEP_MAX / period;
         for (bandwidth, field) in [
@@ -147,6 +147,16 @@ impl ForceGenerator {
         ] {
             require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
         }
+        Ok(())
+    }
+
+    /// For steps of `period`, s.
+    ///
+    /// # Errors
+    /// [`Self::check`]'s.
+    pub fn new(parameters: &EstimateParameters, period: f32) -> Result<Self, ParameterError> {
+        Self::check(parameters, period)?;
+        let e = parameters;
         Ok(Self {
             period,
             across: Axis::new(e.force_bandwidth_across, e.force_across, e.force_snap_across),

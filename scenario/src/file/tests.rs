@@ -79,3 +79,18 @@ fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
         assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");
     }
 }
+
+/// What the law's generators are not defined for at this rate is refused when the file is read, not when it is first flown.
+#[test]
+fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
+    const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
+    for (key, value, field) in [
+        ("c_1 =", "c_1 = 100.0", "gains.c_1"),
+        ("c_2 =", "c_2 = 101.0", "gains.c_2"),
+        ("force_bandwidth_across =", "force_bandwidth_across = 61.0", "estimates.force_bandwidth_across"),
+    ] {
+        let line = EXTENDED.lines().find(|line| line.starts_with(key)).unwrap();
+        let refused = Scenario::parse(&EXTENDED.replace(line, value), "f").err().unwrap();
+        assert!(refused.to_string().contains(field), "{refused}");
+    }
+}
