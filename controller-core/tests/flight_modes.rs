@@ -2,8 +2,10 @@
 
 mod flight;
 
-use controller_core::flight::rules::{COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX};
-use controller_core::flight::{Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word};
+use controller_core::flight::rules::{BATTERY_LASTING, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX};
+use controller_core::flight::{
+    Battery, Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word,
+};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, GROUND, go_to};
@@ -273,6 +275,42 @@ fn a_new_flight_starts_as_the_first_did() {
     assert!((again.reference.position - first.reference.position).norm() < 1e-3, "{again:?}");
     assert!((again.wrench.thrust - first.wrench.thrust).abs() < 1e-3, "{again:?}");
     assert!((again.wrench.torque - first.wrench.torque).norm() < 1e-3, "{again:?}");
+}
+
+#[test]
+fn a_low_battery_lands_the_next_flight_as_it_did_the_last() {
+    let mut flight = Flight::settled();
+    for _ in 0..2 {
+        flight.inputs.request = Some(Request::Arm);
+        assert_eq!(flight.tick().answer, Some(Ok(())));
+        flight.inputs.request = Some(Request::TakeOff(None));
+        assert_eq!(flight.tick().mode, Mode::TakingOff);
+        let landing = (1..400_u64).find_map(|tick| {
+            flight.inputs.battery = Battery::Low;
+            flight.tick().transition.map(|transition| (tick, transition.reason))
+        });
+        assert_eq!(landing, Some((BATTERY_LASTING / PERIOD + 1, Reason::BatteryLow)));
+        flight.inputs.disarm = true;
+        assert_eq!(flight.tick().output, Output::Stop);
+        // Down again, with another battery.
+        flight.ticks(300);
+    }
+}
+
+#[test]
+fn a_landing_under_way_comes_to_rest_across_before_it_goes_down() {
+    let mut flight = under_way();
+    flight.inputs.request = Some(Request::Land);
+    let (mut braking, mut lowest) = (0, f32::INFINITY);
+    for _ in 0..1_000 {
+        let velocity = flight.tick().flown.unwrap().unwrap().reference.velocity;
+        lowest = lowest.min(velocity.z);
+        if velocity.xy().norm() > 0.1 {
+            braking += 1;
+            assert!(velocity.z > -0.01, "goes down at {velocity}");
+        }
+    }
+    assert!(braking > 50 && lowest < -0.3, "{braking} ticks, {lowest} m/s");
 }
 
 #[test]

@@ -119,6 +119,19 @@ fn arming_takes_a_whole_second_of_poses_that_are_all_believed() {
 }
 
 #[test]
+fn arming_takes_a_whole_second_after_poses_that_did_not_come() {
+    for (elapsed, answer) in [(99, Err(Refusal::PosesUnsettled)), (101, Ok(()))] {
+        let mut flight = Flight::settled();
+        flight.present.pose = false;
+        assert!(!flight.ticks(50).health.is_good());
+        flight.present.pose = true;
+        flight.ticks(elapsed);
+        flight.inputs.request = Some(Request::Arm);
+        assert_eq!(flight.tick().answer, Some(answer), "{elapsed}");
+    }
+}
+
+#[test]
 fn arming_is_refused_while_the_vehicle_moves() {
     for (speed, answer) in [(0.19, Ok(())), (0.21, Err(Refusal::Moving))] {
         let mut flight = Flight::new();
