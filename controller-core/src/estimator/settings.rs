@@ -165,5 +165,7 @@ mod tests {
         let (position, attitude) = settings.deviations(Some((0.0, 0.0)));
         assert!((position - 1e-4).abs() < 1e-9 && (attitude - 5.2e-4).abs() < 1e-9);
         assert_eq!(settings.deviations(Some((0.02, 1e9))), (0.02, 10.0));
+        let exact = EstimatorParameters { position_noise: 1e-6, attitude_noise: 1e-6, ..EstimatorParameters::BMI088 };
+        assert_eq!(Settings::new(&exact).unwrap().deviations(None), (DEVIATION_LEAST, DEVIATION_LEAST));
     }
 }

@@ -1,7 +1,7 @@
 //! Poses that are right, but late, seldom, out of order, or from a frame that moved.
 
 use super::motion::{self, Rig, rest, tumble};
-use crate::estimator::{Rejected, Taken};
+use crate::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
 use crate::flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -68,6 +68,20 @@ fn a_pose_that_is_too_late_among_others_is_refused_and_changes_nothing() {
 }
 
 #[test]
+fn a_late_pose_is_judged_by_itself_and_not_by_those_after_it() {
+    let mut rig = Rig::new(tumble);
+    rig.fly(2_000_000, 20_000);
+    (0..12).for_each(|_| rig.step());
+    let later = exact(&rig, rig.now - 10_000);
+    assert_eq!(rig.estimator.pose(&later, rig.now), Ok(Taken::Fused));
+    let time = rig.now - 30_000;
+    let away = motion::pose(&rig.truth(time), &(Vector3::x() * 5.0), &UnitQuaternion::identity());
+    let lie = Stamped { value: away, time };
+    assert_eq!(rig.estimator.pose(&lie, rig.now), Err(Rejected::Position));
+    rig.check("without the lie");
+}
+
+#[test]
 fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
     let mut rig = Rig::new(tumble);
     rig.fly(3_000_000, 20_000);
@@ -89,6 +103,41 @@ fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
     assert_eq!(rig.fly_with(1_000_000, 5_000, made), Some(Ok(Taken::Fused)));
     assert_eq!(rig.estimator.health(rig.now).counts.1, 0);
     assert_eq!(rig.estimator.state(rig.now).unwrap().jumps, 1);
+}
+
+#[test]
+fn a_pose_from_before_the_frame_moved_is_too_late() {
+    let mut rig = Rig::new(tumble);
+    rig.fly(3_000_000, 20_000);
+    let away = Vector3::new(30.0, -5.0, 1.0);
+    let moved = motion::pose(&rig.truth(rig.now - 5_000), &away, &UnitQuaternion::identity()).reset_counter(1);
+    let moved = Stamped { value: moved, time: rig.now - 5_000 };
+    assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
+    let state = rig.estimator.state(rig.now);
+    // Between two that were fused before.
+    let late = exact(&rig, rig.now - 25_000);
+    assert_eq!(rig.estimator.pose(&late, rig.now), Err(Rejected::TooOld));
+    assert_eq!(rig.estimator.state(rig.now), state);
+}
+
+#[test]
+fn velocities_are_believed_where_the_settings_give_them_a_deviation() {
+    let flown = |velocity_noise: f32| {
+        let parameters = EstimatorParameters { velocity_noise, ..EstimatorParameters::BMI088 };
+        let mut rig = Rig::new(tumble);
+        *rig.estimator = Estimator::new(&Settings::new(&parameters).unwrap());
+        rig.fly(3_000_000, 20_000);
+        rig.check("with velocities");
+        let health = rig.estimator.health(rig.now);
+        assert_eq!(health.counts.1, 0);
+        let mut lie = exact(&rig, rig.now);
+        lie.value.velocity = lie.value.velocity.map(|velocity| velocity + Vector3::x());
+        (health.deviations.1, rig.estimator.pose(&lie, rig.now))
+    };
+    let (unheard, fused) = flown(0.0);
+    let (heard, refused) = flown(2e-3);
+    assert!(heard < 0.5 * unheard, "{heard} and {unheard} m/s");
+    assert_eq!((fused, refused), (Ok(Taken::Fused), Err(Rejected::Velocity)));
 }
 
 #[test]
