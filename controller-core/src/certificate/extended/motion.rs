@@ -102,3 +102,67 @@ pub fn cells(reach: &Reach) -> impl Iterator<Item = Cell> + '_ {
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extended::example;
+    use crate::extended::parameters::Extended;
+    use crate::reference::ReferenceBounds;
+    use nalgebra::Vector3;
+
+    /// |omega_12|, |w| / n and (p / n) sqrt(4 r^2 / n^2 + `turn`^2), for u and its derivatives.
+    fn motion(u: &Vector3<f64>, rate: &Vector3<f64>, acceleration: &Vector3<f64>, turn: f64) -> [f64; 3] {
+        let (n, rho) = (u.norm(), u.normalize());
+        let r = rho.dot(rate);
+        let p = (rate - rho * r).norm();
+        let w = (acceleration - rho * rho.dot(acceleration)).norm();
+        [p / n, w / n, p / n * (4.0 * r * r / (n * n) + turn * turn).sqrt()]
+    }
+
+    /// Every corner of every cell, with derivatives all round the cylinders in which they are.
+    #[test]
+    fn the_desired_frame_moves_no_faster_than_its_cell_says_and_hardly_slower() {
+        let parameters = Extended::new(example::PARAMETERS, &example::vehicle()).unwrap();
+        let references = ReferenceBounds {
+            horizontal_speed: 3.0,
+            horizontal_acceleration: 2.4675,
+            vertical_acceleration: 0.1755,
+            jerk: 3.876,
+            snap: 6.089,
+            heading_rate: 1.316,
+            heading_second_derivative: 1.7318,
+        };
+        let reach = Reach::new(&parameters, &references, 9.81);
+        for turn in [0.0, 1.5, 10.0] {
+            for (number, cell) in cells(&reach).enumerate() {
+                let ends = |cell: usize, count: usize| [cell, cell + 1].map(|end| end as f64 / count as f64);
+                let across = ends(number % ACROSS_CELLS, ACROSS_CELLS).map(|end| reach.across * end);
+                let span = reach.vertical_greatest - reach.vertical_least;
+                let vertical =
+                    ends(number / ACROSS_CELLS, VERTICAL_CELLS).map(|end| reach.vertical_least + span * end.powf(1.5));
+                let vertical_rate = reach.vertical_rate(vertical[0], vertical[1]);
+                let mut most = [0.0_f64; 3];
+                for (x, z) in across.iter().flat_map(|x| vertical.iter().map(move |z| (*x, *z))) {
+                    let u = Vector3::new(x, 0.0, z);
+                    assert!(u.norm() >= cell.least * (1.0 - 1e-12) && u.norm() <= cell.greatest * (1.0 + 1e-12));
+                    for direction in 0..32 {
+                        let (sin, cos) = (f64::from(direction) * core::f64::consts::TAU / 32.0).sin_cos();
+                        for up in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                            let within =
+                                |across: f64, vertical: f64| Vector3::new(across * cos, across * sin, vertical * up);
+                            let rate = within(reach.across_rate, vertical_rate);
+                            let acceleration = within(reach.across_acceleration, reach.vertical_acceleration);
+                            let moves = motion(&u, &rate, &acceleration, turn);
+                            most = core::array::from_fn(|i| most[i].max(moves[i]));
+                        }
+                    }
+                }
+                let bounds = [cell.rate(), cell.swing, cell.curl(turn)];
+                let parts: [f64; 3] = core::array::from_fn(|i| most[i] / bounds[i]);
+                assert!(parts.iter().all(|part| *part <= 1.0 + 1e-12), "turn {turn}, cell {number}: {parts:?}");
+                assert!(parts.iter().all(|part| *part > 0.97), "turn {turn}, cell {number}: only {parts:?}");
+            }
+        }
+    }
+}
