@@ -4,6 +4,7 @@ extern crate std;
 use super::*;
 use nalgebra::Vector2;
 use std::boxed::Box;
+use std::string::{String, ToString};
 
 /// Bounds a small quadrotor certifies.
 pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
@@ -242,6 +243,23 @@ fn a_bound_or_a_limit_of_zero_is_refused_by_name() {
     assert_eq!(refused(unknown, limits, PERIOD), "reference_bounds.snap");
     assert_eq!(refused(TYPICAL, GovernorLimits { timeout: 61.0, ..limits }, PERIOD), "governor.timeout");
     assert_eq!(refused(TYPICAL, limits, 0.2), "governor.period");
+    let fast = GovernorLimits { vertical_speed: 256.1, ..limits };
+    assert_eq!(refused(TYPICAL, fast, PERIOD), "governor.vertical_speed");
+    assert_eq!(
+        refused(TYPICAL, GovernorLimits { horizontal_speed: 256.1, ..limits }, PERIOD),
+        "governor.horizontal_speed"
+    );
+}
+
+#[test]
+fn a_limit_that_is_too_great_is_said_to_be_so() {
+    let said = |limits: GovernorLimits| -> String {
+        Governor::new(&TYPICAL, &limits, PERIOD, memory()).unwrap_err().to_string()
+    };
+    let limits = GovernorLimits::default();
+    assert_eq!(said(GovernorLimits { timeout: 61.0, ..limits }), "governor.timeout: must be below 60");
+    assert!(said(GovernorLimits { snap_ramp: 59.0, ..limits }).starts_with("governor.snap_ramp: must be below"));
+    assert!(said(GovernorLimits { heading_ramp: 59.0, ..limits }).starts_with("governor.heading_ramp: must be below"));
 }
 
 #[test]
