@@ -2,7 +2,9 @@
 
 mod flight;
 
-use controller_core::flight::rules::{BATTERY_LASTING, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX};
+use controller_core::flight::rules::{
+    BATTERY_LASTING, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_LASTING,
+};
 use controller_core::flight::{
     Battery, Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word,
 };
@@ -311,6 +313,31 @@ fn a_landing_under_way_comes_to_rest_across_before_it_goes_down() {
         }
     }
     assert!(braking > 50 && lowest < -0.3, "{braking} ticks, {lowest} m/s");
+}
+
+#[test]
+fn a_vehicle_that_does_not_get_off_the_ground_lands_a_while_after_its_reference_is_half_a_metre_up() {
+    let mut flight = Flight::idling();
+    flight.inputs.request = Some(Request::TakeOff(Some(3.0)));
+    // Something holds it: it stays where it is, and its IMU feels rest.
+    let held = flight.body;
+    flight.imu = Box::new(|increment| {
+        *increment = flight::resting_imu(increment.start, increment.end, &Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    });
+    let mut heights = Vec::new();
+    let reason = loop {
+        let outcome = flight.tick();
+        flight.body = held;
+        if let Some(transition) = outcome.transition.filter(|transition| transition.from == Mode::TakingOff) {
+            break transition.reason;
+        }
+        heights
+            .push(outcome.flown.map_or(0.0, |flown| f64::from(flown.unwrap().reference.position.z) - held.position.z));
+        assert!(heights.len() < 1_000);
+    };
+    assert_eq!(reason, Reason::TrackingLost);
+    let then = heights.len() - (TRACKING_LASTING / PERIOD) as usize;
+    assert!(heights[then - 2] < 0.5 && heights[then + 1] > 0.5, "{:?}", &heights[then - 2..]);
 }
 
 #[test]
