@@ -85,7 +85,7 @@ fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
 fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
     const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
     for (key, value, field) in [
-        ("c_1 =", "c_1 = 100.0", "gains.c_1"),
+        ("c_1 =", "c_1 = 900.0", "gains.c_1"),
         ("c_2 =", "c_2 = 101.0", "gains.c_2"),
         ("force_bandwidth_across =", "force_bandwidth_across = 61.0", "estimates.force_bandwidth_across"),
     ] {

@@ -105,6 +105,7 @@ pub fn cells(reach: &Reach) -> impl Iterator<Item = Cell> + '_ {
 
 #[cfg(test)]
 mod tests {
+    use super::super::torque::Torques;
     use super::*;
     use crate::extended::example;
     use crate::extended::parameters::Extended;
@@ -120,9 +121,7 @@ mod tests {
         [p / n, w / n, p / n * (4.0 * r * r / (n * n) + turn * turn).sqrt()]
     }
 
-    /// Every corner of every cell, with derivatives all round the cylinders in which they are.
-    #[test]
-    fn the_desired_frame_moves_no_faster_than_its_cell_says_and_hardly_slower() {
+    fn reach() -> (Extended, Reach) {
         let parameters = Extended::new(example::PARAMETERS, &example::vehicle()).unwrap();
         let references = ReferenceBounds {
             horizontal_speed: 3.0,
@@ -134,35 +133,86 @@ mod tests {
             heading_second_derivative: 1.7318,
         };
         let reach = Reach::new(&parameters, &references, 9.81);
+        (parameters, reach)
+    }
+
+    /// Calls `meet` with u at the four corners of cell `number` and u', u'' all round the cylinders in which they are.
+    fn all_round(reach: &Reach, number: usize, mut meet: impl FnMut(Vector3<f64>, Vector3<f64>, Vector3<f64>)) {
+        let ends = |cell: usize, count: usize| [cell, cell + 1].map(|end| end as f64 / count as f64);
+        let across = ends(number % ACROSS_CELLS, ACROSS_CELLS).map(|end| reach.across * end);
+        let span = reach.vertical_greatest - reach.vertical_least;
+        let vertical =
+            ends(number / ACROSS_CELLS, VERTICAL_CELLS).map(|end| reach.vertical_least + span * end.powf(1.5));
+        let vertical_rate = reach.vertical_rate(vertical[0], vertical[1]);
+        for (x, z) in across.iter().flat_map(|x| vertical.iter().map(move |z| (*x, *z))) {
+            for direction in 0..32 {
+                let (sin, cos) = (f64::from(direction) * core::f64::consts::TAU / 32.0).sin_cos();
+                for up in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                    let within = |across: f64, vertical: f64| Vector3::new(across * cos, across * sin, vertical * up);
+                    let acceleration = within(reach.across_acceleration, reach.vertical_acceleration);
+                    meet(Vector3::new(x, 0.0, z), within(reach.across_rate, vertical_rate), acceleration);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_desired_frame_moves_no_faster_than_its_cell_says_and_hardly_slower() {
+        let (_, reach) = reach();
         for turn in [0.0, 1.5, 10.0] {
             for (number, cell) in cells(&reach).enumerate() {
-                let ends = |cell: usize, count: usize| [cell, cell + 1].map(|end| end as f64 / count as f64);
-                let across = ends(number % ACROSS_CELLS, ACROSS_CELLS).map(|end| reach.across * end);
-                let span = reach.vertical_greatest - reach.vertical_least;
-                let vertical =
-                    ends(number / ACROSS_CELLS, VERTICAL_CELLS).map(|end| reach.vertical_least + span * end.powf(1.5));
-                let vertical_rate = reach.vertical_rate(vertical[0], vertical[1]);
                 let mut most = [0.0_f64; 3];
-                for (x, z) in across.iter().flat_map(|x| vertical.iter().map(move |z| (*x, *z))) {
-                    let u = Vector3::new(x, 0.0, z);
+                all_round(&reach, number, |u, rate, acceleration| {
                     assert!(u.norm() >= cell.least * (1.0 - 1e-12) && u.norm() <= cell.greatest * (1.0 + 1e-12));
-                    for direction in 0..32 {
-                        let (sin, cos) = (f64::from(direction) * core::f64::consts::TAU / 32.0).sin_cos();
-                        for up in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-                            let within =
-                                |across: f64, vertical: f64| Vector3::new(across * cos, across * sin, vertical * up);
-                            let rate = within(reach.across_rate, vertical_rate);
-                            let acceleration = within(reach.across_acceleration, reach.vertical_acceleration);
-                            let moves = motion(&u, &rate, &acceleration, turn);
-                            most = core::array::from_fn(|i| most[i].max(moves[i]));
-                        }
-                    }
-                }
+                    let moves = motion(&u, &rate, &acceleration, turn);
+                    most = core::array::from_fn(|i| most[i].max(moves[i]));
+                });
                 let bounds = [cell.rate(), cell.swing, cell.curl(turn)];
                 let parts: [f64; 3] = core::array::from_fn(|i| most[i] / bounds[i]);
                 assert!(parts.iter().all(|part| *part <= 1.0 + 1e-12), "turn {turn}, cell {number}: {parts:?}");
                 assert!(parts.iter().all(|part| *part > 0.97), "turn {turn}, cell {number}: only {parts:?}");
             }
+        }
+    }
+
+    /// J omega' + omega x J omega of a frame on rho, whatever it does about it.
+    #[test]
+    fn without_an_attitude_error_no_motion_asks_for_more_torque_than_its_cell_says() {
+        let (parameters, reach) = reach();
+        let inertia = Vector3::new(3e-3, 4e-3, 7e-3);
+        let torques = Torques::new(&parameters, &inertia);
+        let (most_turn, most_turning) =
+            (f64::from(parameters.heading.rate), f64::from(parameters.heading.acceleration));
+        for (direction, close) in
+            [(Vector3::x(), 0.8), (Vector3::y(), 0.8), (Vector3::z(), 0.8), (Vector3::new(0.6, -0.5, 0.4), 0.6)]
+        {
+            let mut closest = 1.0_f64;
+            for (number, cell) in cells(&reach).enumerate().step_by(37) {
+                let mut most = 0.0_f64;
+                all_round(&reach, number, |u, rate, acceleration| {
+                    let (n, rho) = (u.norm(), u.normalize());
+                    let r = rho.dot(&rate);
+                    let tilting = (rate - rho * r) / n;
+                    let bending = (acceleration - rho * rho.dot(&acceleration) - tilting * (2.0 * r)) / n;
+                    for (quarter, sign) in (0..16).flat_map(|quarter| [(quarter, 1.0), (quarter, -1.0)]) {
+                        let angle = f64::from(quarter) * core::f64::consts::TAU / 16.0;
+                        let ahead = rho.cross(&Vector3::y()).normalize() * angle.cos() + Vector3::y() * angle.sin();
+                        let axes = [ahead, rho.cross(&ahead), rho];
+                        let turn = most_turn * sign;
+                        let omega = rho.cross(&tilting) + rho * turn;
+                        for turning in [most_turning, -most_turning] {
+                            let change = rho.cross(&bending) + tilting * turn + rho * turning;
+                            let [omega, change] = [omega, change].map(|v| Vector3::from(axes.map(|axis| axis.dot(&v))));
+                            let torque = inertia.component_mul(&change) + omega.cross(&inertia.component_mul(&omega));
+                            most = most.max(direction.dot(&torque));
+                        }
+                    }
+                });
+                let part = most / torques.feedforward(&direction, &cell);
+                assert!(part <= 1.0 + 1e-12, "along {direction}, cell {number}: {part}");
+                closest = closest.min(part);
+            }
+            assert!(closest > close, "along {direction}: only {closest}");
         }
     }
 }

@@ -2,22 +2,25 @@ use super::*;
 use crate::allocation::{QuadX, Rotor, Rotors, Spin};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::example;
+use crate::extended::parameters::{EstimateParameters, ExtendedParameters};
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
+
+const REFERENCES: ReferenceBounds = ReferenceBounds {
+    horizontal_speed: 3.0,
+    horizontal_acceleration: 2.4675,
+    vertical_acceleration: 0.1755,
+    jerk: 3.876,
+    snap: 6.089,
+    heading_rate: 1.316,
+    heading_second_derivative: 1.7318,
+};
 
 #[test]
 fn every_rotor_has_a_row_and_weak_rotors_fail_theirs() {
     let vehicle = example::vehicle();
     let parameters = Extended::new(example::PARAMETERS, &vehicle).unwrap();
-    let references = ReferenceBounds {
-        horizontal_speed: 3.0,
-        horizontal_acceleration: 2.4675,
-        vertical_acceleration: 0.1755,
-        jerk: 3.876,
-        snap: 6.089,
-        heading_rate: 1.316,
-        heading_second_derivative: 1.7318,
-    };
+    let references = REFERENCES;
     let rotors = example::rotors();
     let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
     let limits = Limits::new(limits, &vehicle).unwrap();
@@ -65,4 +68,36 @@ fn a_flat_body_has_the_floor_of_one_that_is_nearly_flat() {
     };
     let ([flat, _], [nearly, _]) = (floor(4.0e-3), floor(4.0001e-3));
     assert!((flat - nearly).abs() < 1e-3 * nearly, "{flat} and {nearly}");
+
+/// The rows about `references` alone, of a law that knows a drag of `drag`, 1/s.
+fn feasible(references: ReferenceBounds, drag: f32) -> [Inequality; 5] {
+    let vehicle = example::vehicle();
+    let estimates = EstimateParameters { drag_across: drag, ..example::PARAMETERS.estimates };
+    let parameters = Extended::new(ExtendedParameters { estimates, ..example::PARAMETERS }, &vehicle).unwrap();
+    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
+    let limits = Limits::new(limits, &vehicle).unwrap();
+    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+    feasibility(&Configuration::extended(vehicle, limits, law, references).unwrap(), &parameters)
+}
+
+#[test]
+fn a_reference_is_feasible_with_its_drag_or_not_at_all() {
+    let (dragged, drag) = (feasible(REFERENCES, 0.5), 0.5);
+    let with_drag = ReferenceBounds {
+        horizontal_acceleration: 2.4675 + drag * 3.0,
+        jerk: 3.876 + drag * 2.4675,
+        snap: 6.089 + drag * 3.876,
+        ..REFERENCES
+    };
+    for (row, other) in dragged.iter().zip(feasible(with_drag, 0.0)) {
+        assert!((row.required - other.required).abs() < 1e-5 && row.available == other.available, "{}", row.name);
+    }
+    let [_, thrust, rate, acceleration, _] = dragged;
+    let expected = 0.5 * (9.81 + math::hypot(2.4675 + 0.5 * 3.0, 0.1755));
+    assert!((thrust.required - expected).abs() < 1e-3 * expected, "{}", thrust.required);
+    assert!(thrust.holds() && thrust.available == 40.0);
+    // No faster than the heading itself only where rho stays upright.
+    assert!(rate.required > 1.316 && acceleration.required > 1.7318);
+    let fast = ReferenceBounds { horizontal_acceleration: 75.0, ..REFERENCES };
+    assert!(!feasible(fast, 0.0)[1].holds());
 }
