@@ -136,8 +136,18 @@ mod tests {
 
     #[test]
     fn a_derivative_off_the_circle_is_refused() {
-        let error = Heading::from_derivatives(Vector2::new(1.0, 0.0), Vector2::new(0.5, 0.0), Vector2::zeros());
-        assert_eq!(error.unwrap_err().field, "heading.derivatives");
+        for out in [0.5, -0.5] {
+            let error = Heading::from_derivatives(
+                Vector2::x(),
+                Vector2::new(out, 0.0),
+                // As if it turned by so much.
+                Vector2::new(-out * out, 0.0),
+            );
+            assert_eq!(error.unwrap_err().field, "heading.derivatives");
+            // Where it does not turn, nothing bends it either way.
+            let error = Heading::from_derivatives(Vector2::x(), Vector2::zeros(), Vector2::new(out, 0.0));
+            assert_eq!(error.unwrap_err().field, "heading.derivatives");
+        }
     }
 
     #[test]

@@ -173,6 +173,7 @@ mod tests {
     fn delays_and_lags_beyond_the_model_are_refused_by_name() {
         let field = |lag, delay| ActuatorModel::new(&ActuatorParameters { lag, delay }, 0.01).unwrap_err().field;
         assert_eq!(field(-0.001, 0.0), "rotors.lag");
+        assert_eq!(field(f32::INFINITY, 0.0), "rotors.lag");
         assert_eq!(field(0.0, f32::NAN), "sampling.delay");
         assert_eq!(field(0.0, 0.031), "sampling.delay");
     }

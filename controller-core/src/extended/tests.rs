@@ -15,7 +15,7 @@ use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
 use crate::attitude_reference::AngularMotion;
 use crate::certificate::configuration::ExtendedLaw;
-use crate::error::{InputError, ParameterError};
+use crate::error::{InputError, ParameterError, Reason};
 use crate::heading::Heading;
 use crate::reference::Trajectory;
 use crate::reference::hover::Hover;
@@ -238,6 +238,9 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
         let allowed = truth.clamp(scale_least, scale_greatest);
         assert!((learnt - allowed).abs() < 1e-4, "{truth}: {learnt}");
     }
+    // Of little thrust it learns slowly.
+    let step = scale.learnt(1.0, 2.0, 2.0, 3.0) - 1.0;
+    assert!((step - 0.3 * 0.01 * 2.0 / (4.0 + 4.0)).abs() < 1e-6, "{step}");
     // Lying on its side it learns nothing.
     assert_eq!(scale.learnt(1.1, 10.0, 0.0, 5.0), 1.1);
 }
@@ -430,13 +433,19 @@ fn constants_out_of_their_range_are_refused_by_name() {
         Extended::new(parameters, &vehicle).unwrap_err()
     };
     assert_eq!(refused(&|p| p.position.k_f_across = 0.1).field, "gains.k_f_across");
+    assert_eq!(refused(&|p| p.position.k_s_vertical = 100.1).field, "gains.k_s_vertical");
+    assert_eq!(refused(&|p| p.position.v_up = -1.0).reason, Reason::NotPositive);
     assert_eq!(refused(&|p| p.position.m_down = 9.5).field, "gains.m_down");
     assert_eq!(refused(&|p| p.attitude.m_t = 1e-30).field, "gains.m_t");
     assert_eq!(refused(&|p| p.attitude.eta_t = 1e-30).field, "gains.eta_t");
     assert_eq!(refused(&|p| p.attitude.delta = 1.5).field, "gains.delta");
-    assert_eq!(refused(&|p| p.attitude.ease = 1.0).field, "gains.ease");
+    let most = ParameterError { field: "gains.ease", reason: Reason::NotBelow(1.0) };
+    assert_eq!(refused(&|p| p.attitude.ease = 1.0), most);
     assert_eq!(refused(&|p| p.attitude.alpha = 1.0).field, "gains.alpha");
-    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1).field, "estimates.scale_least");
+    let most = ParameterError { field: "estimates.scale_least", reason: Reason::NotBelow(1.0) };
+    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1), most);
+    assert_eq!(refused(&|p| p.estimates.scale_greatest = 0.99).field, "estimates.scale_greatest");
+    assert_eq!(refused(&|p| p.estimates.scale_greatest = 10.0).field, "estimates.scale_greatest");
     assert_eq!(refused(&|p| p.estimates.force_across = f32::NAN).field, "estimates.force_across");
     assert_eq!(refused(&|p| p.floor_margin = 0.0).field, "gains.floor_margin");
     // Below it the rounding of a rotor's thrust would show.
