@@ -68,6 +68,7 @@ fn a_flat_body_has_the_floor_of_one_that_is_nearly_flat() {
     };
     let ([flat, _], [nearly, _]) = (floor(4.0e-3), floor(4.0001e-3));
     assert!((flat - nearly).abs() < 1e-3 * nearly, "{flat} and {nearly}");
+}
 
 /// The rows about `references` alone, of a law that knows a drag of `drag`, 1/s.
 fn feasible(references: ReferenceBounds, drag: f32) -> [Inequality; 5] {
