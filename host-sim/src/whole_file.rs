@@ -1,8 +1,16 @@
 //! Files that appear whole or not at all.
 
 use std::fs::File;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The longest chain of symbolic links, as Linux has it.
+const LINKS: usize = 40;
+
+/// How many files this program has started: no two grow under one name.
+static STARTED: AtomicU64 = AtomicU64::new(0);
 
 /// A file that shows up under its name only when it is complete; dropped before that, it leaves nothing behind.
 ///
@@ -17,16 +25,30 @@ impl WholeFile {
     /// Starts a file that will be called `path`. It grows under a hidden name in the same directory.
     ///
     /// # Errors
-    /// If it cannot be created.
+    /// If it cannot be created, or the name is a directory's: at once, not when the work is done.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let special = |found: std::fs::Metadata| !found.is_file() && !found.is_dir();
-        if path.metadata().is_ok_and(special) {
+        if path.is_dir() {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
+        if is_special(path) {
             return Ok(Self { writer: BufWriter::new(File::options().write(true).open(path)?), names: None });
         }
-        let name = path.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_string_lossy();
-        let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+        let path = followed(path)?;
+        // Not the file's own name, which may be as long as names can be; but one of its own also among programs that share a number, as in containers.
+        let mut name = DefaultHasher::new();
+        path.file_name().ok_or(io::ErrorKind::InvalidInput)?.hash(&mut name);
+        let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
+        let temporary = path.with_file_name(format!(".{:016x}.{process}.{number}.part", name.finish()));
         let writer = BufWriter::new(File::create(&temporary)?);
-        Ok(Self { writer, names: Some((temporary, path.to_owned())) })
+        Ok(Self { writer, names: Some((temporary, path)) })
+    }
+
+    /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.
+    ///
+    /// # Errors
+    /// As [`Self::create`]'s. A device or a pipe is not tried: whoever reads it would take the trial for the end.
+    pub fn try_name(path: &Path) -> io::Result<()> {
+        if is_special(path) { Ok(()) } else { Self::create(path).map(drop) }
     }
 
     /// Writes `contents` to `path`, whole.
@@ -77,6 +99,23 @@ impl Drop for WholeFile {
             remove(temporary);
         }
     }
+}
+
+/// What a name stands for that is a symbolic link, whether that exists or not: the link stays one.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..LINKS {
+        match std::fs::read_link(&path) {
+            Ok(target) => path = path.with_file_name("").join(target),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("too many symbolic links"))
+}
+
+/// Whether the name belongs to a device or a pipe.
+fn is_special(path: &Path) -> bool {
+    path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 /// Nothing more can be done where even this fails.

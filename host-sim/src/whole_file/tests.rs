@@ -31,7 +31,12 @@ fn a_file_that_was_not_finished_leaves_nothing_behind() {
 fn a_name_that_is_taken_by_a_directory_leaves_nothing_behind() {
     let directory = directory("taken");
     std::fs::create_dir(directory.join("log.csv")).unwrap();
-    assert!(WholeFile::write(&directory.join("log.csv"), "text").is_err());
+    // At once: whoever writes for hours must not hear of it at the end.
+    for refused in
+        [WholeFile::create(&directory.join("log.csv")).map(drop), WholeFile::try_name(&directory.join("log.csv"))]
+    {
+        assert_eq!(refused.unwrap_err().kind(), io::ErrorKind::IsADirectory);
+    }
     assert_eq!(count(&directory), 1);
     std::fs::remove_dir_all(&directory).unwrap();
 }
@@ -44,5 +49,39 @@ fn a_device_is_written_to_and_stays_a_device() {
     std::os::unix::fs::symlink("/dev/null", &link).unwrap();
     WholeFile::write(&link, "gone").unwrap();
     assert_eq!(std::fs::read_link(&link).unwrap(), Path::new("/dev/null"));
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_one_and_what_it_stands_for_is_written_there_or_not() {
+    let directory = directory("link");
+    std::fs::create_dir(directory.join("elsewhere")).unwrap();
+    let link = directory.join("link.toml");
+    std::os::unix::fs::symlink("elsewhere/real.toml", &link).unwrap();
+    for text in ["new", "old"] {
+        WholeFile::write(&link, text).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read_to_string(directory.join("elsewhere/real.toml")).unwrap(), text);
+    }
+    let (one, other) = (directory.join("one"), directory.join("other"));
+    std::os::unix::fs::symlink(&one, &other).unwrap();
+    std::os::unix::fs::symlink(&other, &one).unwrap();
+    assert!(WholeFile::write(&one, "text").is_err());
+    assert_eq!((count(&directory), count(&directory.join("elsewhere"))), (4, 1));
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[test]
+fn a_name_may_be_as_long_as_names_can_be_and_two_files_grow_side_by_side() {
+    let directory = directory("long");
+    let path = directory.join("n".repeat(255));
+    let (mut one, mut other) = (WholeFile::create(&path).unwrap(), WholeFile::create(&path).unwrap());
+    one.write_all(b"one").unwrap();
+    other.write_all(b"other").unwrap();
+    one.finish().unwrap();
+    other.finish().unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "other");
+    assert_eq!(count(&directory), 1);
     std::fs::remove_dir_all(&directory).unwrap();
 }
