@@ -111,3 +111,33 @@ fn what_cannot_be_read_is_named_with_its_place() {
         assert!(found.starts_with(said), "{found}");
     }
 }
+
+#[test]
+fn no_file_that_was_read_is_written_over_and_what_cannot_be_written_shows_before_the_fit() {
+    let directory = directory("out");
+    // No flight: whoever gets as far as the fit says so, with another status.
+    let log = "t,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,thrust,tau_x,tau_y,tau_z\n\
+               0,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n0.01,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n";
+    let bench = "[weighing]\nmass = [0.5]\nuncertainty = 0.001\n";
+    let given = [("log.csv", log), ("bench.toml", bench), ("flown.toml", IDENTIFY)];
+    given.iter().for_each(|(name, text)| fs::write(directory.join(name), text).unwrap());
+    fs::create_dir(directory.join("taken.toml")).unwrap();
+    for (out, said) in [
+        ("log.csv", "error: log.csv: --out must be another file than the log\n"),
+        ("./bench.toml", "error: ./bench.toml: --out must be another file than the bench file\n"),
+        ("flown.toml", "error: flown.toml: --out must be another file than the scenario\n"),
+        ("taken.toml", "error: taken.toml: cannot be written: is a directory\n"),
+        ("none/mine.toml", "error: none/mine.toml: cannot be written: No such file or directory (os error 2)\n"),
+        ("a name\n.toml", "error: --out: becomes the scenario's name: "),
+    ] {
+        let asked = ["identify", "log.csv", "--scenario", "flown.toml", "--bench", "bench.toml", "--out", out];
+        let output = host_sim(&directory, &asked);
+        let found = stderr(&output);
+        assert_eq!(status(&output), 2, "{found}");
+        assert!(found.starts_with(said), "{found}");
+    }
+    for (name, text) in given {
+        assert_eq!(fs::read_to_string(directory.join(name)).unwrap(), text);
+    }
+    assert_eq!(files(&directory), ["bench.toml", "flown.toml", "log.csv", "taken.toml"]);
+}

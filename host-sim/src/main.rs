@@ -207,10 +207,15 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
 
 fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
     let (original, file) = given_or_study(arguments.scenario.as_deref())?;
-    if let (Some(out), Some(file)) = (&arguments.out, &arguments.scenario)
-        && same_file(out, file)
-    {
-        return Err(format!("{}: --out must be another file than the scenario", out.display()));
+    if let Some(out) = &arguments.out {
+        let read = [
+            ("the scenario", &arguments.scenario),
+            ("the log", &Some(arguments.log.clone())),
+            ("the bench file", &arguments.bench),
+        ];
+        if let Some((what, _)) = read.iter().find(|(_, file)| file.as_ref().is_some_and(|file| same_file(out, file))) {
+            return Err(format!("{}: --out must be another file than {what}", out.display()));
+        }
     }
     let task =
         Task { log: arguments.log.clone(), original, file, bench: arguments.bench.clone(), out: arguments.out.clone() };

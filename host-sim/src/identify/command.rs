@@ -46,6 +46,7 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     let rotors =
         rotors.ok_or_else(|| of_file("rotors: is missing; identify needs a model of the rotors".to_owned()))?;
     let gravity = f64::from(scenario.configuration.vehicle().gravity);
+    let out = task.out.as_deref().map(|path| destination(path, &scenario.name)).transpose()?;
     let bench = match &task.bench {
         None => Bench::default(),
         Some(path) => bench::read(&text(path)?, rotors, gravity).map_err(|what| in_file(path, &what))?,
@@ -74,15 +75,21 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     } else {
         "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
     };
-    if let Some(path) = &task.out {
-        let stem = path.file_stem().map_or_else(|| scenario.name.clone(), |stem| stem.to_string_lossy().into_owned());
-        scenario::check_name(&stem)
-            .map_err(|what| Refused::Input(format!("--out: becomes the scenario's name: {what}")))?;
-        let text = rewritten(&task.original, &stem, &Values::of(&told), scenario.timing.step()).map_err(of_file)?;
+    if let Some((name, path)) = out {
+        let text = rewritten(&task.original, &name, &Values::of(&told), scenario.timing.step()).map_err(of_file)?;
         WholeFile::write(path, &text).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
         report += &format!("written to {}\n", path.display());
     }
     Ok(report)
+}
+
+/// The name of the scenario found, and the file it goes to. Whatever is wrong with them shows now, not after the fit.
+fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path), Refused> {
+    let name = path.file_stem().map_or_else(|| usual.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    scenario::check_name(&name)
+        .map_err(|what| Refused::Input(format!("--out: becomes the scenario's name: {what}")))?;
+    WholeFile::try_name(path).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
+    Ok((name, path))
 }
 
 /// A log of either kind; a ULog is known by its first bytes.
