@@ -101,7 +101,7 @@ impl Quantities {
         let strength = direct(STRENGTH);
         let whole = direct(WHOLE_DELAY);
         let whole_delay = Quantity::new(whole.value - late, whole.uncertainty);
-        let lag = lag(&direct(SQUARED_LAG), &whole_delay);
+        let lag = lag(&direct(SQUARED_LAG), &whole);
         let drag = |axis: usize| {
             let of_mass = direct(DRAG + axis);
             let relative = mass.uncertainty / mass.value * of_mass.value;
@@ -123,7 +123,8 @@ impl Quantities {
     }
 }
 
-/// Between what the squared lag allows; there is none below zero, and none above the whole.
+/// Between what the squared lag allows; there is none below zero, and none above the whole. That is the whole as it was flown: rates are late by
+/// what is counted for them or less, so without that the lag of a vehicle that acts at once would be cut short.
 fn lag(squared: &Quantity, whole: &Quantity) -> Quantity {
     let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
     let interval = squared.interval.map(root);

@@ -40,9 +40,19 @@ fn hover() -> String {
 #[test]
 fn four_vehicles_are_found_within_what_is_stated() {
     // Vehicles that are told rightly. How many of a hundred are not, the example `identify_coverage` counts.
-    let runs: Vec<(&str, u64)> = [(HUMMINGBIRD, 1), (HUMMINGBIRD, 3), (STUDY, 1), (STUDY, 3)].into();
-    runs.into_par_iter().for_each(|(file, seed)| {
-        let trial = Trial::flown(file, seed, Drag::Whole).unwrap();
+    each_is_found([(HUMMINGBIRD, 1, None), (HUMMINGBIRD, 3, None), (STUDY, 1, None), (STUDY, 3, None)]);
+}
+
+#[test]
+fn vehicles_that_act_without_delay_are_found_within_what_is_stated() {
+    // Their lag is more than lag and delay together come to, less what is counted for the rates.
+    each_is_found([(HUMMINGBIRD, 1, Some(0.0)), (HUMMINGBIRD, 2, Some(0.0)), (STUDY, 1, Some(0.0))]);
+}
+
+/// Vehicles like a file's, by seed and delay.
+fn each_is_found<const N: usize>(runs: [(&str, u64, Option<f64>); N]) {
+    runs.into_par_iter().for_each(|(file, seed, delay)| {
+        let trial = Trial::flown(file, seed, Drag::Whole, delay).unwrap();
         let log = FlightLog::from_csv(&trial.log).unwrap();
         assert_eq!((log.source, telling::unmoved(&log)), (Source::Estimator, vec![]));
         let told = identify(&log, &parse(file), &trial.bench).unwrap();

@@ -63,11 +63,11 @@ struct Truths {
 }
 
 impl Trial {
-    /// Number `seed` of the vehicles like `file`'s, in an air that pulls at it like `drag`.
+    /// Number `seed` of the vehicles like `file`'s, in an air that pulls at it like `drag`; `delay`, s, in place of the one drawn.
     ///
     /// # Errors
     /// If `file` is no scenario with rotors, or the flight fails.
-    pub fn flown(file: &str, seed: u64, drag: Drag) -> Result<Self, String> {
+    pub fn flown(file: &str, seed: u64, drag: Drag, delay: Option<f64>) -> Result<Self, String> {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut document: DocumentMut = file.parse().map_err(|error| format!("{error}"))?;
         let manoeuvre: DocumentMut = MANOEUVRE.parse().map_err(|error| format!("{error}"))?;
@@ -75,7 +75,8 @@ impl Trial {
             document[section] = manoeuvre[section].clone();
         }
         let model = Scenario::parse(file, "trial").map_err(|error| error.to_string())?;
-        let truths = Truths::drawn(&model, &mut random);
+        let mut truths = Truths::drawn(&model, &mut random);
+        truths.delay = delay.unwrap_or(truths.delay);
         truths.write(&mut document);
         for section in ["drag", "wind", "estimator", "sampling"] {
             document[section] = toml_edit::Item::Table(Table::new());
@@ -124,7 +125,8 @@ impl Trial {
             ("inertia z", told.inertia[2], t.inertia[2]),
             ("lag and delay", told.whole_delay, t.lag + t.delay - RATES_YOUNGER),
             ("lag", told.lag, t.lag),
-            ("delay", told.delay, t.delay - RATES_YOUNGER),
+            // None below zero is told.
+            ("delay", told.delay, (t.delay - RATES_YOUNGER).max(0.0)),
             ("centre of mass x", told.centre_of_mass[0], t.centre[0]),
             ("centre of mass y", told.centre_of_mass[1], t.centre[1]),
             ("drag x", told.drag[0], t.drag[0]),
