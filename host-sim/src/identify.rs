@@ -9,11 +9,13 @@
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
+//! | [`agreement`] | whether the two can be of one vehicle |
 //! | [`telling`] | what a log cannot tell, and what to fly for it |
 //! | [`output`], [`margins`] | the scenario with these numbers; what the uncertainty eats of its certificate |
 //! | [`command`] | all of it, from files to a report |
 //! | [`trials`] | flights of vehicles that are not what their file says, to see how often this is right |
 
+pub mod agreement;
 pub mod bench;
 pub mod command;
 pub mod fit;

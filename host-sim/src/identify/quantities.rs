@@ -1,7 +1,7 @@
 //! What is known of a vehicle in the end: a flight and a bench together, each number with its uncertainty.
 //!
 //! A flight knows c/m and c/J_i; a scale knows m; a bifilar swing knows J_i/m; a thrust stand knows c. In logarithms all of these are
-//! linear, so they are combined by least squares, each with its weight. Without a scale or a stand nothing tells m and c
+//! linear, so they are combined by least squares, each with its weight, unless they contradict each other ([`super::agreement`]). Without a scale or a stand nothing tells m and c
 //! apart: then the mass is taken from the file as it stands.
 //!
 //! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen quantities at once, and all
@@ -10,6 +10,7 @@
 //! with one degree of freedom less than there are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay
 //! and that of the lag, so it misses only where one of them does.
 
+use super::agreement::{Entry, contradiction};
 use super::bench::Bench;
 use super::fit::{BLOCKS, Fit};
 use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
@@ -79,6 +80,8 @@ pub struct Quantities {
     pub drag: [Quantity; 3],
     /// Whether the mass was weighed, or follows from a thrust stand.
     pub mass_is_measured: bool,
+    /// How bench and flight contradict each other, in words.
+    pub contradiction: Option<String>,
 }
 
 impl Quantities {
@@ -89,7 +92,8 @@ impl Quantities {
     pub fn combined(fit: &Fit, bench: &Bench, vehicle: &Vehicle, late: f64) -> Result<Self, String> {
         let (unknowns, covariance) = (&fit.unknowns, &fit.covariance);
         let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt());
-        let (values, spread) = logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
+        let (Known { values, covariance: spread }, contradiction) =
+            logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
         let deviation = |index: usize| f64::max(spread[(index, index)], 0.0).sqrt();
         let mass_0 = f64::from(vehicle.mass);
         let of_bench = |index: usize, unit: f64| Quantity::exponential(values[index], deviation(index), unit);
@@ -119,6 +123,7 @@ impl Quantities {
             centre_of_mass: [direct(CENTRE), direct(CENTRE + 1)],
             drag: [0, 1, 2].map(drag),
             mass_is_measured: bench.mass.is_some() || bench.thrust_scale.is_some(),
+            contradiction,
         })
     }
 }
@@ -142,7 +147,16 @@ fn spanned(value: f64, interval: [f64; 2]) -> Quantity {
 }
 
 /// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
-fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(SVector<f64, 5>, SMatrix<f64, 5, 5>)> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// The logarithms.
+    pub values: SVector<f64, 5>,
+    /// Theirs.
+    pub covariance: SMatrix<f64, 5, 5>,
+}
+
+/// What flight and bench know together, and in words how they contradict each other, if they do.
+fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Option<String>)> {
     const SHARES: [[f64; 5]; 4] = [
         [-1.0, 1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, -1.0, 0.0, 0.0],
@@ -154,26 +168,45 @@ fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(SVector<f6
     let values = SVector::<f64, 4>::from_fn(|i, _| fit.unknowns[i]);
     let mut information = shares.transpose() * flown * shares;
     let mut pull = shares.transpose() * flown * values;
-    let mut add = |row: [f64; 5], value: f64, deviation: f64| {
-        let row = SVector::<f64, 5>::from(row) / deviation;
+    let entries = entries(bench, vehicle);
+    for Entry { row, value, deviation, .. } in &entries {
+        let row = row / *deviation;
         information += row * row.transpose();
         pull += row * (value / deviation);
-    };
+    }
+    let covariance = information.try_inverse()?;
+    let known = Known { values: covariance * pull, covariance };
+    let left = values - shares * known.values;
+    let freedom = (SHARES.len() + entries.len()).saturating_sub(known.values.len());
+    let contradiction = contradiction(&entries, &known, left.dot(&(flown * left)), freedom);
+    Some((known, contradiction))
+}
+
+/// What the bench says of the logarithms; the file's mass, if it says nothing that tells it.
+fn entries(bench: &Bench, vehicle: &Vehicle) -> Vec<Entry> {
     let mass = f64::from(vehicle.mass);
+    let entry = |name: &str, row: [f64; 5], value: f64, deviation: f64| Entry {
+        name: name.to_owned(),
+        row: row.into(),
+        value,
+        deviation,
+    };
+    let (of_mass, of_scale) = ([1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]);
+    let mut entries = Vec::new();
     match (bench.mass, bench.thrust_scale) {
-        (Some(weighed), _) => add([1.0, 0.0, 0.0, 0.0, 0.0], (weighed.value / mass).ln(), weighed.relative()),
-        (None, None) => add([1.0, 0.0, 0.0, 0.0, 0.0], 0.0, TAKEN),
+        (Some(weighed), _) => entries.push(entry("weighing", of_mass, (weighed.value / mass).ln(), weighed.relative())),
+        (None, None) => entries.push(entry("the file's vehicle.mass", of_mass, 0.0, TAKEN)),
         (None, Some(_)) => {}
     }
     if let Some(scale) = bench.thrust_scale {
-        add([0.0, 1.0, 0.0, 0.0, 0.0], scale.value.ln(), scale.relative());
+        entries.push(entry("thrust_stand", of_scale, scale.value.ln(), scale.relative()));
     }
     for swing in &bench.swings {
         let mut row = [-1.0, 0.0, 0.0, 0.0, 0.0];
         row[2 + swing.axis] = 1.0;
         let of_file = f64::from(vehicle.inertia[swing.axis]) / mass;
-        add(row, (swing.over_mass.value / of_file).ln(), swing.over_mass.relative());
+        let name = format!("swing about {}", ["x", "y", "z"][swing.axis]);
+        entries.push(entry(&name, row, (swing.over_mass.value / of_file).ln(), swing.over_mass.relative()));
     }
-    let covariance = information.try_inverse()?;
-    Some((covariance * pull, covariance))
+    entries
 }

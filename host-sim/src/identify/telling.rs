@@ -1,7 +1,8 @@
 //! What a log cannot tell, and what to fly to learn it.
 //!
-//! Two ways to be refused. A vehicle that was not *moved* is moved by its own noise alone, and noise that feeds back passes for knowledge:
-//! so body rates and speeds must have been there to begin with. And a quantity whose interval is too wide is not known.
+//! Three ways to be refused. A vehicle that was not *moved* is moved by its own noise alone, and noise that feeds back passes for knowledge:
+//! so body rates and speeds must have been there to begin with. A quantity whose interval is too wide is not known. And numbers that no one vehicle has
+//! are of none: bench and flight that contradict each other, rotors that are nothing like the file's.
 
 use super::flight_log::FlightLog;
 use super::quantities::{COVERAGE, Quantities, Quantity};
@@ -13,6 +14,9 @@ const SHORTEST: f64 = 20.0;
 const TURNING: f64 = 0.025;
 /// Speeds asked for that show drag, across and along the vertical, root mean square about their mean, m/s.
 const MOVING: [f64; 3] = [0.25, 0.25, 0.08];
+
+/// What rotors may deliver of what the file says: beyond that they are others, or the log's thrust is not what was asked of them.
+const SCALES: [f64; 2] = [0.3, 3.0];
 
 /// What is missing of a flight, a line each; empty for a flight that can tell.
 #[must_use]
@@ -62,9 +66,21 @@ pub fn unmoved(log: &FlightLog) -> Vec<String> {
     missing
 }
 
-/// What is not known well enough to be written, a line each.
+/// What is not known well enough to be written, or is no vehicle's, a line each.
 #[must_use]
 pub fn unknown(told: &Quantities) -> Vec<String> {
+    if let Some(contradiction) = &told.contradiction {
+        return vec![contradiction.clone()];
+    }
+    let [least, greatest] = SCALES;
+    let scale = told.thrust_scale.value;
+    if !(least..=greatest).contains(&scale) {
+        return vec![format!(
+            "thrust scale: {} of what the file's rotors give, from {least} to {greatest} is believed: see that the log's thrust is what the rotors were asked for, N, and \
+             that mass and rotors are this vehicle's",
+            short(scale)
+        )];
+    }
     let relative = |quantity: &Quantity| COVERAGE * quantity.uncertainty / quantity.value.abs();
     let absolute = |quantity: &Quantity| COVERAGE * quantity.uncertainty;
     let calm = "fly in calmer air, or longer";

@@ -1,0 +1,84 @@
+//! Whether bench and flight can be of one vehicle.
+//!
+//! Put together they leave something over: of each bench entry its distance from what all the rest says, and of the flight its own. Squared, over
+//! their variances and summed, that is chi-square with as many degrees of freedom as there are statements more than unknowns. Beyond
+//! [`DEVIATIONS`] no combination is worth its uncertainty: a number was mistyped, or another vehicle weighed, and least squares would
+//! share the error out among all numbers, with tight intervals around the wrong values.
+
+use super::quantities::Known;
+use crate::table::{percent, short};
+use nalgebra::{SMatrix, SVector};
+
+/// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by Student's t with 15 degrees of freedom,
+/// which is how well the flight's uncertainty is itself known ([`super::fit::BLOCKS`]).
+const DEVIATIONS: f64 = 4.073;
+/// The same of a normal distribution.
+const NORMAL: f64 = 3.291;
+/// Its one-sided quantile at 99.9 %, for [`greatest`].
+const ONE_SIDED: f64 = 3.090;
+
+/// A bench entry: a share of each logarithm, their sum as it was measured, and its standard uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// As the report calls it.
+    pub name: String,
+    /// Of ln of m, c, J_x, J_y, J_z.
+    pub row: SVector<f64, 5>,
+    /// Measured.
+    pub value: f64,
+    /// Standard.
+    pub deviation: f64,
+}
+
+/// Says which entry contradicts the rest, if all together leave more over than chance does. `flight` is the flight's own part of chi-square, `freedom`
+/// how many statements there are more than unknowns.
+#[must_use]
+pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usize) -> Option<String> {
+    let left = |entry: &Entry| entry.value - entry.row.dot(&known.values);
+    let bench: f64 = entries.iter().map(|entry| (left(entry) / entry.deviation).powi(2)).sum();
+    if freedom == 0 || bench + flight <= greatest(freedom) {
+        return None;
+    }
+    // What is left over of an entry, less its own share in the combination: its distance from what all the rest says.
+    let apart = |entry: &Entry| {
+        let own = spread(&known.covariance, &entry.row) / entry.deviation.powi(2);
+        let others = (1.0 - own).max(1e-9);
+        (left(entry) / others, entry.deviation / others.sqrt())
+    };
+    let worst = entries.iter().map(|entry| (entry, apart(entry)));
+    let worst = worst.max_by(|(_, (a, s)), (_, (b, t))| (a / s).abs().total_cmp(&(b / t).abs()));
+    worst.map(|(entry, (distance, deviation))| {
+        format!(
+            "bench and flight contradict: {} deviates most, by {} from what all the rest says, {} standard uncertainties: measure it again, and see that bench, \
+             log and scenario are of one vehicle",
+            entry.name,
+            percent(distance.exp_m1()),
+            short((distance / deviation).abs())
+        )
+    })
+}
+
+/// The variance of the sum of these shares.
+fn spread(covariance: &SMatrix<f64, 5, 5>, row: &SVector<f64, 5>) -> f64 {
+    row.dot(&(covariance * row))
+}
+
+/// The quantile of chi-square at 99.9 % (E. B. Wilson and M. M. Hilferty, 1931), as much greater as one statement too many has it.
+fn greatest(freedom: usize) -> f64 {
+    let part = 2.0 / (9.0 * freedom as f64);
+    freedom as f64 * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3) * (DEVIATIONS / NORMAL).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_tables() {
+        // Chi-square at 99.9 %: within 4 %, on the safe side.
+        for (freedom, table) in [(1, 10.828), (2, 13.816), (4, 18.467), (10, 29.588)] {
+            let ratio = greatest(freedom) / (DEVIATIONS / NORMAL).powi(2) / table;
+            assert!((0.99..1.04).contains(&ratio), "{freedom}: {ratio}");
+        }
+    }
+}
