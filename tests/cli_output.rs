@@ -85,6 +85,49 @@ fn an_answer_that_standard_output_does_not_take_exits_with_2() {
 }
 
 #[test]
+fn an_error_that_standard_error_does_not_take_keeps_its_status() {
+    let directory = directory("stderr");
+    let code = |arguments: &[&str]| command(&directory, arguments).stderr(full()).status().unwrap().code();
+    assert_eq!(code(&["fly", "nosuch.toml"]), Some(2));
+    let log = "t,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,thrust,tau_x,tau_y,tau_z\n\
+               0,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n0.01,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n";
+    std::fs::write(directory.join("log.csv"), log).unwrap();
+    assert_eq!(code(&["identify", "log.csv"]), Some(1));
+}
+
+#[test]
+fn a_name_that_a_directory_has_is_refused_before_anything_is_flown_or_replaced() {
+    let directory = directory("directories");
+    std::fs::write(directory.join("study.toml"), STUDY).unwrap();
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    let long = with(PAPER, "duration", "duration = 10000");
+    std::fs::write(directory.join("long.toml"), long).unwrap();
+    std::fs::create_dir_all(directory.join("out/report.html")).unwrap();
+    std::fs::write(directory.join("out/log.csv"), "kept").unwrap();
+    for arguments in [
+        &["fly", "brief.toml", "--out", "out"][..],
+        // A flight of minutes, which is not flown.
+        &["fly", "long.toml", "--out", "out"],
+        &["sitl", "study.toml", "--duration", "1", "--mcap", "out"],
+        &["hil", "study.toml", "--connect", "127.0.0.1:1", "--log", "out"],
+    ] {
+        let output = host_sim(&directory, arguments);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count(), stdout(&output)), (2, 1, String::new()), "{message}");
+        assert!(message.contains("out") && message.contains("cannot be written: is a directory"), "{message}");
+    }
+    assert_eq!(std::fs::read_to_string(directory.join("out/log.csv")).unwrap(), "kept");
+    assert_eq!(files(&directory.join("out")), ["log.csv", "report.html"]);
+    let output = host_sim(&directory, &["sitl", "study.toml", "--duration", "1", "--parameters", "none/mine.bin"]);
+    assert_eq!((status(&output), stdout(&output)), (2, String::new()));
+    assert!(
+        stderr(&output).starts_with("error: --parameters none/mine.bin: cannot be written: "),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
 fn a_sessions_summary_that_standard_output_does_not_take_exits_with_2() {
     let directory = directory("hil");
     std::fs::write(directory.join("study.toml"), STUDY).unwrap();

@@ -28,7 +28,7 @@ use searches::{run_compare, run_tune};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use terminal::{BAD_INPUT, print, print_text, same_file, status, text_of, watch};
+use terminal::{BAD_INPUT, complain, print, print_text, same_file, status, text_of, watch};
 
 /// The largest log that nobody is asked about, bytes.
 const LARGE_LOG: u64 = 1_000_000_000;
@@ -51,7 +51,7 @@ fn main() -> ExitCode {
         },
     };
     outcome.unwrap_or_else(|message| {
-        eprintln!("error: {message}");
+        complain(format_args!("error: {message}"));
         ExitCode::from(BAD_INPUT)
     })
 }
@@ -90,7 +90,7 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
                 "{named}{size}: take a shorter duration, a lower control.rate, or allow it with --large-log"
             ));
         }
-        eprintln!("{named}{size}");
+        complain(format_args!("{named}{size}"));
     }
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
     fly_into(&scenario, &text, &LawChoice::Ours, &directory, mcap)
@@ -107,7 +107,7 @@ fn fly_into(
     let outcome = match fly(scenario, text, law, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
-            eprintln!("error: {}: {error}", scenario.name);
+            complain(format_args!("error: {}: {error}", scenario.name));
             let signal = if let FlyError::Interrupted(signal) = error { Some(signal) } else { None };
             return Ok(status(false, signal));
         }
@@ -157,7 +157,7 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
             Ok(status(summary.holds, None))
         }
         Err(CampaignError::Interrupted(signal)) => {
-            eprintln!("error: {}: {}", directory.display(), CampaignError::Interrupted(signal));
+            complain(format_args!("error: {}: {}", directory.display(), CampaignError::Interrupted(signal)));
             Ok(status(false, Some(signal)))
         }
         Err(error) => Err(error.to_string()),
@@ -198,7 +198,7 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
             Ok(status(true, signal))
         }
         Err(error @ HilError::Flight(_)) => {
-            eprintln!("error: {}: {error}", scenario.name);
+            complain(format_args!("error: {}: {error}", scenario.name));
             Ok(status(false, None))
         }
         Err(error) => Err(error.to_string()),
@@ -225,7 +225,7 @@ fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
             Ok(status(true, None))
         }
         Err(Refused::CannotTell(what)) => {
-            eprintln!("error: {what}");
+            complain(format_args!("error: {what}"));
             Ok(status(false, None))
         }
         Err(Refused::Input(what)) => Err(what),
@@ -244,7 +244,7 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
             Ok(status(true, summary.signal))
         }
         Err(error @ SitlError::Diverged(_)) => {
-            eprintln!("error: {}: {error}", scenario.name);
+            complain(format_args!("error: {}: {error}", scenario.name));
             Ok(status(false, None))
         }
         Err(SitlError::Input(what)) => Err(what),

@@ -1,6 +1,7 @@
 //! What commands have in common at a terminal: a file read once, output written whole, signals watched, and the status they end with.
 
 use host_sim::interrupt::Interrupt;
+use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -20,6 +21,14 @@ pub fn print(write: impl FnOnce() -> io::Result<()>) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Says on standard error what is wrong. Where even that cannot be written, the status is all that is left.
+pub fn complain(what: impl fmt::Display) {
+    // File names may hold what a terminal acts on.
+    let shown = |c: char| if c.is_control() && c != '\n' { c.escape_debug().to_string() } else { c.to_string() };
+    let text: String = what.to_string().chars().map(shown).collect();
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
 pub fn print_text(text: &str) -> Result<(), String> {
