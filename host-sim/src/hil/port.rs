@@ -6,11 +6,14 @@ use crate::interrupt::Interrupt;
 use firmware::link::frame::Parser;
 use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
 /// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
 const PAUSE: Duration = Duration::from_millis(20);
+
+/// The longest attempt to connect: the system itself would try for minutes where nobody answers at all. Long enough for any line.
+const ATTEMPT: Duration = Duration::from_millis(500);
 
 /// Where the other side is to be found.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -152,15 +155,27 @@ pub(super) fn connected(address: &Address, patience: Duration, interrupt: &Inter
 fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     let started = Instant::now();
     loop {
-        interrupted(interrupt)?;
-        match TcpStream::connect(to) {
-            Ok(stream) => return Ok(stream),
+        let (candidates, mut failed) = match to.to_socket_addrs() {
+            Ok(candidates) => (candidates.collect(), None),
             Err(error) if error.kind() == ErrorKind::InvalidInput => return Err(PortError::Address(to.into(), error)),
-            Err(error) if started.elapsed() >= patience => {
-                return Err(PortError::Nobody(address.clone(), patience, Some(error)));
+            Err(error) => (Vec::new(), Some(error)),
+        };
+        for candidate in candidates {
+            interrupted(interrupt)?;
+            let left = patience.saturating_sub(started.elapsed()).max(PAUSE);
+            match TcpStream::connect_timeout(&candidate, left.min(ATTEMPT)) {
+                Ok(stream) => return Ok(stream),
+                Err(error) if error.kind() == ErrorKind::InvalidInput => {
+                    return Err(PortError::Address(to.into(), error));
+                }
+                Err(error) => failed = Some(error),
             }
-            Err(_) => std::thread::sleep(PAUSE),
         }
+        interrupted(interrupt)?;
+        if started.elapsed() >= patience {
+            return Err(PortError::Nobody(address.clone(), patience, failed));
+        }
+        std::thread::sleep(PAUSE);
     }
 }
 

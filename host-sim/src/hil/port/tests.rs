@@ -88,6 +88,28 @@ fn nobody_is_waited_for_without_end() {
 }
 
 #[test]
+fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
+    // Nobody accepts: once as many wait as the system lets, it answers no more.
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let waiting: Vec<TcpStream> =
+        (0..1000).map_while(|_| TcpStream::connect_timeout(&address, Duration::from_millis(100)).ok()).collect();
+    assert!(waiting.len() < 1000);
+    let address = Address::Connect(address.to_string());
+    let started = Instant::now();
+    let Err(PortError::Nobody(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else { panic!("found") };
+    let interrupt = Interrupt::default();
+    let asking = interrupt.clone();
+    let user = std::thread::spawn(move || {
+        std::thread::sleep(PATIENCE);
+        asking.ask();
+    });
+    assert!(matches!(Port::open(&address, 4 * LONG, &interrupt), Err(PortError::Interrupted(_))));
+    user.join().unwrap();
+    assert!(started.elapsed() < LONG, "{:?}", started.elapsed());
+}
+
+#[test]
 fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
     let (mut port, mut board) = connected(LONG);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
