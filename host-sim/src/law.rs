@@ -12,7 +12,9 @@
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
 use crate::flight;
+use controller_core::certificate::configuration::LawParameters;
 use controller_core::error::ParameterError;
+use controller_core::extended::force::ForceGenerator;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
@@ -20,7 +22,7 @@ use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use scenario::Scenario;
 use std::fmt;
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, Read, Write};
 
 /// Numbers of a line.
 const NUMBERS: usize = 33;
@@ -45,6 +47,9 @@ const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
 /// Longest dt, s.
 const GREATEST_PERIOD: f64 = 0.1;
+
+/// Longest line, bytes: whatever is sent, memory is not what runs out.
+const LONGEST: usize = 1 << 16;
 
 /// Why lines could not be served to their end.
 #[derive(Debug)]
@@ -71,6 +76,8 @@ pub struct LawServer {
     law: Law,
     /// The reference's a_z must stay above this, m/s^2.
     least_vertical_acceleration: f64,
+    /// The file's greater bandwidth of a force estimate, 1/s; none where none is estimated.
+    bandwidth: Option<f32>,
 }
 
 /// The numbers of one line, in order.
@@ -102,6 +109,13 @@ impl LawServer {
             law: flight::law(scenario)?,
             // A step of single precision above the limit, so that rounding never turns a refused number into a served one.
             least_vertical_acceleration: fall - gravity * (1.0 - f64::from(f32::EPSILON)),
+            bandwidth: match configuration.law() {
+                LawParameters::Paper(_) => None,
+                LawParameters::Extended(law) => {
+                    let estimates = law.parameters.estimates;
+                    Some(estimates.force_bandwidth_across.max(estimates.force_bandwidth_vertical))
+                }
+            },
         })
     }
 
@@ -111,8 +125,15 @@ impl LawServer {
     /// If the input cannot be read or the output not written, but for a closed pipe.
     pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> Result<(), ServeError> {
         let mut line = Vec::new();
-        while input.read_until(b'\n', &mut line).map_err(ServeError::Input)? > 0 {
-            let answered = match self.answer(&String::from_utf8_lossy(&line)) {
+        let longest = LONGEST as u64 + 1;
+        while input.by_ref().take(longest).read_until(b'\n', &mut line).map_err(ServeError::Input)? > 0 {
+            let is_too_long = line.len() > LONGEST;
+            let answer = if is_too_long {
+                Err(format!("a line must have at most {LONGEST} bytes, its end included"))
+            } else {
+                self.answer(&String::from_utf8_lossy(&line))
+            };
+            let answered = match answer {
                 Ok(Wrench { thrust, torque }) => {
                     writeln!(output, "{thrust:?} {:?} {:?} {:?}", torque.x, torque.y, torque.z)
                 }
@@ -121,6 +142,9 @@ impl LawServer {
             match answered.and_then(|()| output.flush()) {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
                 other => other.map_err(ServeError::Output)?,
+            }
+            if is_too_long && !line.ends_with(b"\n") {
+                input.skip_until(b'\n').map_err(ServeError::Input)?;
             }
             line.clear();
         }
@@ -165,9 +189,23 @@ impl LawServer {
             return Err(at_time(format!("reference a[2]: must stay above M_p - g = {limit:.6}, found {}", values[23])));
         }
 
-        self.law.set_period(period as f32).map_err(|error| at_time(error.to_string()))?;
+        self.law.set_period(period as f32).map_err(|error| at_time(self.too_long(period, &error)))?;
         let (wrench, _) = self.law.step(&state, &reference).map_err(|error| at_time(error.to_string()))?;
         Ok(wrench.scaled(1.0 / self.law.thrust_scale()))
+    }
+}
+
+impl LawServer {
+    /// Why the law does not take a dt that other laws would.
+    fn too_long(&self, period: f64, error: &ParameterError) -> String {
+        match self.bandwidth {
+            Some(bandwidth) if error.field.starts_with("estimates.force_bandwidth") => format!(
+                "dt: must be at most {} s, {} over this file's greatest estimates.force_bandwidth of {bandwidth}/s, found {period}",
+                ForceGenerator::STEP_MAX / bandwidth,
+                ForceGenerator::STEP_MAX
+            ),
+            _ => error.to_string(),
+        }
     }
 }
 
