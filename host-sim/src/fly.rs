@@ -24,6 +24,9 @@ use std::path::{Path, PathBuf};
 /// Ticks between two looks at the clock.
 const TICKS_PER_SHOW: u64 = 5000;
 
+/// What is written after the flight; whether that can be is asked before.
+const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
+
 /// Why a flight left no report.
 #[derive(Debug)]
 pub enum FlyError {
@@ -103,6 +106,9 @@ pub fn fly(
     let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
     let mut flight = flier.flight(scenario)?;
     std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    for path in TEXTS.map(|name| directory.join(name)) {
+        WholeFile::try_name(&path).map_err(failed(&path))?;
+    }
     let mut log = Output::create(directory, "log.csv")?;
     let mut recording = mcap.then(|| Recorder::create(directory, scenario, text)).transpose()?;
     let (flown, record, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
@@ -123,16 +129,16 @@ pub fn fly(
     let over = report_page::Flight { scenario, text, law, verdict: &verdict, certification, claims, flown: &flown };
     let samples = record.samples();
     let texts = [
-        ("fig1.svg", plots::figure_1(scenario, &samples)?),
-        ("fig2.svg", plots::figure_2(scenario, &samples)?),
-        ("first-seconds.svg", plots::first_seconds(scenario, &samples)?),
-        ("flight.svg", plots::path::picture(&samples)?),
-        ("report.md", report(scenario, &outcome)),
-        ("report.html", report_page::page(&over, page).html()),
+        plots::figure_1(scenario, &samples)?,
+        plots::figure_2(scenario, &samples)?,
+        plots::first_seconds(scenario, &samples)?,
+        plots::path::picture(&samples)?,
+        report(scenario, &outcome),
+        report_page::page(&over, page).html(),
     ];
     let mut outputs = vec![log];
     outputs.extend(recording.map(Recorder::finish).transpose()?);
-    for (name, text) in texts {
+    for (name, text) in TEXTS.into_iter().zip(texts) {
         let mut output = Output::create(directory, name)?;
         output.write(|file| file.write_all(text.as_bytes()))?;
         outputs.push(output);

@@ -29,7 +29,7 @@ use scenario::Scenario;
 use senses::Senses;
 use std::fmt;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use vehicle::HilVehicle;
 
@@ -54,7 +54,7 @@ pub enum HilError {
     /// The other side sent something impossible, or the motion is no longer finite.
     Flight(String),
     /// The log cannot be written.
-    Log(io::Error),
+    Log(PathBuf, io::Error),
 }
 
 impl fmt::Display for HilError {
@@ -62,7 +62,7 @@ impl fmt::Display for HilError {
         match self {
             Self::Scenario(what) | Self::Flight(what) => f.write_str(what),
             Self::Port(error) => write!(f, "{error}"),
-            Self::Log(error) => write!(f, "--log: cannot be written: {error}"),
+            Self::Log(path, error) => write!(f, "--log {}: cannot be written: {error}", path.display()),
         }
     }
 }
@@ -138,7 +138,8 @@ pub fn serve(
 ) -> Result<Summary, HilError> {
     let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
     let mut senses = Senses::new(scenario);
-    let mut log = log.map(Log::create).transpose().map_err(HilError::Log)?;
+    let unwritable = |error| HilError::Log(log.unwrap_or(Path::new("")).to_owned(), error);
+    let mut rows = log.map(Log::create).transpose().map_err(unwritable)?;
     let period = scenario.timing.period();
     let ticks = |seconds: f64| (seconds / period).round() as u64;
     let (end, pose_end) = (session.duration.map(ticks), session.pose_until.map(ticks));
@@ -168,8 +169,8 @@ pub fn serve(
         if let Some(touchdown) = moved.touchdown {
             touchdowns.push((time, touchdown.speed, touchdown.tilt));
         }
-        if let Some(log) = &mut log {
-            log.row(time, &moved.state, &controls, moved.thrust).map_err(HilError::Log)?;
+        if let Some(rows) = &mut rows {
+            rows.row(time, &moved.state, &controls, moved.thrust).map_err(unwritable)?;
         }
         let mut answer = senses.answer(controls.time, &moved);
         if pose_end.is_some_and(|end| tick >= end) {
@@ -192,8 +193,8 @@ pub fn serve(
             progress.show(pace.ticks());
         }
     };
-    if let Some(log) = log {
-        log.file.finish().map_err(HilError::Log)?;
+    if let Some(rows) = rows {
+        rows.file.finish().map_err(unwritable)?;
     }
     let position = vehicle.state().position;
     let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());

@@ -23,6 +23,7 @@ use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
 use host_sim::sitl::{self, SitlError};
 use host_sim::table::short;
+use host_sim::whole_file::WholeFile;
 use scenario::{STUDY, Scenario};
 use searches::{run_compare, run_tune};
 use std::io;
@@ -182,6 +183,9 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
     let (session, ground) = (arguments.session()?, arguments.ground()?);
     let (interrupt, patience) = (watch()?, arguments.patience()?);
+    if let Some(log) = &arguments.log {
+        WholeFile::try_name(log).map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
+    }
     let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {

@@ -172,10 +172,10 @@ impl Sitl {
         let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
         let in_file = |what| format!("{}: {what}", scenario.name);
         let world = World::new(scenario, &clock, faults.clone(), up.clone()).map_err(in_file)?;
-        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
         let flash = DeskFlash::open(session.parameters.clone())?;
 
         let identity = board::identity(scenario);
+        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
         let loops = match identity {
             // Judged already, when the firmware's library was built.
             firmware::configuration::IDENTITY => &firmware::configuration::LOOPS,
@@ -308,11 +308,11 @@ pub fn run(
     interrupt: &Interrupt,
     mut tell: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
-    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
     let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
+    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
     tell(&format!(
         "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
         scenario.name
