@@ -232,7 +232,7 @@ fn interrupt(child: &mut Child, signal: &str) {
 fn an_interrupted_flight_leaves_no_file() {
     let directory = directory("interrupted");
     std::fs::write(directory.join("long.toml"), with(PAPER, "duration", "duration = 10000")).unwrap();
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let mut child = spawn(&directory, &["fly", "long.toml", "--out", "out"]);
         wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
         interrupt(&mut child, signal);
@@ -242,6 +242,26 @@ fn an_interrupted_flight_leaves_no_file() {
         assert!(message.contains("interrupted") && message.contains("nothing is written"), "{message}");
         assert_eq!((stdout(&output), files(&directory.join("out"))), (String::new(), vec![]));
     }
+}
+
+#[test]
+fn a_terminal_that_closes_ends_no_flight_that_nohup_keeps() {
+    let directory = directory("nohup");
+    std::fs::write(directory.join("long.toml"), with(PAPER, "duration", "duration = 10000")).unwrap();
+    // `exec`: the number is that of the flight.
+    let kept = "trap '' HUP; exec \"$@\"";
+    let mut child = Command::new("sh")
+        .args(["-c", kept, "sh", env!("CARGO_BIN_EXE_host-sim"), "fly", "long.toml", "--out", "out"])
+        .current_dir(&directory)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
+    interrupt(&mut child, "HUP");
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none());
+    interrupt(&mut child, "TERM");
+    assert_eq!(status(&child.wait_with_output().unwrap()), 143);
 }
 
 #[test]

@@ -50,7 +50,7 @@ Exit status:
   1         a well-posed run that fails: a claim, an inequality of the certificate, a sampled loop that is unstable or without
             margin, a flight that does not reach or hold its reference, gains that were not found
   2         input that cannot be used, or output that cannot be written; one line on stderr says what and why
-  130, 143  interrupted by SIGINT or SIGTERM";
+  129, 130, 143  interrupted by SIGHUP, SIGINT or SIGTERM";
 
 const FLY_HELP: &str = "\
 Besides the file's limits and the certificate's bounds a flight claims

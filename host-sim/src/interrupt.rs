@@ -1,6 +1,7 @@
-//! Being asked to stop: SIGINT (Ctrl-C) and SIGTERM end long work at its next step, so that nothing half-written stays behind.
+//! Being asked to stop: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so that nothing half-written
+//! stays behind.
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,13 +11,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
-    /// Takes note of both signals from now on, instead of being ended by them.
+    /// Takes note of these signals from now on, instead of being ended by them. A SIGHUP that is ignored, as under `nohup`, stays ignored.
     ///
     /// # Errors
     /// If the system refuses.
     pub fn watch() -> io::Result<Self> {
         let interrupt = Self::default();
-        for signal in [SIGINT, SIGTERM] {
+        for signal in [SIGINT, SIGTERM].into_iter().chain(ends_on_hangup().then_some(SIGHUP)) {
             signal_hook::flag::register_usize(signal, Arc::clone(&interrupt.0), signal as usize)?;
         }
         Ok(interrupt)
@@ -32,4 +33,11 @@ impl Interrupt {
     pub fn signal(&self) -> Option<u8> {
         u8::try_from(self.0.load(Ordering::Relaxed)).ok().filter(|signal| *signal > 0)
     }
+}
+
+/// Whether a SIGHUP would end this program, if the system says so: it does on Linux.
+fn ends_on_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    ignored.is_some_and(|ignored| ignored & 1 << (SIGHUP - 1) == 0)
 }
