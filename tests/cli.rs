@@ -139,6 +139,57 @@ fn malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output() {
 }
 
 #[test]
+#[test]
+fn whatever_texts_and_file_names_hold_an_error_is_one_line_that_no_terminal_acts_on() {
+    let directory = directory("escaped");
+    let text = "\"\"\"a\nb\\u001B[31mc\"\"\"";
+    for (section, field) in [
+        (format!("[sensors]\nvelocity = {text}\n"), "sensors.velocity"),
+        (format!("[campaign]\nreference = {text}\n"), "campaign.reference"),
+        (format!("[drag]\nlinear = [0.1, 0.1, 0.1]\n[wind]\ngust = {{ kind = {text} }}\n"), "wind.gust.kind"),
+        (
+            format!(
+                "[rotors]\nposition = [[0, 0, 0]]\nspin = [{text}]\nthrust_coefficient = 1\ndrag_coefficient = 1\nspeed = [0, 1]\n"
+            ),
+            "rotors.spin[0]",
+        ),
+        (
+            format!(
+                "[rotors]\nposition = []\nspin = []\nthrust_coefficient = 1\ndrag_coefficient = 1\nspeed = [0, {text}]\n"
+            ),
+            "rotors.speed",
+        ),
+    ] {
+        std::fs::write(directory.join("bad.toml"), format!("{PAPER}\n{section}")).unwrap();
+        let output = host_sim(&directory, &["fly", "bad.toml"]);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{message}");
+        assert!(message.contains(field) && message.contains("a\\nb\\u{1b}[31mc"), "{message}");
+    }
+    let name = "a\nb\u{1b}[31m.toml";
+    std::fs::write(directory.join(name), "name = 1\n").unwrap();
+    for arguments in [["certify", name], ["certify", "a\u{1b}none.toml"], ["identify", "a\u{1b}none.csv"]] {
+        let message = stderr(&host_sim(&directory, &arguments));
+        assert!(
+            message.lines().count() == 1 && message.contains("\\u{1b}") && !message.contains('\u{1b}'),
+            "{message:?}"
+        );
+    }
+}
+
+#[test]
+fn a_sessions_errors_name_the_file() {
+    let directory = directory("named");
+    std::fs::write(directory.join("mine.toml"), PAPER).unwrap();
+    let output = host_sim(&directory, &["sitl", "mine.toml"]);
+    assert!(stderr(&output).starts_with("error: mine.toml: rotors: missing"), "{}", stderr(&output));
+    let board = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = board.local_addr().unwrap().to_string();
+    let output = host_sim(&directory, &["hil", "mine.toml", "--connect", &address]);
+    assert!(stderr(&output).starts_with("error: mine.toml: rotors: a flight controller"), "{}", stderr(&output));
+    assert_eq!(status(&output), 2);
+}
+
 fn malformed_waypoints_name_the_point() {
     let directory = directory("waypoints");
     let head: String = PAPER.split("[initial]").next().unwrap().to_owned();

@@ -92,6 +92,8 @@ fn what_cannot_be_read_is_named_with_its_place() {
     file("narrow.csv", "t,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,thrust,tau_x,tau_y\n");
     file("still.csv", &format!("{header}{0}{0}", "1,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n"));
     file("empty.csv", "");
+    file("marked.csv", &format!("\u{feff}{header}0,0,0,0,1,0,0,0,0,0,0,0,0,0,inf,0,0,0\n"));
+    file("key.toml", "\"a\\nb\\u001Bc\" = 1\n");
     file("cut.ulg", "ULog\u{1}\u{12}5 and nothing else");
     for (asked, said) in [
         (vec!["none.csv"], "error: none.csv: cannot be read"),
@@ -102,6 +104,8 @@ fn what_cannot_be_read_is_named_with_its_place() {
         (vec!["narrow.csv"], "error: narrow.csv: line 1: has no column tau_z"),
         (vec!["still.csv"], "error: still.csv: t: must increase from row to row"),
         (vec!["empty.csv"], "error: empty.csv: line 1: has no column t"),
+        (vec!["marked.csv"], "error: marked.csv: line 2, thrust: must be a finite number, found \"inf\""),
+        (vec!["log.csv", "--bench", "key.toml"], "error: key.toml: a\\nb\\u{1b}c: unknown key"),
         (vec!["cut.ulg"], "error: cut.ulg: holds no record of a tick"),
         (vec!["log.csv", "--bench", "mass.toml"], "error: mass.toml: weighing.uncertainty: is missing"),
     ] {

@@ -14,7 +14,7 @@
 //! ```
 
 use crate::sampled_loop::GREATEST_DELAY;
-use crate::section::{FieldError, Section, vector_at};
+use crate::section::{FieldError, Section, in_line, vector_at};
 use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::Configuration;
@@ -130,7 +130,7 @@ fn read_time(section: &Section, key: &str) -> Result<f64, FieldError> {
 fn read_speeds(section: &Section) -> Result<(f64, f64), FieldError> {
     const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
     let elements = section.elements("speed", WANTED)?;
-    let found = || elements.iter().map(|(_, value)| value.to_string()).collect::<Vec<_>>().join(", ");
+    let found = || elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
     let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}, found [{}]", found()));
     let numbers: Vec<f64> = elements.iter().filter_map(|(_, value)| number(value)).collect();
     match numbers.as_slice() {
@@ -149,7 +149,10 @@ fn read_spin(path: String, value: &Value) -> Result<Spin, FieldError> {
     match value.as_str() {
         Some("cw") => Ok(Spin::Clockwise),
         Some("ccw") => Ok(Spin::CounterClockwise),
-        _ => Err(FieldError::new(path, format!("must be \"cw\" or \"ccw\" as seen from above, found {value}"))),
+        _ => Err(FieldError::new(
+            path,
+            format!("must be \"cw\" or \"ccw\" as seen from above, found {}", in_line(value)),
+        )),
     }
 }
 

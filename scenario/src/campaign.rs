@@ -262,7 +262,7 @@ fn read_choice<T: Copy, const N: usize>(
     let found = section.text(key)?;
     choices.iter().find(|(name, _)| *name == found).map(|(_, choice)| *choice).ok_or_else(|| {
         let names = choices.map(|(name, _)| format!("\"{name}\"")).join(", ");
-        FieldError::new(section.path_of(key), format!("must be one of {names}, found \"{found}\""))
+        FieldError::new(section.path_of(key), format!("must be one of {names}, found {found:?}"))
     })
 }
 

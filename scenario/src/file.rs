@@ -199,11 +199,17 @@ pub struct ScenarioError {
 
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.file, self.what)
+        write!(f, "{}: {}", one_line(&self.file), self.what)
     }
 }
 
 impl std::error::Error for ScenarioError {}
+
+/// A file's name without line ends, and whatever else a terminal acts on.
+fn one_line(name: &str) -> String {
+    let shown = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
+    name.chars().map(shown).collect()
+}
 
 /// Refuses a scenario's name that is not safe as a directory's.
 ///

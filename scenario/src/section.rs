@@ -76,7 +76,7 @@ impl<'a> Section<'a> {
         let (parents, last) = path.rsplit_once('.').map_or((None, path), |(parents, last)| (Some(parents), last));
         let mut parents = parents.into_iter().flat_map(|path| path.split('.'));
         let table = parents.try_fold(self.table, |table, key| element(table, key)?.as_table())?;
-        element(table, last).map(Value::to_string)
+        element(table, last).map(in_line)
     }
 
     /// A refusal by one of the law's constructors, which know the file's dotted paths; `self` is the whole file, for the
@@ -192,6 +192,17 @@ impl<'a> Section<'a> {
 
     fn mismatch(&self, key: &str, wanted: &str, found: &Value) -> FieldError {
         FieldError::new(self.path_of(key), format!("must be {wanted}, found {}", found.type_str()))
+    }
+}
+
+/// A value as TOML has it, in one line: a text may hold line ends, and whatever else a terminal acts on.
+#[must_use]
+pub fn in_line(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("{text:?}"),
+        Value::Array(elements) => format!("[{}]", elements.iter().map(in_line).collect::<Vec<_>>().join(", ")),
+        Value::Table(_) => "a table".to_owned(),
+        other => other.to_string(),
     }
 }
 

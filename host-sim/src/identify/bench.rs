@@ -150,7 +150,7 @@ fn section<'a>(item: &'a Item, name: &str, keys: &[&str]) -> Result<&'a dyn Tabl
 
 fn allow(table: &dyn TableLike, path: &str, keys: &[&str]) -> Result<(), String> {
     match table.iter().find(|(key, _)| !keys.contains(key)) {
-        Some((key, _)) => Err(format!("{path}{key}: unknown key (allowed: {})", keys.join(", "))),
+        Some((key, _)) => Err(format!("{path}{}: unknown key (allowed: {})", key.escape_debug(), keys.join(", "))),
         None => Ok(()),
     }
 }

@@ -131,7 +131,7 @@ fn read_velocity(section: &Section) -> Result<VelocitySource, FieldError> {
         "alpha-beta" => &OPTIONS[1..2],
         "observer" => &OPTIONS[1..],
         other => {
-            let problem = format!("must be \"exact\", \"alpha-beta\" or \"observer\", found \"{other}\"");
+            let problem = format!("must be \"exact\", \"alpha-beta\" or \"observer\", found {other:?}");
             return Err(FieldError::new(section.path_of("velocity"), problem));
         }
     };

@@ -99,7 +99,7 @@ fn read_gust(section: &Section) -> Result<Gust, FieldError> {
         "one-cosine" => Shape::OneCosine(duration()?),
         "pulse" => Shape::Pulse(duration()?),
         other => {
-            let problem = format!("must be \"step\", \"one-cosine\" or \"pulse\", found \"{other}\"");
+            let problem = format!("must be \"step\", \"one-cosine\" or \"pulse\", found {other:?}");
             return Err(FieldError::new(section.path_of("kind"), problem));
         }
     };
