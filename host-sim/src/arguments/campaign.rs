@@ -98,7 +98,9 @@ impl CampaignArguments {
         let (mut text, mut name) = (read(&self.file)?, self.file.display().to_string());
         if let Some(draws) = &self.draws {
             let section = read(draws)?;
-            only_campaign(&section).map_err(|problem| format!("{}: {problem}", draws.display()))?;
+            // The mark that a file may begin with has no place within one.
+            let section = section.strip_prefix('\u{feff}').unwrap_or(&section);
+            only_campaign(section).map_err(|problem| format!("{}: {problem}", draws.display()))?;
             // The scenario has to be one by itself, so that errors in it are found where they are.
             Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
             text = format!("{}\n\n{section}", text.trim_end());

@@ -89,7 +89,8 @@ impl FlightLog {
     /// # Errors
     /// Names the line and the column that cannot be used.
     pub fn from_csv(text: &str) -> Result<Self, String> {
-        let mut lines = text.lines();
+        // Spreadsheets put a byte order mark before all else.
+        let mut lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines();
         let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
         let has = |name: &str| header.contains(&name);
         let (source, prefix) = if has("est_px") {
