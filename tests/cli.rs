@@ -81,6 +81,7 @@ fn malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output() {
         ("mass", "mass = 0.0", &["vehicle.mass", "greater than zero"]),
         ("mass", "mass = -1", &["vehicle.mass", "greater than zero", "-1"]),
         ("mass", "mass = nan", &["vehicle.mass", "finite"]),
+        ("mass", "mass = 3.4e38", &["vehicle.mass", "must have a weight", "3.4e38"]),
         ("mass", "mass = \"heavy\"", &["vehicle.mass", "must be a number", "string"]),
         ("mass", "", &["vehicle.mass", "missing"]),
         ("mass", "mas = 0.46", &["vehicle.mas", "unknown key", "\"mass\""]),
@@ -139,7 +140,6 @@ fn malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output() {
 }
 
 #[test]
-#[test]
 fn whatever_texts_and_file_names_hold_an_error_is_one_line_that_no_terminal_acts_on() {
     let directory = directory("escaped");
     let text = "\"\"\"a\nb\\u001B[31mc\"\"\"";
@@ -190,6 +190,7 @@ fn a_sessions_errors_name_the_file() {
     assert_eq!(status(&output), 2);
 }
 
+#[test]
 fn malformed_waypoints_name_the_point() {
     let directory = directory("waypoints");
     let head: String = PAPER.split("[initial]").next().unwrap().to_owned();

@@ -72,7 +72,14 @@ fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
         inertia: section.vector("inertia")?.map(|moment| moment as f32),
         gravity: section.number("gravity")? as f32,
     };
-    Vehicle::new(parameters).map_err(|error| root.refused(&error))
+    let vehicle = Vehicle::new(parameters).map_err(|error| root.refused(&error))?;
+    let VehicleParameters { mass, gravity, .. } = *vehicle;
+    if !(mass * gravity).is_finite() {
+        let problem =
+            format!("must have a weight, with vehicle.gravity = {gravity}, within {:e} N, found {mass:e}", f32::MAX);
+        return Err(FieldError::new("vehicle.mass", problem));
+    }
+    Ok(vehicle)
 }
 
 /// Reads `[limits]`.
