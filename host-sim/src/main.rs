@@ -205,6 +205,7 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
             complain(format_args!("error: {}: {error}", scenario.name));
             Ok(status(false, None))
         }
+        Err(HilError::Scenario(what)) => Err(format!("{}: {what}", arguments.file.display())),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -239,7 +240,7 @@ fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
     let (text, name) = given_or_study(arguments.file.as_deref())?;
     let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
-    let session = arguments.session(text)?;
+    let session = arguments.session(text, name)?;
     // Whoever has stopped to read is none the less a pilot.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
     match sitl::run(&scenario, &session, &watch()?, show) {

@@ -72,6 +72,8 @@ const STATUS: Duration = Duration::from_secs(1);
 /// How a session is run.
 #[derive(Debug, Clone)]
 pub struct Session {
+    /// What errors call the scenario: its file.
+    pub file: String,
     /// Where the clients are.
     pub ports: Ports,
     /// How many times as fast as the desk's the vehicle's time passes.
@@ -168,14 +170,14 @@ impl Sitl {
     /// # Errors
     /// In words: what the firmware cannot fly, and files and ports that cannot be used.
     pub fn boot(scenario: &Scenario, session: &Session) -> Result<(Self, Option<String>), String> {
-        let warning = board::check(scenario, &scenario.name)?;
+        let warning = board::check(scenario, &session.file)?;
         let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
-        let in_file = |what| format!("{}: {what}", scenario.name);
+        let in_file = |what| format!("{}: {what}", session.file);
         let world = World::new(scenario, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;
+        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
 
         let identity = board::identity(scenario);
-        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
         let loops = match identity {
             // Judged already, when the firmware's library was built.
             firmware::configuration::IDENTITY => &firmware::configuration::LOOPS,
@@ -310,9 +312,9 @@ pub fn run(
 ) -> Result<Summary, SitlError> {
     let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
+    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
-    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
     tell(&format!(
         "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
         scenario.name

@@ -111,16 +111,17 @@ impl PortArguments {
 }
 
 impl SitlArguments {
-    /// The session with a scenario whose file has this `text`.
+    /// The session with a scenario from `file`, which has this `text`.
     ///
     /// # Errors
     /// Names the argument that is no speed, no time, or no set of ports.
-    pub fn session(&self, text: String) -> Result<sitl::Session, String> {
+    pub fn session(&self, text: String, file: String) -> Result<sitl::Session, String> {
         let speed = speed(self.speed)?;
         if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
             return Err(format!("--duration: must not be negative, found {duration}"));
         }
         Ok(sitl::Session {
+            file,
             ports: self.ports.ports()?,
             speed,
             duration: self.duration,

@@ -57,7 +57,7 @@ impl HilVehicle {
         let configuration = &scenario.configuration;
         let Some(rotors) = configuration.rotors().filter(|rotors| rotors.len() == MOTORS) else {
             let found = configuration.rotors().map_or(0, |rotors| rotors.len());
-            return Err(format!("{}: rotors: a flight controller commands {MOTORS}, found {found}", scenario.name));
+            return Err(format!("rotors: a flight controller commands {MOTORS}, found {found}"));
         };
         let step = scenario.timing.step();
         let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial);

@@ -21,7 +21,15 @@ impl Flown {
         let ports = Ports { offboard: port(&client), ground: port(&ground), local: port(&free) };
         drop(free);
         let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-        let session = Session { ports, speed: 1.0, duration: None, faults, parameters, recording: None };
+        let session = Session {
+            file: "a file".to_owned(),
+            ports,
+            speed: 1.0,
+            duration: None,
+            faults,
+            parameters,
+            recording: None,
+        };
         let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
         assert_eq!(warning, None);
         Self { sitl, client, local: ports.local, sequence: 0 }
@@ -186,6 +194,7 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
 #[test]
 fn what_no_board_could_fly_is_refused_by_name() {
     let session = Session {
+        file: "a file".to_owned(),
         ports: Ports::default(),
         speed: 1.0,
         duration: None,
@@ -194,7 +203,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
         recording: None,
     };
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();
-    assert!(refused(scenario::PAPER).starts_with("paper: rotors: missing"));
+    assert!(refused(scenario::PAPER).starts_with("a file: rotors: missing"));
     let slow = STUDY.replace("lag = 0.030 ", "lag = 1.0 ");
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
