@@ -1,7 +1,7 @@
 //! The two commands that search for gains: `tune` for our law, `compare` for others.
 
 use crate::arguments::{CompareArguments, TuneArguments};
-use crate::terminal::{print_text, same_file, status, text_of, watch};
+use crate::terminal::{complain, print_text, same_file, status, text_of, watch};
 use host_sim::certify::certify;
 use host_sim::compare::{self, CompareError, compare};
 use host_sim::rivals::gains::Set;
@@ -31,11 +31,11 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
             let what = closest.failed.clone().unwrap_or_default();
             let lost = short(closest.shown.height_lost);
             let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
-            eprintln!(
+            complain(format_args!(
                 "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
                  (height lost {lost} m)",
                 scenario.name
-            );
+            ));
             return Ok(status(false, interrupt.signal()));
         }
     };
@@ -70,7 +70,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
                 set
             }
             Err(message) => {
-                eprintln!("error: {}: {message}", scenario.name);
+                complain(format_args!("error: {}: {message}", scenario.name));
                 return Ok(status(false, interrupt.signal()));
             }
         },
@@ -79,7 +79,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let mut comparison = match compare(&scenario, &text, &set, arguments.flights, &interrupt) {
         Ok(comparison) => comparison,
         Err(error @ (CompareError::NotCertified(_) | CompareError::Interrupted(_))) => {
-            eprintln!("error: {}: {error}", scenario.name);
+            complain(format_args!("error: {}: {error}", scenario.name));
             return Ok(status(false, interrupt.signal()));
         }
         Err(error) => return Err(error.to_string()),
