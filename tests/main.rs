@@ -11,8 +11,8 @@
 //! | references from setpoints | [`governor_campaign`] |
 //! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
-//! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_certify`], [`cli_compare`], [`cli_identify`], [`cli_output`], [`cli_verdicts`], |
-//! |  | [`documentation`] |
+//! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_campaign_directory`], [`cli_certify`], [`cli_compare`], [`cli_identify`], |
+//! |  | [`cli_output`], [`cli_overwriting`], [`cli_verdicts`], [`documentation`] |
 
 mod adversary;
 mod attitude_sign;
@@ -22,10 +22,12 @@ mod bounds;
 mod certified_flights;
 mod cli;
 mod cli_campaign;
+mod cli_campaign_directory;
 mod cli_certify;
 mod cli_compare;
 mod cli_identify;
 mod cli_output;
+mod cli_overwriting;
 mod cli_verdicts;
 mod documentation;
 mod emulated_bits;

@@ -10,10 +10,11 @@
 //! | [`written`] | those circumstances for who reads the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
-//! | [`manifest`], [`store`] | what a directory holds; its files |
+//! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
 //! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
 //! | [`recoveries`], [`mod@hours`] | campaigns without a file |
 
+pub mod batches;
 pub mod draw;
 pub mod fly;
 pub mod hours;

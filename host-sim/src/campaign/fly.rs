@@ -90,9 +90,11 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
         let problem = format!("merge: expects all {parts} shards of the campaign, found {}", stores.len());
         return Err(CampaignError::Input(problem));
     }
+    // Each has the text that its flights were flown from, or what is merged is not what it says.
+    stores.iter().try_for_each(|(store, _)| store.scenario().map(drop))?;
     let scenario = Scenario::parse(&text, "scenario.toml").map_err(|error| CampaignError::Input(error.to_string()))?;
     let verdict = Verdict::of(&scenario).map_err(CampaignError::Parameter)?;
-    let whole = Manifest { shard: (1, 1), ..manifest };
+    let whole = Manifest { shard: (1, 1), result: None, ..manifest };
     let mut numbered: Vec<(u64, RecordBatch)> = stores
         .into_iter()
         .flat_map(|(store, flown)| store.manifest().chunks().into_iter().zip(flown).collect::<Vec<_>>())

@@ -2,11 +2,11 @@
 //! if these agree.
 
 use super::CampaignError;
+use super::batches::sha256;
 use crate::flier::{LawChoice, OURS};
 use crate::rivals::kind::Kind;
 use scenario::Scenario;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
@@ -15,6 +15,8 @@ use std::path::Path;
 pub const CHUNK: u64 = 50;
 /// Its name in a directory.
 pub const MANIFEST: &str = "campaign.json";
+/// What it calls the hash of the flights' file.
+const RESULT_HASH: &str = "result_sha256";
 
 /// What was flown.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +39,8 @@ pub struct Manifest {
     pub shard: (u64, u64),
     /// Which law flies.
     pub law: LawChoice,
+    /// What the file of all flights hashes to, hexadecimal, once it is written. It says nothing of which campaign this is.
+    pub result: Option<String>,
 }
 
 impl Manifest {
@@ -45,7 +49,7 @@ impl Manifest {
     pub fn new(scenario: &Scenario, text: &str, flights: u64, seed: u64, shard: (u64, u64)) -> Self {
         Self {
             name: scenario.name.clone(),
-            scenario: hash(text),
+            scenario: sha256(text.as_bytes()),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             flights,
             seed,
@@ -53,6 +57,7 @@ impl Manifest {
             rotors: scenario.configuration.rotors().map_or(0, |rotors| rotors.len() as u64),
             shard,
             law: LawChoice::Ours,
+            result: None,
         }
     }
 
@@ -92,7 +97,9 @@ impl Manifest {
     pub fn written(&self) -> String {
         let said = |key: &str| self.law != LawChoice::Ours || !matches!(key, "law" | "gains");
         let fields = self.fields().into_iter().filter(|(key, ..)| said(key));
-        let values: serde_json::Map<String, Value> = fields.map(|(key, _, value)| (key.to_owned(), value)).collect();
+        let mut values: serde_json::Map<String, Value> =
+            fields.map(|(key, _, value)| (key.to_owned(), value)).collect();
+        values.extend(self.result.iter().map(|hash| (RESULT_HASH.to_owned(), json!(hash))));
         format!("{:#}\n", Value::Object(values))
     }
 
@@ -150,6 +157,7 @@ impl Manifest {
             rotors: number("rotors")?,
             shard,
             law: law(value)?,
+            result: text(RESULT_HASH),
         })
     }
 
@@ -178,8 +186,4 @@ fn law(manifest: &Value) -> Option<LawChoice> {
     let (kind, gains) = (Kind::named(name)?, manifest.get("gains")?);
     let values = kind.gains().iter().map(|gain| gains.get(gain)?.as_f64()).collect::<Option<Vec<f64>>>()?;
     Some(LawChoice::Rival(kind, values))
-}
-
-fn hash(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }

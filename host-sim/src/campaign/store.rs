@@ -9,19 +9,21 @@
 //! | `summary.txt`, `report.html` | what they showed |
 //!
 //! Each file appears whole or not at all, and is on the disk before it has its name. So whatever ends a campaign, chunks that were
-//! finished are there when it goes on. A part that cannot be read is flown again.
+//! finished are there when it goes on. A part that cannot be read is flown again, and so is a result that is not the one that was written.
+//!
+//! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there is touched. Whoever
+//! writes into a directory holds a lock on it, which ends with the process, however that ends.
 
 use super::CampaignError;
+use super::batches;
 use super::manifest::{MANIFEST, Manifest};
 use super::rows::schema;
 use crate::whole_file::WholeFile;
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use arrow_array::types::UInt64Type;
-use arrow_ipc::reader::FileReader;
-use arrow_ipc::writer::FileWriter;
-use arrow_schema::ArrowError;
-use std::fs::{self, File};
+use std::fmt::Display;
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -34,32 +36,47 @@ pub const SUMMARY: &str = "summary.txt";
 /// The same as a page.
 pub const REPORT: &str = "report.html";
 const PARTS: &str = "parts";
+/// What a campaign writes over, or removes, besides its manifest.
+const OWN: [&str; 5] = [SCENARIO, PARTS, RESULT, SUMMARY, REPORT];
 
 /// A directory and what it is to hold.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Store {
     directory: PathBuf,
     manifest: Manifest,
+    /// Of who writes, if the file system has locks.
+    _lock: Option<File>,
 }
 
 impl Store {
     /// Begins a campaign in `directory`, or goes on with the same one.
     ///
     /// # Errors
-    /// If it holds another campaign, or cannot be written.
+    /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
+        fs::create_dir_all(directory).map_err(unwritable(directory))?;
+        let lock = lock(directory)?;
         let found = Manifest::of(directory)?;
-        if let Some(difference) = found.and_then(|found| found.difference(manifest)) {
+        if let Some(difference) = found.as_ref().and_then(|found| found.difference(manifest)) {
             return Err(CampaignError::Input(format!(
                 "{}: holds another campaign: not the same {difference}; choose another --out, or remove that directory",
                 directory.display()
             )));
         }
+        let is_there = |name: &&str| fs::symlink_metadata(directory.join(name)).is_ok();
+        if let (None, Some(name)) = (&found, OWN.iter().find(|name| is_there(name))) {
+            return Err(CampaignError::Input(format!(
+                "{}: holds {name} but no {MANIFEST}, so it is no campaign's of this program; choose another --out",
+                directory.display()
+            )));
+        }
+        let result = found.and_then(|found| found.result);
+        let manifest = Manifest { result, ..manifest.clone() };
+        let store = Self { directory: directory.to_owned(), manifest, _lock: lock };
+        store.write(MANIFEST, &store.manifest.written())?;
+        store.write(SCENARIO, text)?;
         let parts = directory.join(PARTS);
         fs::create_dir_all(&parts).map_err(unwritable(&parts))?;
-        let store = Self { directory: directory.to_owned(), manifest: manifest.clone() };
-        store.write(SCENARIO, text)?;
-        store.write(MANIFEST, &manifest.written())?;
         Ok(store)
     }
 
@@ -71,7 +88,7 @@ impl Store {
         let manifest = Manifest::of(directory)?.ok_or_else(|| {
             CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST}", directory.display()))
         })?;
-        let store = Self { directory: directory.to_owned(), manifest };
+        let store = Self { directory: directory.to_owned(), manifest, _lock: None };
         let flown = store.result().ok_or_else(|| {
             CampaignError::Input(format!(
                 "{}: is not complete: {RESULT} is missing or damaged; run its campaign command again",
@@ -90,17 +107,25 @@ impl Store {
     /// The scenario's text.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If it cannot be read, or is not what was flown.
     pub fn scenario(&self) -> Result<String, CampaignError> {
         let path = self.directory.join(SCENARIO);
-        fs::read_to_string(&path)
-            .map_err(|error| CampaignError::Input(format!("{}: cannot be read: {error}", path.display())))
+        let text = fs::read_to_string(&path)
+            .map_err(|error| CampaignError::Input(format!("{}: cannot be read: {error}", path.display())))?;
+        if batches::sha256(text.as_bytes()) == self.manifest.scenario {
+            return Ok(text);
+        }
+        Err(CampaignError::Input(format!(
+            "{}: was changed after its flights were flown: its SHA-256 is not the scenario_sha256 of {MANIFEST}; put the text back that \
+             was flown, or fly it anew into another --out",
+            path.display()
+        )))
     }
 
     /// All flights, a batch a chunk, if they are there.
     #[must_use]
     pub fn result(&self) -> Option<Vec<RecordBatch>> {
-        let batches = read(&self.directory.join(RESULT)).ok()?;
+        let batches = batches::read(&self.directory.join(RESULT), self.manifest.result.as_deref())?;
         let chunks = self.manifest.chunks();
         let is_whole = batches.len() == chunks.len()
             && batches.iter().zip(chunks).all(|(batch, chunk)| is_chunk(batch, &self.manifest, chunk));
@@ -110,7 +135,7 @@ impl Store {
     /// The flights of a chunk, if they are there.
     #[must_use]
     pub fn part(&self, chunk: u64) -> Option<RecordBatch> {
-        let batches = read(&self.path_of(chunk)).ok()?;
+        let batches = batches::read_sealed(&self.path_of(chunk))?;
         let [batch] = batches.as_slice() else { return None };
         is_chunk(batch, &self.manifest, chunk).then(|| batch.clone())
     }
@@ -120,19 +145,39 @@ impl Store {
     /// # Errors
     /// If they cannot be written.
     pub fn keep(&self, chunk: u64, flights: &RecordBatch) -> Result<(), CampaignError> {
-        self.write_batches(&self.path_of(chunk), std::slice::from_ref(flights))
+        let path = self.path_of(chunk);
+        batches::write_sealed(&path, &schema(&self.manifest), flights).map_err(unwritable(&path))
     }
 
-    /// Writes all flights; the parts go.
+    /// Writes all flights and what they hash to; the parts go.
     ///
     /// # Errors
     /// If they cannot be written.
     pub fn finish(&self, flights: &[RecordBatch]) -> Result<(), CampaignError> {
-        self.write_batches(&self.directory.join(RESULT), flights)?;
+        let path = self.directory.join(RESULT);
+        let hash = batches::write(&path, &schema(&self.manifest), flights).map_err(unwritable(&path))?;
+        self.write(MANIFEST, &Manifest { result: Some(hash), ..self.manifest.clone() }.written())?;
         let parts = self.directory.join(PARTS);
-        match fs::remove_dir_all(&parts) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unwritable(&parts)(error)),
-            _ => Ok(()),
+        self.remove_parts(&parts).map_err(unwritable(&parts))
+    }
+
+    /// Removes the files of its chunks, and their directory if nothing else is in it.
+    fn remove_parts(&self, parts: &Path) -> io::Result<()> {
+        let chunks = self.manifest.chunks();
+        let entries = match fs::read_dir(parts) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            entries => entries?,
+        };
+        for entry in entries {
+            let entry = entry?;
+            if chunk_of(&entry.file_name().to_string_lossy()).is_some_and(|chunk| chunks.binary_search(&chunk).is_ok())
+            {
+                fs::remove_file(entry.path())?;
+            }
+        }
+        match fs::remove_dir(parts) {
+            Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => Ok(()),
+            removed => removed,
         }
     }
 
@@ -148,20 +193,6 @@ impl Store {
     fn path_of(&self, chunk: u64) -> PathBuf {
         self.directory.join(PARTS).join(format!("{chunk:06}.arrow"))
     }
-
-    fn write_batches(&self, path: &Path, batches: &[RecordBatch]) -> Result<(), CampaignError> {
-        let write = || -> Result<(), ArrowError> {
-            let mut writer = FileWriter::try_new(WholeFile::create(path)?, &schema(&self.manifest))?;
-            batches.iter().try_for_each(|batch| writer.write(batch))?;
-            writer.finish()?;
-            Ok(writer.into_inner()?.finish()?)
-        };
-        write().map_err(|error| CampaignError::Output(format!("{}: cannot be written: {error}", path.display())))
-    }
-}
-
-fn read(path: &Path) -> Result<Vec<RecordBatch>, ArrowError> {
-    FileReader::try_new_buffered(File::open(path)?, None)?.collect()
 }
 
 /// Whether a batch holds the flights of a chunk.
@@ -170,6 +201,27 @@ fn is_chunk(batch: &RecordBatch, manifest: &Manifest, chunk: u64) -> bool {
         && batch.column(0).as_primitive::<UInt64Type>().values().iter().copied().eq(manifest.flights_of(chunk))
 }
 
-fn unwritable(path: &Path) -> impl FnOnce(io::Error) -> CampaignError {
+/// Of which chunk a part has the name, finished or under way.
+fn chunk_of(name: &str) -> Option<u64> {
+    let under_way =
+        name.strip_prefix('.').and_then(|name| name.strip_suffix(".part")).and_then(|name| name.rsplit_once('.'));
+    let digits = under_way.map_or(name, |(name, _)| name).strip_suffix(".arrow")?;
+    digits.parse().ok().filter(|chunk: &u64| format!("{chunk:06}") == digits)
+}
+
+/// Keeps everybody else from writing into `directory`, where its file system can: some, across a network, cannot.
+fn lock(directory: &Path) -> Result<Option<File>, CampaignError> {
+    let Ok(file) = File::open(directory) else { return Ok(None) };
+    match file.try_lock() {
+        Ok(()) => Ok(Some(file)),
+        Err(TryLockError::Error(_)) => Ok(None),
+        Err(TryLockError::WouldBlock) => Err(CampaignError::Output(format!(
+            "{}: another campaign is under way in it; wait for its end, or choose another --out",
+            directory.display()
+        ))),
+    }
+}
+
+fn unwritable<E: Display>(path: &Path) -> impl FnOnce(E) -> CampaignError {
     |error| CampaignError::Output(format!("{}: cannot be written: {error}", path.display()))
 }
