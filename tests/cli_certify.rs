@@ -131,6 +131,22 @@ fn an_output_that_cannot_be_written_is_refused_before_the_search() {
 }
 
 #[test]
+fn a_search_reads_its_file_once_so_that_a_pipe_will_do() {
+    let directory = directory("pipe");
+    std::fs::write(directory.join("start.toml"), PAPER).unwrap();
+    let search = |file: &str, out: &str| {
+        let arguments = search(file, out, "1").join(" ");
+        let line = format!("\"$0\" {arguments}");
+        let mut command = std::process::Command::new("bash");
+        command.args(["-c", &line, env!("CARGO_BIN_EXE_host-sim")]).current_dir(&directory).output().unwrap()
+    };
+    let (piped, plain) = (search("<(cat start.toml)", "piped.toml"), search("start.toml", "plain.toml"));
+    assert_eq!((status(&piped), status(&plain)), (0, 0), "{}{}", stderr(&piped), stderr(&plain));
+    let read = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
+    assert_eq!(read("piped.toml").replace("piped", "plain"), read("plain.toml"));
+}
+
+#[test]
 fn unusable_requirements_exit_with_2_and_name_the_argument() {
     let directory = directory("arguments");
     std::fs::write(directory.join("start.toml"), PAPER).unwrap();

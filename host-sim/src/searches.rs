@@ -17,9 +17,9 @@ use std::process::ExitCode;
 
 pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
-    let mut scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
-    let original = std::fs::read_to_string(&arguments.file)
-        .map_err(|error| format!("{}: cannot be read: {error}", arguments.file.display()))?;
+    let original = text_of(Some(&arguments.file))?;
+    let read = Scenario::parse(&original, &arguments.file.display().to_string());
+    let mut scenario = read.map_err(|error| error.to_string())?;
     let (name, path) = destination(arguments, &scenario)?;
     scenario.name = name;
     let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
