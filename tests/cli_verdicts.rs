@@ -90,6 +90,46 @@ fn a_flight_that_does_not_reach_its_reference_in_time_fails_with_the_numbers() {
 }
 
 #[test]
+fn a_flight_of_less_than_four_ticks_is_steady_in_its_last() {
+    let directory = directory("ticks");
+    for duration in ["0.01", "0.03"] {
+        std::fs::write(directory.join("ticks.toml"), with(PAPER, "duration", &format!("duration = {duration}")))
+            .unwrap();
+        let text = stdout(&host_sim(&directory, &["fly", "ticks.toml", "--out", "out"]));
+        for row in ["position error, steady state", "MRP error, steady state"] {
+            let row = text.lines().find(|line| line.starts_with(row)).unwrap();
+            assert!(!row.contains("  0 m ") && !row.contains("  0  "), "{row}");
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_never_leaves_the_ground_has_not_reached_its_reference() {
+    let directory = directory("ground");
+    let (head, _) = include_str!("../vehicles/hummingbird.toml").split_once("[initial]").unwrap();
+    let head = with(head, "duration =", "duration = 20.0");
+    let fly = |height: &str, sections: &str| {
+        let reference = format!("[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, {height}]\n");
+        let text =
+            format!("{head}\n[ground]\nheight = 0.0\n[initial]\nposition = [0.0, 0.0, 0.0]\n{reference}{sections}");
+        std::fs::write(directory.join("ground.toml"), text).unwrap();
+        let output = host_sim(&directory, &["fly", "ground.toml", "--out", "out"]);
+        let text = stdout(&output);
+        let row = text.lines().find(|line| line.starts_with("within 0.2 m of the reference for good"));
+        (status(&output), row.unwrap_or_else(|| panic!("{text}{}", stderr(&output))).to_owned())
+    };
+    for sections in ["[truth]\nmass = 5.0\n", "[truth]\nthrust_scale = 0.01\n"] {
+        let (status, row) = fly("0.15", sections);
+        assert!(status == 1 && row.contains("never") && row.ends_with("FAILS"), "{sections}: {row}");
+    }
+    // One that takes off reaches it.
+    let (status, row) = fly("0.15", "");
+    assert!(status == 0 && !row.contains("never") && row.ends_with("holds"), "{row}");
+    let (status, row) = fly("2.0", "");
+    assert!(status == 0 && row.ends_with("holds"), "{row}");
+}
+
+#[test]
 fn tune_does_not_ask_for_less_than_certify_does() {
     let directory = directory("tune");
     std::fs::write(directory.join("start.toml"), PAPER).unwrap();

@@ -56,7 +56,7 @@ const FLY_HELP: &str = "\
 Besides the file's limits and the certificate's bounds a flight claims
 - that its sampled loops are stable, with 1.5 times the gain, 1 / 1.5 of it or 2 ms more delay;
 - that it reached its reference for good within the first 90 % of its duration: from then on its position is within 0.2 m
-  of the reference's and its attitude, heading included, within 0.05 (modified Rodrigues parameters; 11 degrees).
+  of the reference's, off the ground, and its attitude, heading included, within 0.05 (modified Rodrigues parameters; 11 degrees).
 It is flown whatever it claims. Interrupted, it leaves no file.";
 
 const CERTIFY_HELP: &str = "\

@@ -7,7 +7,7 @@
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
 //! | excursion | greatest \|x - x_d\| |
-//! | settled | since when \|x - x_d\| has been within a distance, for good |
+//! | settled | since when \|x - x_d\| has been within a distance, off the ground, for good |
 //! | turned | since when the yaw has been within 0.1 rad of the reference's, for good |
 //! | end error | \|x - x_d\| at the last tick |
 //! | RMS | of \|x - x_d\| over the last half of the flight |
@@ -83,7 +83,8 @@ impl Course {
                 last_half.observe(&tick, course.end_error);
             }
         }
-        course.settled = course.settled.filter(|_| course.end_error <= near);
+        let end = (ticks * scenario.timing.period_us) as f64 / 1e6;
+        course.settled = course.settled.filter(|since| *since < end);
         course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
         course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
         course.activity = (last_half.changes / last_half.changed.max(1) as f64).sqrt();
@@ -99,7 +100,7 @@ impl Course {
         self.end_error = error;
         self.clipped += u64::from(tick.clipped);
         let next = (tick.time_us + period_us) as f64 / 1e6;
-        if error > near {
+        if error > near || tick.surroundings.standing {
             self.settled = Some(next);
         }
         let heading = tick.reference.heading.direction();

@@ -82,6 +82,8 @@ pub struct Brief {
     pub clipped: bool,
     /// Thrust commanded of each rotor, N; empty without rotors.
     pub rotor_thrusts: Thrusts,
+    /// Whether it stood on the ground, as in [`Tick::surroundings`].
+    pub standing: bool,
 }
 
 /// What a law answers, with what it says of it.
@@ -197,7 +199,7 @@ impl Flight {
     /// [`FlightError`] with the time; the flight cannot go on after it.
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
-        let (told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts }, diagnostics) =
+        let (told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
             self.advance(Controller::step)?;
         let estimates = self.controller.estimates();
         Ok(Tick {
@@ -238,7 +240,7 @@ impl Flight {
         let held = self.hold(&self.asked(&wrench));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         self.end(clipped || standing);
-        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts }, more))
+        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
     }
 
     /// What the law is told where that is not the state.
@@ -370,7 +372,9 @@ impl Flight {
         }
         self.end(clipped);
         let rotor_thrusts = Thrusts::new();
-        Ok(Brief { time_us, state: before, reference: *reference, wrench, clipped, rotor_thrusts })
+        // What moves among others is the model, which has no ground.
+        let standing = false;
+        Ok(Brief { time_us, state: before, reference: *reference, wrench, clipped, rotor_thrusts, standing })
     }
 }
 

@@ -1,8 +1,8 @@
 //! What a flight showed, gathered tick by tick: the extremes that claims and searches judge.
 //!
-//! "Steady state" is the last quarter of a flight: of the paper's 40 s, the last 10. A flight has *reached* its reference once
+//! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight has *reached* its reference once
 //! it is near it and stays near it until the end: in position within [`NEAR_POSITION`], in attitude, heading included,
-//! within [`NEAR_MRP`].
+//! within [`NEAR_MRP`]. A vehicle that stands on the ground does not fly: it is away from its reference wherever that is.
 
 use crate::flight::{Flight, FlightError, Tick};
 use scenario::Scenario;
@@ -51,7 +51,7 @@ impl Flown {
     pub fn new(scenario: &Scenario) -> Self {
         let timing = &scenario.timing;
         Self {
-            steady_from_us: (timing.ticks - timing.ticks / 4) * timing.period_us,
+            steady_from_us: timing.ticks.saturating_sub((timing.ticks / 4).max(1)) * timing.period_us,
             away_until_us: (0, 0),
             period_us: timing.period_us,
             last_sign: None,
@@ -92,7 +92,7 @@ impl Flown {
         self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
         let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
         let mrp_error = f64::from(diagnostics.mrp.norm());
-        if position_error > NEAR_POSITION {
+        if position_error > NEAR_POSITION || tick.surroundings.standing {
             self.away_until_us.0 = tick.time_us + self.period_us;
         }
         if mrp_error > NEAR_MRP {

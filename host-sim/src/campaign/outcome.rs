@@ -4,7 +4,7 @@
 //! |---|---|
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
-//! | settled | since when it has been within [`NEAR`] of its reference, for good |
+//! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
@@ -86,7 +86,8 @@ impl Outcome {
             outcome.observe(&tick, start, scenario.timing.period_us);
             outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
         }
-        Self { settled: outcome.settled.filter(|_| outcome.final_error <= NEAR), ..outcome }
+        let end = (scenario.timing.ticks * scenario.timing.period_us) as f64 / 1e6;
+        Self { settled: outcome.settled.filter(|since| *since < end), ..outcome }
     }
 
     fn observe(&mut self, tick: &Brief, start: f64, period_us: u64) {
@@ -96,7 +97,7 @@ impl Outcome {
         self.clipped += u64::from(tick.clipped);
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
-        if self.final_error > NEAR {
+        if self.final_error > NEAR || tick.standing {
             self.settled = Some((tick.time_us + period_us) as f64 / 1e6);
         }
     }
