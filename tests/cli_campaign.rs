@@ -37,7 +37,7 @@ fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
     let thrown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--draws", "thrown.toml"]);
     assert_eq!(status(&thrown), 2, "{}", stdout(&thrown));
     fs::write(directory.join("plain.toml"), HUMMINGBIRD).unwrap();
-    fs::write(directory.join("thrown.toml"), "[campaign]\nduration = 0.5\n").unwrap();
+    fs::write(directory.join("thrown.toml"), "[campaign]\nduration = 1.0\n").unwrap();
     let thrown = host_sim(&directory, &["campaign", "plain.toml", "--flights", "20", "--draws", "thrown.toml"]);
     let text = stdout(&thrown);
     assert!(status(&thrown) == 1 && text.contains("failing: 0 (away), 1 (away)"), "{text}{}", stderr(&thrown));
@@ -51,12 +51,12 @@ fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
 
 #[test]
 fn a_flight_flown_again_is_the_flight_of_the_campaign() {
-    let directory = directory("replay", "duration = 0.5\nseed = 4\n");
+    let directory = directory("replay", "duration = 1.0\nseed = 4\n");
     assert_eq!(status(&host_sim(&directory, &["campaign", "h.toml", "--flights", "8", "--out", "out"])), 1);
     let flown = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
     let rows = arrow_ipc::reader::FileReader::try_new(flown, None).unwrap().next().unwrap().unwrap();
     let again = host_sim(&directory, &["campaign", "h.toml", "--replay", "6"]);
-    assert!(stdout(&again).starts_with("hummingbird-6: 0.5 s flown"), "{}", stdout(&again));
+    assert!(stdout(&again).starts_with("hummingbird-6: 1 s flown"), "{}", stdout(&again));
     let log = fs::read_to_string(directory.join("flights/hummingbird-6/log.csv")).unwrap();
     let names: Vec<&str> = log.lines().next().unwrap().split(',').collect();
     let column = |name: &str| {
@@ -80,9 +80,42 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
     let error = ["x", "y", "z"].map(|axis| {
         let (is, wanted) = (column(&format!("p{axis}")), column(&format!("pd{axis}")));
         // What was asked for is logged in single precision.
-        is[49] - f64::from(wanted[49] as f32)
+        is[99] - f64::from(wanted[99] as f32)
     });
     assert!((row("final_error") - error.iter().map(|e| e * e).sum::<f64>().sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
+    use arrow_array::cast::AsArray;
+    let directory = directory("late", "duration = 6.0\n");
+    let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "200", "--out", "out"]);
+    let file = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
+    let (mut number, mut in_time, mut late) = (0, 0, Vec::new());
+    for rows in arrow_ipc::reader::FileReader::try_new(file, None).unwrap().map(Result::unwrap) {
+        let settled = rows.column_by_name("settled").unwrap().as_primitive::<arrow_array::types::Float64Type>();
+        let verdicts = rows.column_by_name("verdict").unwrap().as_string::<i32>();
+        for (settled, verdict) in settled.iter().zip(verdicts.iter().flatten()) {
+            let expected = match settled {
+                Some(settled) if settled <= 0.9 * 6.0 => "holds",
+                Some(_) => "late",
+                None => "away",
+            };
+            assert_eq!(verdict, expected, "{number}");
+            in_time += u64::from(verdict == "holds");
+            late.extend((verdict == "late").then_some(number));
+            number += 1;
+        }
+    }
+    let text = stdout(&flown);
+    assert!(text.contains(&format!("{in_time} of 200 recover and track;")) && late.len() > 5, "{late:?}\n{text}");
+    assert!(text.contains("(late)"), "{text}");
+    for number in &late[..3] {
+        let again = host_sim(&directory, &["campaign", "h.toml", "--replay", &number.to_string()]);
+        let text = stdout(&again);
+        let row = text.lines().find(|line| line.starts_with("within 0.2 m of the reference for good")).unwrap();
+        assert!(status(&again) == 1 && row.contains("<= 5.4 s") && row.ends_with("FAILS"), "{number}: {text}");
+    }
 }
 
 fn spawn(directory: &Path, out: &str) -> Child {
@@ -146,7 +179,7 @@ fn neither_a_signal_nor_a_kill_loses_what_was_finished() {
 
 #[test]
 fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
-    let directory = directory("refusals", "duration = 0.5\n");
+    let directory = directory("refusals", "duration = 1e5\n");
     fs::write(directory.join("ground.toml"), format!("{PAPER}\n[ground]\nheight = 0\n")).unwrap();
     fs::write(directory.join("more.toml"), "[campaign]\nwind = 1\n[truth]\nmass = 1\n").unwrap();
     fs::write(directory.join("paper.toml"), PAPER).unwrap();
@@ -158,6 +191,14 @@ fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
         (&["h.toml", "--plant-step", "nan"], "--plant-step: must be the control period"),
         (&["none.toml"], "none.toml: cannot be read: "),
         (&["ground.toml"], "ground: a campaign throws its vehicles into the air anywhere"),
+        (
+            &["h.toml", "--flights", "50", "--shard", "2/2"],
+            "shard: 50 flights in chunks of 50 are 1 chunk, so there can be at most 1 shard, found 2",
+        ),
+        (
+            &["h.toml", "--flights", "51", "--shard", "1/3"],
+            "51 flights in chunks of 50 are 2 chunks, so there can be at most 2 shards, found 3",
+        ),
         (&["paper.toml", "--draws", "more.toml"], "more.toml: must hold a [campaign] section and nothing else"),
         (&["h.toml", "--draws", "none.toml"], "none.toml: cannot be read: "),
     ] {

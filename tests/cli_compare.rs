@@ -14,7 +14,7 @@ const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
 /// Not thrown at all: near where it is to be, at rest, level. Other scenes stay as they are.
 const GENTLE: &str = "[campaign]\nduration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
 /// Thrown, and out of time.
-const HOPELESS: &str = "[campaign]\nduration = 0.5\n";
+const HOPELESS: &str = "[campaign]\nduration = 1.0\n";
 const LAWS: [&str; 8] = ["ours", "lee", "px4", "mellinger", "indi", "nested", "continuous", "memoryless"];
 const SCENES: [&str; 10] =
     ["own", "step", "far step", "upside down", "gust", "storm", "noise", "weak rotors", "heavy", "random"];
@@ -260,9 +260,9 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
 
 #[test]
 fn shards_and_single_flights_of_another_law_are_those_of_its_campaign() {
-    let directory = directory("shards", "[campaign]\nduration = 0.5\nseed = 4\n");
+    let directory = directory("shards", "[campaign]\nduration = 1.0\nseed = 4\n");
     let fly = |more: &[&str]| host_sim(&directory, &[&["campaign", "h.toml", "--law", "lee"], more].concat());
-    // Nobody recovers in half a second.
+    // Nobody recovers in a second.
     assert_eq!(status(&fly(&["--flights", "70"])), 1);
     let whole = directory.join("campaigns/hummingbird-lee");
     for (part, out) in [("1/2", "one"), ("2/2", "two")] {
@@ -284,10 +284,7 @@ fn shards_and_single_flights_of_another_law_are_those_of_its_campaign() {
 
     let again = fly(&["--flights", "70", "--replay", "6"]);
     let text = stdout(&again);
-    assert!(
-        text.starts_with("hummingbird-lee-6: 0.5 s flown; under the law lee, of which nothing is proven"),
-        "{text}"
-    );
+    assert!(text.starts_with("hummingbird-lee-6: 1 s flown; under the law lee, of which nothing is proven"), "{text}");
     let log = fs::read_to_string(directory.join("flights/hummingbird-lee-6/log.csv")).unwrap();
     let place = log.lines().next().unwrap().split(',').position(|name| name == "pz").unwrap();
     let heights: Vec<f64> =

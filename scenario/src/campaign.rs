@@ -4,7 +4,7 @@
 //! [campaign]
 //! flights = 1000                       # how many
 //! seed = 0
-//! duration = 60.0                      # s, each; 180 under the paper's law, which takes its time
+//! duration = 60.0                      # s, each, 1 at least; 180 under the paper's law, which takes its time
 //! reference = "in-turn"                # hover at the origin and the file's reference in turn; or "file", or "hover"
 //! attitude = "uniform"                 # of all attitudes alike; or "file": that of [initial]
 //! offset = 10.0                        # m, from the reference's first point
@@ -209,6 +209,9 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
     Ok(Campaign { flights: flights as u64, seed: seed(&section)?, ranges })
 }
 
+/// The least duration of a flight, s: in less nothing that was thrown has time to miss its reference, or to come back to it.
+const LEAST_DURATION: f64 = 1.0;
+
 /// The most flights of a campaign.
 pub const MOST_FLIGHTS: f64 = 1e8;
 
@@ -222,7 +225,7 @@ fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<R
     let turn = greatest_rate(timing);
     let attitude = up_to("attitude_noise_deg", 30.0, "degrees", ATTITUDE_NOISE_DEG)?.to_radians();
     Ok(Ranges {
-        duration: Allowed::new(timing.period()..=1e5, "s").number_or(section, "duration", default.duration)?,
+        duration: Allowed::new(LEAST_DURATION..=1e5, "s").number_or(section, "duration", default.duration)?,
         reference: read_choice(section, "reference", REFERENCES, default.reference)?,
         attitude: read_choice(section, "attitude", [("uniform", true), ("file", false)], default.attitude)?,
         offset: up_to("offset", 1e4, "m", default.offset)?,

@@ -59,9 +59,9 @@ pub struct MergeArguments {
 /// The help of `campaign`.
 pub const HELP: &str = "\
 Each flight's circumstances come from the seed and its number alone: where it starts, wind, noise and, if the file asks for it, what the
-model has wrong. A flight recovers and tracks if it comes within 0.2 m of its reference and stays there to the end. The same flights
-give the same bytes at any number of threads, in any split, and after any interruption: what was finished is kept, and the same command
-goes on from there. campaign.arrow has a row for each flight; docs/campaign.md has its columns, and how to read them in Python.
+model has wrong. A flight recovers and tracks if it comes within 0.2 m of its reference in the first 90 % of its time and stays there to the
+end. The same flights give the same bytes at any number of threads, in any split, and after any interruption: what was finished is
+kept, and the same command goes on from there. campaign.arrow has a row for each flight; docs/campaign.md has its columns, and how to read them in Python.
 
   host-sim campaign vehicles/hummingbird.toml --flights 10000
   host-sim campaign vehicles/hummingbird.toml --replay 6194

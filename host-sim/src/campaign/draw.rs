@@ -61,8 +61,7 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
         thrown.reference = ReferenceKind::Hover { position: Vector3::zeros(), heading: 0.0 };
         thrown.trajectory = Arc::new(Hover::ORIGIN);
     }
-    let period = scenario.timing.period();
-    thrown.timing = Timing { ticks: (ranges.duration / period * (1.0 + WHOLE)) as u64, ..scenario.timing };
+    thrown.timing = timing(scenario, ranges);
 
     let (offset, velocity, rates, wind) = (drawn.ball(), drawn.ball(), drawn.ball(), drawn.ball());
     let attitude = drawn.attitude();
@@ -76,6 +75,13 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
     measure(&mut thrown, &ranges.noise, &mut drawn);
     err(&mut thrown, &ranges.model, &mut drawn);
     thrown
+}
+
+/// For how long every flight is flown, in whole control periods.
+#[must_use]
+pub fn timing(scenario: &Scenario, ranges: &Ranges) -> Timing {
+    let period = scenario.timing.period();
+    Timing { ticks: (ranges.duration / period * (1.0 + WHOLE)) as u64, ..scenario.timing }
 }
 
 /// How the air moves, with this steady wind before it is laid level, m/s.

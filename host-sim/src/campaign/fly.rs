@@ -4,7 +4,7 @@
 //! are already there are not flown again.
 
 use super::CampaignError;
-use super::manifest::Manifest;
+use super::manifest::{CHUNK, Manifest};
 use super::report;
 use super::rows::{Row, batch};
 use super::store::{REPORT, SUMMARY, Store};
@@ -45,11 +45,13 @@ pub fn campaign(
     directory: &Path,
     interrupt: &Interrupt,
 ) -> Result<Summary, CampaignError> {
-    if scenario.reality.ground.is_some() {
-        let problem = "a campaign throws its vehicles into the air anywhere: leave that section out".to_owned();
-        return Err(CampaignError::Input(format!("{}: ground: {problem}", scenario.name)));
+    if let Some(problem) = grounded(scenario) {
+        return Err(CampaignError::Input(format!("{}: {problem}", scenario.name)));
     }
     let Orders { flights, seed, shard } = *orders;
+    if let Some(problem) = idle(orders) {
+        return Err(CampaignError::Input(problem));
+    }
     let verdict = Verdict::of(scenario).map_err(CampaignError::Parameter)?;
     let flier = Flier::new(law, scenario, verdict.certified()).ok_or_else(|| {
         CampaignError::Input(format!("{}: the law {} is undefined for its gains", scenario.name, law.name()))
@@ -64,6 +66,26 @@ pub fn campaign(
         }
     };
     finish(scenario, text, &verdict, &store, &flown)
+}
+
+/// Why nothing of `scenario` is thrown into the air, if so.
+#[must_use]
+pub fn grounded(scenario: &Scenario) -> Option<&'static str> {
+    let problem = "ground: a campaign throws its vehicles into the air anywhere: leave that section out";
+    scenario.reality.ground.is_some().then_some(problem)
+}
+
+/// What is wrong where shards are left without flights: of those nothing could be said.
+fn idle(orders: &Orders) -> Option<String> {
+    let (chunks, parts) = (orders.flights.div_ceil(CHUNK), orders.shard.1);
+    let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    (parts > chunks).then(|| {
+        let (flights, found) = (many(orders.flights, "flight"), many(chunks, "chunk"));
+        format!(
+            "shard: {flights} in chunks of {CHUNK} are {found}, so there can be at most {}, found {parts}",
+            many(chunks, "shard")
+        )
+    })
 }
 
 /// Puts shards together, in any order, into `directory`: the same bytes as the campaign that was never split.

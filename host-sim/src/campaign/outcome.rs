@@ -5,12 +5,14 @@
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
 //! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
+//! | in time | whether that was within the first [`REACHED_BY`] of the flight, which is what a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
 //! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that of a torque,
 //! whose bound is on both sides, |tau| over the bound.
 
+use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
@@ -31,6 +33,8 @@ pub struct Outcome {
     pub rise: f64,
     /// Since when it has been near its reference, s; none if it was away at the end.
     pub settled: Option<f64>,
+    /// Whether it was there in time to have recovered, and not only at the end.
+    pub in_time: bool,
     /// Distance from the reference at the last tick, m.
     pub final_error: f64,
     /// Ticks with a command that a rotor could not follow.
@@ -72,6 +76,7 @@ impl Outcome {
             height_lost: 0.0,
             rise: f64::NEG_INFINITY,
             settled: Some(0.0),
+            in_time: false,
             final_error: 0.0,
             clipped: 0,
             beyond: 0,
@@ -86,8 +91,10 @@ impl Outcome {
             outcome.observe(&tick, start, scenario.timing.period_us);
             outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
         }
+        let duration = scenario.timing.duration();
         let end = (scenario.timing.ticks * scenario.timing.period_us) as f64 / 1e6;
-        Self { settled: outcome.settled.filter(|since| *since < end), ..outcome }
+        let settled = outcome.settled.filter(|since| *since < end);
+        Self { settled, in_time: in_time(settled, duration), ..outcome }
     }
 
     fn observe(&mut self, tick: &Brief, start: f64, period_us: u64) {
@@ -102,10 +109,10 @@ impl Outcome {
         }
     }
 
-    /// Whether it recovered and tracks: it was flown to its end, and was near its reference then.
+    /// Whether it recovered and tracks: it was flown to its end, and was near its reference in time and for good.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        self.settled.is_some()
+        self.in_time
     }
 
     /// Whether it tracks, and no command went beyond its bound.
@@ -113,6 +120,12 @@ impl Outcome {
     pub fn holds(&self) -> bool {
         self.tracks() && self.beyond == 0
     }
+}
+
+/// Whether a flight of `duration`, s, has settled in time.
+#[must_use]
+pub fn in_time(settled: Option<f64>, duration: f64) -> bool {
+    settled.is_some_and(|since| since <= REACHED_BY * duration)
 }
 
 impl Shares {

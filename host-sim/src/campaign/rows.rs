@@ -13,7 +13,7 @@
 //! | `height_lost`, `rise`, `settled`, `final_error` | m, m, s, m | [`Outcome`]; `settled` is null where it was away at the end |
 //! | `share_thrust`, `share_torque_x` …, `share_rotor_1` … | | greatest part of each certified bound |
 //! | `clipped`, `beyond`, `ticks` | ticks | |
-//! | `verdict` | | `holds`, `away` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
+//! | `verdict` | | `holds`, `away`, `late` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
 //!
 //! A file of another law than ours says which in its schema's metadata, under `law`.
 
@@ -65,10 +65,11 @@ impl Outcome {
     /// In a word; whether the bounds were kept counts where they are `proven` of the law that flew.
     #[must_use]
     pub fn verdict(&self, proven: bool) -> &'static str {
-        match (proven && self.beyond > 0, self.tracks()) {
+        match (proven && self.beyond > 0, self.settled) {
             (true, _) => BEYOND,
-            (false, true) => HOLDS,
-            (false, false) => AWAY,
+            (false, None) => AWAY,
+            (false, Some(_)) if self.tracks() => HOLDS,
+            (false, Some(_)) => LATE,
         }
     }
 }
@@ -77,6 +78,8 @@ impl Outcome {
 pub const HOLDS: &str = "holds";
 /// Was not near its reference at the end.
 pub const AWAY: &str = "away";
+/// Came near it for good, but too late to have recovered ([`Outcome::in_time`]).
+pub const LATE: &str = "late";
 /// Asked for more than is proven.
 pub const BEYOND: &str = "beyond";
 

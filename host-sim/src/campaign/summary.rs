@@ -1,7 +1,8 @@
 //! What a campaign showed: how many flights recover and track, quantiles, bounds, and the worst flights by number.
 
+use super::draw::timing;
 use super::manifest::Manifest;
-use super::outcome::NEAR;
+use super::outcome::{NEAR, in_time};
 use super::quantile;
 use super::rows::{HOLDS, share_of_rotor};
 use crate::table::{aligned, short};
@@ -70,6 +71,8 @@ impl Summary {
             (1..=rotors).map(|rotor| figure(&format!("share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor))),
         );
         let settled = floats(flown, "settled");
+        let duration = timing(scenario, &scenario.campaign.ranges).duration();
+        let tracking = settled.iter().filter(|settled| in_time(Some(**settled), duration)).count();
         let greatest_share = (0..numbers.len()).map(|flight| {
             figures[4..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
         });
@@ -106,11 +109,13 @@ impl Summary {
                 short(1e3 * manifest.plant_step)
             ),
             flights: numbers.len() as u64,
-            tracking: settled.iter().filter(|settled| settled.is_finite()).count() as u64,
+            tracking: tracking as u64,
             rival,
             beyond: ever("beyond"),
             clipped: ever("clipped"),
-            holds: (refusal.is_none() || rival.is_some()) && verdicts.iter().all(|verdict| *verdict == HOLDS),
+            holds: (refusal.is_none() || rival.is_some())
+                && tracking == numbers.len()
+                && verdicts.iter().all(|verdict| *verdict == HOLDS),
             refusal,
             quantiles: table(&numbers, &figures),
             worst,

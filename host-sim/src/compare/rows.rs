@@ -86,7 +86,7 @@ pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Throw
         let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
         rows.push(Row { scene: "random", figure, unit, values, grain });
     };
-    random("flights that never settle", "%", 0.0, &|all| 100.0 * all.share(|one| !one.tracks()));
+    random("flights that never settle", "%", 0.0, &|all| 100.0 * all.share(|one| one.settled.is_none()));
     random("flights that end in no number", "%", 0.0, &|all| 100.0 * all.share(|one| one.height_lost.is_infinite()));
     random("height lost, median", "m", 0.01, &|all| all.height(0.5));
     random("height lost, 99 of 100", "m", 0.01, &|all| all.height(0.99));
