@@ -159,6 +159,8 @@ fn unusable_requirements_exit_with_2_and_name_the_argument() {
         ("--position-error", "nan"),
         ("--mrp-error", "0"),
         ("--recovery", "0"),
+        ("--recovery", "0.01"),
+        ("--recovery", "1.9"),
         ("--recovery", "inf"),
         ("--generations", "0"),
         ("--population", "3"),

@@ -17,6 +17,8 @@ use std::path::PathBuf;
 
 /// Longest recovery that a search may fly thousands of times, s.
 const GREATEST_RECOVERY: f64 = 3600.0;
+/// Shortest recovery, s: in less a vehicle that is upside down has hardly begun to fall, and has not been brought back by anything.
+const LEAST_RECOVERY: f64 = 2.0;
 
 /// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
 #[derive(Parser)]
@@ -140,7 +142,7 @@ pub struct TuneArguments {
     /// Greatest norm of its modified Rodrigues parameters there
     #[arg(long, default_value_t = 1e-4)]
     mrp_error: f64,
-    /// How long a recovery from upside down may take, s; its last quarter must be still
+    /// How long a recovery from upside down may take, s, 2 or more; its last quarter must be still
     #[arg(long, default_value_t = 20.0)]
     recovery: f64,
     /// Keep the paper's thrust T = m |u|: no thrust projection
@@ -237,13 +239,13 @@ impl TuneArguments {
     /// Names the argument that asks for something impossible, or for less than what may fly.
     pub fn requirements(&self) -> Result<Requirements, String> {
         let least = LoopMargin::LEAST;
-        let positive =
-            [("--position-error", self.position_error), ("--mrp-error", self.mrp_error), ("--recovery", self.recovery)];
+        let positive = [("--position-error", self.position_error), ("--mrp-error", self.mrp_error)];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             return Err(format!("{name}: must be greater than zero and finite, found {value}"));
         }
-        if self.recovery > GREATEST_RECOVERY {
-            return Err(format!("--recovery: must be at most {GREATEST_RECOVERY} s, found {}", self.recovery));
+        if !(LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&self.recovery) {
+            let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
+            return Err(format!("--recovery: {allowed}, found {}", self.recovery));
         }
         if !(0.0..1.0).contains(&self.margin) {
             return Err(format!("--margin: must be from 0 to below 1, found {}", self.margin));
