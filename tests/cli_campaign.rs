@@ -190,7 +190,15 @@ fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
         (&["h.toml", "--plant-step", "0.003"], "--plant-step: must be the control period, 0.01 s, over a whole number"),
         (&["h.toml", "--plant-step", "nan"], "--plant-step: must be the control period"),
         (&["none.toml"], "none.toml: cannot be read: "),
-        (&["ground.toml"], "ground: a campaign throws its vehicles into the air anywhere"),
+        (&["ground.toml"], "ground.toml: ground: a campaign throws its vehicles into the air anywhere"),
+        (
+            &["ground.toml", "--replay", "3"],
+            "ground.toml: ground: a campaign throws its vehicles into the air anywhere",
+        ),
+        (
+            &["h.toml", "--replay", "3"],
+            "10000000 rows: take a shorter campaign.duration, a lower control.rate, or allow it with --large-log",
+        ),
         (
             &["h.toml", "--flights", "50", "--shard", "2/2"],
             "shard: 50 flights in chunks of 50 are 1 chunk, so there can be at most 1 shard, found 2",

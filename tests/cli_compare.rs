@@ -105,9 +105,11 @@ fn the_status_says_what_became_of_ours() {
     assert!(status(&refused) == 1 && message.contains("hummingbird: not certified ("), "{message}");
 
     fs::write(directory.join("file"), "in the way").unwrap();
+    fs::write(directory.join("ground.toml"), format!("{HUMMINGBIRD}\n[ground]\n")).unwrap();
     for (arguments, expected) in [
         (&["none.toml"][..], "none.toml: cannot be read"),
         (&["h.toml", "--flights", "0"], "--flights: must be from 1 to 100000, found 0"),
+        (&["ground.toml"], "ground.toml: ground: a campaign throws its vehicles into the air anywhere"),
         (&["h.toml", "--tune", "0"], "--tune: must be at least 1, found 0"),
         (&["h.toml", "--tune", "1", "--population", "3"], "--population: must be from 4 to 1000, found 3"),
         (&["h.toml", "--gains", "none.toml"], "none.toml: cannot be read"),

@@ -1,7 +1,8 @@
 //! What was in a directory before: commands write over their own files, remove those of theirs that no longer hold, and touch nothing else.
 
 use crate::support::binary;
-use crate::support::binary::{files, host_sim, status, stderr, with};
+use crate::support::binary::{brief, files, host_sim, status, stderr, stdout, with};
+use host_sim::rivals::gains::BUILT_IN;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -67,4 +68,65 @@ fn a_campaign_begins_beside_other_files_and_after_an_end_before_its_manifest_was
     assert_eq!(status(&again), 0, "{}", stderr(&again));
     assert_eq!(files(&directory.join("project/parts")), ["000007.arrow", "drawing.step"]);
     assert_eq!(fs::read_to_string(directory.join("project/notes.txt")).unwrap(), "mine");
+}
+
+#[test]
+fn a_flight_or_a_comparison_does_not_write_over_the_report_of_a_campaign() {
+    let directory = directory("report");
+    write(&directory, "brief.toml", &brief());
+    assert_eq!(status(&host_sim(&directory, &["campaign", "h.toml", "--flights", "4", "--out", "out"])), 0);
+    let (names, report) = (files(&directory.join("out")), fs::read(directory.join("out/report.html")).unwrap());
+    for arguments in [
+        &["campaign", "h.toml", "--flights", "4", "--replay", "3", "--out", "out"][..],
+        &["fly", "brief.toml", "--out", "out"],
+        &["compare", "h.toml", "--flights", "1", "--out", "out"],
+    ] {
+        let refused = host_sim(&directory, arguments);
+        let message = stderr(&refused);
+        assert_eq!((status(&refused), message.lines().count()), (2, 1), "{arguments:?}: {message}");
+        assert!(message.contains("out: holds a campaign") && message.contains("another --out"), "{message}");
+        assert_eq!(files(&directory.join("out")), names);
+        assert_eq!(fs::read(directory.join("out/report.html")).unwrap(), report);
+    }
+}
+
+#[test]
+fn a_flight_without_a_recording_leaves_no_recording_of_another() {
+    let directory = directory("recording");
+    write(&directory, "brief.toml", &brief());
+    write(&directory, "out/other.mcap", "mine");
+    assert_eq!(status(&host_sim(&directory, &["fly", "brief.toml", "--mcap", "--out", "out"])), 0);
+    assert!(directory.join("out/flight.mcap").exists());
+    assert_eq!(status(&host_sim(&directory, &["fly", "brief.toml", "--out", "out"])), 0);
+    assert!(!directory.join("out/flight.mcap").exists() && directory.join("out/other.mcap").exists());
+}
+
+#[test]
+fn a_comparison_does_not_stand_beside_gains_that_did_not_fly() {
+    let directory = directory("gains");
+    // Found by an earlier comparison, perhaps in hours: not to be thrown away either.
+    write(&directory, "out/rivals.toml", BUILT_IN);
+    let plain = ["compare", "h.toml", "--flights", "1", "--out", "out"];
+    let refused = host_sim(&directory, &plain);
+    let message = stderr(&refused);
+    assert_eq!((status(&refused), message.lines().count()), (2, 1), "{message}");
+    for words in ["out/rivals.toml: ", "--gains out/rivals.toml", "another --out"] {
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    assert_eq!(files(&directory.join("out")), ["rivals.toml"]);
+    let flown = host_sim(&directory, &[&plain[..], &["--gains", "out/rivals.toml"]].concat());
+    assert_eq!(status(&flown), 0, "{}{}", stdout(&flown), stderr(&flown));
+}
+
+#[test]
+fn gains_that_were_found_for_a_name_with_a_dot_are_read_again() {
+    let directory = directory("dotted");
+    let dotted = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "name =", "name = \"hummingbird.v2\"");
+    fs::write(directory.join("dotted.toml"), dotted).unwrap();
+    let search = ["compare", "dotted.toml", "--tune", "1", "--population", "4", "--flights", "1", "--out", "out"];
+    let found = host_sim(&directory, &search);
+    assert!(directory.join("out/rivals.toml").exists(), "{}", stderr(&found));
+    let read = ["campaign", "dotted.toml", "--law", "lee", "--gains", "out/rivals.toml", "--flights", "1"];
+    let flown = host_sim(&directory, &read);
+    assert!(status(&flown) < 2, "{}", stderr(&flown));
 }

@@ -23,6 +23,8 @@ use std::path::{Path, PathBuf};
 
 /// Ticks between two looks at the clock.
 const TICKS_PER_SHOW: u64 = 5000;
+/// The recording's name.
+const RECORDING: &str = "flight.mcap";
 
 /// What is written after the flight; whether that can be is asked before.
 const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
@@ -87,7 +89,7 @@ pub struct Outcome {
 }
 
 /// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and report.md into `directory`; and
-/// flight.mcap if it is asked for.
+/// flight.mcap if it is asked for; if not, that of an older flight goes.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
 /// older flight in the same directory is touched.
@@ -148,7 +150,16 @@ pub fn fly(
     }
     interrupted(interrupt)?;
     outputs.into_iter().try_for_each(|Output { file, path }| file.finish().map_err(failed(&path)))?;
+    if !mcap {
+        forget(&directory.join(RECORDING))?;
+    }
     Ok(outcome)
+}
+
+/// Removes what another flight left, if that is a file.
+fn forget(path: &Path) -> Result<(), FlyError> {
+    let is_file = std::fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
+    if is_file { std::fs::remove_file(path).map_err(failed(path)) } else { Ok(()) }
 }
 
 /// Flies all ticks and logs them.
@@ -212,7 +223,7 @@ struct Recorder {
 
 impl Recorder {
     fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
-        let Output { file, path } = Output::create(directory, "flight.mcap")?;
+        let Output { file, path } = Output::create(directory, RECORDING)?;
         let recording = Recording::begin(file, scenario, text, flight::TOPICS).map_err(failed(&path))?;
         Ok(Self { recording, path })
     }

@@ -29,7 +29,7 @@ use searches::{run_compare, run_tune};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use terminal::{BAD_INPUT, complain, print, print_text, same_file, status, text_of, watch};
+use terminal::{BAD_INPUT, complain, not_a_campaigns, print, print_text, same_file, status, text_of, watch};
 
 /// The largest log that nobody is asked about, bytes.
 const LARGE_LOG: u64 = 1_000_000_000;
@@ -84,15 +84,8 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
     let text = text_of(file)?;
     let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
     let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
-    if let Some(size) = large(&scenario) {
-        let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
-        if !large_log {
-            return Err(format!(
-                "{named}{size}: take a shorter duration, a lower control.rate, or allow it with --large-log"
-            ));
-        }
-        complain(format_args!("{named}{size}"));
-    }
+    let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
+    permit(&scenario, &named, "duration", large_log)?;
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
     fly_into(&scenario, &text, &LawChoice::Ours, &directory, mcap)
 }
@@ -105,6 +98,7 @@ fn fly_into(
     directory: &Path,
     mcap: bool,
 ) -> Result<ExitCode, String> {
+    not_a_campaigns(directory)?;
     let outcome = match fly(scenario, text, law, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
         Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
@@ -137,6 +131,7 @@ fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
     if let Some(number) = arguments.replay {
         let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{name}-{number}");
+        permit(&thrown, &format!("{}: ", arguments.file.display()), "campaign.duration", arguments.large_log)?;
         let text = written::above(&text, &thrown, orders.seed, number);
         return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
@@ -165,11 +160,19 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
     }
 }
 
-/// What the log of a flight will take, if that is a lot.
-fn large(scenario: &Scenario) -> Option<String> {
+/// Refuses a flight whose log takes a lot, unless that is `allowed`, and says so; `duration` is the key that makes it so long.
+fn permit(scenario: &Scenario, named: &str, duration: &str, allowed: bool) -> Result<(), String> {
     let rows = scenario.timing.ticks;
     let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));
-    (bytes > LARGE_LOG).then(|| format!("log.csv will take about {} GB, {rows} rows", short(bytes as f64 / 1e9)))
+    if bytes <= LARGE_LOG {
+        return Ok(());
+    }
+    let size = format!("{named}log.csv will take about {} GB, {rows} rows", short(bytes as f64 / 1e9));
+    if !allowed {
+        return Err(format!("{size}: take a shorter {duration}, a lower control.rate, or allow it with --large-log"));
+    }
+    complain(format_args!("{size}"));
+    Ok(())
 }
 
 fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {

@@ -1,7 +1,8 @@
 //! The two commands that search for gains: `tune` for our law, `compare` for others.
 
 use crate::arguments::{CompareArguments, TuneArguments};
-use crate::terminal::{complain, print_text, same_file, status, text_of, watch};
+use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
+use host_sim::campaign::fly::grounded;
 use host_sim::certify::certify;
 use host_sim::compare::{self, CompareError, compare};
 use host_sim::rivals::gains::Set;
@@ -14,6 +15,9 @@ use scenario::{Scenario, bounds, check_name};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// What a comparison calls the gains that it found.
+const RIVALS: &str = "rivals.toml";
 
 pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
@@ -60,13 +64,20 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let effort = arguments.effort()?;
     let text = text_of(Some(&arguments.file))?;
     let scenario = Scenario::parse(&text, &arguments.file.display().to_string()).map_err(|error| error.to_string())?;
+    if let Some(problem) = grounded(&scenario) {
+        return Err(format!("{}: {problem}", arguments.file.display()));
+    }
     let directory = arguments.directory(&scenario.name);
+    not_a_campaigns(&directory)?;
+    if effort.is_none() {
+        none_but(arguments.gains.as_deref(), &directory)?;
+    }
     let interrupt = watch()?;
     let mut found = None;
     let set = match (&effort, &arguments.gains) {
         (Some(effort), _) => match tuning::tune(&scenario, *effort, &interrupt) {
             Ok(set) => {
-                found = Some(("rivals.toml", set.written(&scenario, &arguments.command(effort))));
+                found = Some((RIVALS, set.written(&scenario, &arguments.command(effort))));
                 set
             }
             Err(message) => {
@@ -100,6 +111,17 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         directory.display()
     ))?;
     Ok(status(comparison.holds, None))
+}
+
+/// Refuses a directory that holds other gains than those that are to fly: they would pass for those that flew. They are not removed,
+/// because a search for them takes long.
+fn none_but(gains: Option<&Path>, directory: &Path) -> Result<(), String> {
+    let there = directory.join(RIVALS);
+    if !there.exists() || gains.is_some_and(|gains| same_file(gains, &there)) {
+        return Ok(());
+    }
+    let there = there.display();
+    Err(format!("{there}: holds other gains than are to fly: take them with --gains {there}, or choose another --out"))
 }
 
 /// The name of a tuned scenario and the file it goes to. Whatever is wrong with them shows now, not after the search.

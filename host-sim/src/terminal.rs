@@ -1,5 +1,6 @@
 //! What commands have in common at a terminal: a file read once, output written whole, signals watched, and the status they end with.
 
+use host_sim::campaign::manifest::MANIFEST;
 use host_sim::interrupt::Interrupt;
 use std::fmt;
 use std::io::{self, Write};
@@ -54,6 +55,17 @@ pub fn status(holds: bool, signal: Option<u8>) -> ExitCode {
         (None, true) => ExitCode::SUCCESS,
         (None, false) => ExitCode::from(CLAIMS_FAIL),
     }
+}
+
+/// Refuses a directory in which a report would be written over that of a campaign, which may have taken hours.
+pub fn not_a_campaigns(directory: &Path) -> Result<(), String> {
+    if directory.join(MANIFEST).exists() {
+        return Err(format!(
+            "{}: holds a campaign with a report of its own: choose another --out",
+            directory.display()
+        ));
+    }
+    Ok(())
 }
 
 /// Whether both paths lead to one file that exists.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use host_sim::campaign::fly::Orders;
+use host_sim::campaign::fly::{Orders, grounded};
 use host_sim::campaign::step;
 use host_sim::flier::{LawChoice, OURS};
 use host_sim::rivals::gains;
@@ -31,6 +31,9 @@ pub struct CampaignArguments {
     /// Fly this one flight again, as `fly` does: log, figures, report
     #[arg(long, value_name = "NUMBER")]
     pub replay: Option<u64>,
+    /// With --replay: fly even if log.csv will take more than 1 GB
+    #[arg(long, requires = "replay")]
+    pub large_log: bool,
     /// Which law flies: ours, or another one to compare it with
     #[arg(long, value_name = "NAME", default_value = OURS, value_parser = law_names())]
     law: String,
@@ -107,6 +110,9 @@ impl CampaignArguments {
             name = format!("{name} with {}", draws.display());
         }
         let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+        if let Some(problem) = grounded(&scenario) {
+            return Err(format!("{name}: {problem}"));
+        }
         let stepped = match self.plant_step {
             None => step::longest(&scenario),
             Some(wanted) => step::of(&scenario, wanted).map_err(|problem| format!("--plant-step: {problem}"))?,

@@ -120,7 +120,8 @@ impl Set {
     /// As a table of a file of gains; `origin` is a line that says where they come from.
     #[must_use]
     pub fn written(&self, scenario: &Scenario, origin: &str) -> String {
-        let name = &scenario.name;
+        // A name with a dot would be a table within a table.
+        let name = &if scenario.name.contains('.') { format!("{:?}", scenario.name) } else { scenario.name.clone() };
         let lines: String = vehicle(scenario).iter().map(|(key, values)| line(key, values) + "\n").collect();
         let mut text = format!("# {origin}\n[{name}]\n{lines}");
         for (kind, gains, cost) in &self.rivals {

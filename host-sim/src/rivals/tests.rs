@@ -62,10 +62,13 @@ fn every_rival_recovers_from_moderate_attitudes() {
 fn gains_survive_being_written_and_read() {
     let file = hummingbird();
     let set = Set::of(&file, BUILT_IN, "gains.toml").unwrap();
-    let again = Set::of(&file, &set.written(&file, "a test"), "written").unwrap();
-    assert_eq!(again.rivals.len(), Kind::ALL.len());
-    for ((_, one, _), (_, other, _)) in set.rivals.iter().zip(&again.rivals) {
-        assert!(one.iter().zip(other).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
+    for name in ["hummingbird", "hummingbird.v1.2", "2", "-"] {
+        let named = Scenario { name: name.to_owned(), ..file.clone() };
+        let again = Set::of(&named, &set.written(&named, "a test"), "written").unwrap();
+        assert_eq!(again.rivals.len(), Kind::ALL.len());
+        for ((_, one, _), (_, other, _)) in set.rivals.iter().zip(&again.rivals) {
+            assert!(one.iter().zip(other).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
+        }
     }
 }
 
