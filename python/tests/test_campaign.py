@@ -67,11 +67,13 @@ def test_what_cannot_be_flown_or_merged_is_refused(scenario, tmp_path):
     with pytest.raises(ValueError, match="flights: must be from 1 to"):
         sh.campaign(scenario, tmp_path / "a", flights=0)
     assert not (tmp_path / "a").exists()
-    sh.campaign(scenario, tmp_path / "first", flights=20, shard=(1, 2))
+    with pytest.raises(ValueError, match="shard: 20 flights in chunks of 50 are 1 chunk, so there can be at most 1 shard"):
+        sh.campaign(scenario, tmp_path / "a", flights=20, shard=(1, 2))
+    sh.campaign(scenario, tmp_path / "first", flights=60, shard=(1, 2))
     with pytest.raises(ValueError, match="expects all 2 shards"):
         sh.merge([tmp_path / "first"], tmp_path / "out")
     with pytest.raises(ValueError, match="holds another campaign"):
-        sh.campaign(scenario, tmp_path / "first", flights=21, shard=(1, 2))
+        sh.campaign(scenario, tmp_path / "first", flights=61, shard=(1, 2))
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,8 @@
 //! A course whose figures follow from arithmetic.
 
 use super::*;
+use crate::campaign::outcome::Outcome;
+use controller_core::certificate::certified::Certified;
 
 const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
@@ -65,4 +67,15 @@ fn the_last_half_is_judged_by_its_root_mean_squares() {
     let changes: Vec<f64> = half.windows(2).flat_map(|pair| (0..4).map(|rotor| change(pair, rotor))).collect();
     let activity = (changes.iter().map(|change| change * change).sum::<f64>() / changes.len() as f64).sqrt();
     assert!((course.activity - activity).abs() < 1e-12 && changes.len() == 196);
+}
+
+#[test]
+fn what_stands_on_the_ground_has_not_arrived() {
+    let heavy = "[ground]\nheight = 0.0\n[truth]\nmass = 5.0";
+    let stands = course(4.0, "position = [0.0, 0.0, 0.0]", heavy, 0.1);
+    assert_eq!((stands.settled, stands.end_error), (None, 0.0));
+    let scenario = scenario(4.0, "position = [0.0, 0.0, 0.0]", heavy);
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    let outcome = Outcome::of(&scenario, Flight::new(&scenario).unwrap(), certified.certificate());
+    assert!(outcome.settled.is_none() && !outcome.tracks() && outcome.final_error == 0.0, "{outcome:?}");
 }

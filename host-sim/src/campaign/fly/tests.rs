@@ -1,5 +1,6 @@
 //! Campaigns of short flights: the same bytes at any number of threads, in any split, after any interruption.
 
+use super::super::batches;
 use super::super::manifest::{CHUNK, MANIFEST};
 use super::super::step::longest;
 use super::super::store::{REPORT, RESULT, SCENARIO};
@@ -87,7 +88,19 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     store.keep(1, &kept).unwrap();
     fs::write(again.join("parts/000002.arrow"), b"ARROW1\0\0 and then nothing").unwrap();
     fs::write(again.join("parts/.000003.arrow.1.part"), b"half").unwrap();
-    assert!(store.part(1) == Some(kept) && store.part(2).is_none() && store.part(0).is_none());
+    assert!(store.part(1) == Some(kept.clone()) && store.part(2).is_none() && store.part(0).is_none());
+    // A number that was changed is damage as well, where the part is sealed; those of older campaigns are not, and are taken.
+    let (sealed, middle) = (fs::read(again.join("parts/000001.arrow")).unwrap(), 8000);
+    let part = |bytes: &[u8]| {
+        fs::write(again.join("parts/000000.arrow"), bytes).unwrap();
+        batches::read_sealed(&again.join("parts/000000.arrow"))
+    };
+    let (before, after) = (&sealed[..middle], &sealed[middle + 1..]);
+    let changed = [before, &[sealed[middle] ^ 1], after].concat();
+    let arrow = sealed.len() - 32;
+    assert_eq!(part(&sealed[..arrow]), Some(vec![kept.clone()]));
+    assert!(part(&changed[..arrow]).is_some_and(|changed| changed != [kept]) && part(&changed).is_none());
+    assert!((0..arrow).step_by(13).all(|end| part(&sealed[..end]).is_none()));
     let there = fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap();
     let verdict = Verdict::of(&scenario()).unwrap();
     let (same, none) = (scenario(), Interrupt::default());
