@@ -126,6 +126,48 @@ fn poses_of_another_time_are_none() {
     lie(old, 0, &[Rejected::TooOld, Rejected::Repeated]);
 }
 
+/// How long it takes to hold once the truth is told again, after three seconds of which in the first `lied` ticks the poses are
+/// what `told` says, and none come afterwards; none where it does not hold within ten seconds.
+fn held_again(told: Told, lied: u64) -> Option<u64> {
+    let mut flight = hovering();
+    flight.told = told;
+    flight.ticks(lied);
+    flight.present.pose = false;
+    flight.ticks(300 - lied);
+    assert_eq!(flight.pilot.mode(), Mode::Descending);
+    (flight.told, flight.present.pose) = (Flight::new().told, true);
+    (1..=1_000).find(|_| flight.tick().mode == Mode::Holding)
+}
+
+#[test]
+fn poses_are_believed_after_an_outage_whatever_the_last_ones_before_it_said() {
+    let astray = || -> Told { Box::new(|body, time| displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE)) };
+    let silent = held_again(Flight::new().told, 0);
+    assert!(silent.is_some_and(|ticks| ticks < 50), "{silent:?}");
+    for lied in [1, 100, 150] {
+        let held = held_again(astray(), lied);
+        assert!(held.is_some_and(|ticks| ticks < 100), "{lied}: {held:?}");
+    }
+    // Those that were still refused when it had levelled are not believed any more.
+    assert_eq!(held_again(astray(), 200), None);
+}
+
+#[test]
+fn poses_whose_sender_had_lost_track_or_time_are_believed_again() {
+    let track = || -> Told {
+        Box::new(|body: &Body, time| {
+            let pose = displaced(body, time, &NOWHERE, &NOWHERE);
+            Stamped { value: pose.value.quality(-1), ..pose }
+        })
+    };
+    let late = || -> Told { Box::new(|body, time| displaced(body, time - 600_000, &NOWHERE, &NOWHERE)) };
+    let early = || -> Told { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
+    for (number, told) in [track(), late(), early()].into_iter().enumerate() {
+        let held = held_again(told, 300);
+        assert!(held.is_some_and(|ticks| ticks < 100), "{number}: {held:?}");
+    }
+}
+
 /// The truth in a frame that has moved by `offset` and turned by `turn` (rad, about the vertical), which its counter says.
 fn moved(offset: Vector3<f64>, turn: f64, resets: u8) -> Told {
     Box::new(move |body, time| {

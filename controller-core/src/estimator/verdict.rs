@@ -52,6 +52,25 @@ worded! {
     }
 }
 
+impl Rejected {
+    /// Whether it was refused for what it says of the vehicle: not for its time, nor for what its sender thinks of it, nor because
+    /// there was nothing to compare it with.
+    #[must_use]
+    pub const fn is_lie(self) -> bool {
+        match self {
+            Self::Frozen
+            | Self::Position
+            | Self::Attitude
+            | Self::Velocity
+            | Self::Jump
+            | Self::Drift
+            | Self::Turned
+            | Self::Gravity => true,
+            Self::Quality | Self::Future | Self::Repeated | Self::TooOld | Self::NoImu | Self::NotFinite => false,
+        }
+    }
+}
+
 worded! {
     /// What is wrong with the estimate, the worst first.
     #[derive(PartialOrd, Ord)]

@@ -33,8 +33,8 @@ pub struct Pilot<'m> {
     estimation: Estimation<'m>,
     watch: Watch,
     fence: Fence,
-    /// Whether poses were still refused when the vehicle had levelled: they lie, and what they agree on later is no better.
-    poses_lie: bool,
+    /// When a pose was refused last for what it says, us; not counted on once a vehicle without a pose has levelled.
+    lied_at: Option<u64>,
     bench: Bench,
     /// The newest setpoint, and whether somebody wants setpoints flown.
     newest: Newest,
@@ -68,7 +68,7 @@ impl<'m> Pilot<'m> {
             estimation: Estimation::new(estimator),
             watch: Watch::default(),
             fence: Fence::new(&settings),
-            poses_lie: false,
+            lied_at: None,
             bench: Bench::NONE,
             newest: Newest::default(),
             wants_setpoints: false,

@@ -1,7 +1,7 @@
 //! What the rules need to know in a tick.
 
 use super::Pilot;
-use crate::estimator::Fault;
+use crate::estimator::{COASTING_AFTER, Fault, Rejected};
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::Inputs;
@@ -49,10 +49,10 @@ impl Pilot<'_> {
         seen: &Seen,
     ) -> Conditions {
         let elapsed = inputs.now.saturating_sub(self.since);
-        if elapsed < LEVELLING_MAX {
-            self.poses_lie = matches!(estimate.health.last, Some(Err(_)));
+        if elapsed < LEVELLING_MAX && estimate.pose.is_some_and(|pose| pose.is_err_and(Rejected::is_lie)) {
+            self.lied_at = Some(inputs.now);
         }
-        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie);
+        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie());
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
             (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
             _ => false,
@@ -80,6 +80,12 @@ impl Pilot<'_> {
             .with(Condition::TrackingLost, seen.tracking_lost)
             .with(Condition::Saturated, seen.saturated)
             .with(Condition::Overrun, seen.overrun)
+    }
+
+    /// Whether poses were still refused for what they say when the vehicle had levelled: what they agree on later is no better.
+    fn poses_lie(&self) -> bool {
+        let levelled = self.since.saturating_add(LEVELLING_MAX);
+        self.lied_at.is_some_and(|at| levelled.saturating_sub(at) <= COASTING_AFTER)
     }
 
     /// Whether the ground station has been silent for so long, us.
