@@ -36,9 +36,9 @@ pub struct Pilot<'m> {
     /// When a pose was refused last for what it says, us; not counted on once a vehicle without a pose has levelled.
     lied_at: Option<u64>,
     bench: Bench,
-    /// The newest setpoint, and whether somebody wants setpoints flown.
+    /// The newest setpoint, and since when somebody wants setpoints flown, us.
     newest: Newest,
-    wants_setpoints: bool,
+    wanted_since: Option<u64>,
     thrust_check: ThrustCheck,
 }
 
@@ -71,7 +71,7 @@ impl<'m> Pilot<'m> {
             lied_at: None,
             bench: Bench::NONE,
             newest: Newest::default(),
-            wants_setpoints: false,
+            wanted_since: None,
             thrust_check: ThrustCheck::default(),
         }
     }
@@ -109,6 +109,7 @@ impl<'m> Pilot<'m> {
         if let Some(setpoint) = &inputs.setpoint {
             self.newest.keep(setpoint, inputs.now);
         }
+        self.take_back(inputs);
         let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
         let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
         let conditions = self.requested(inputs, estimate, answer);
@@ -175,7 +176,7 @@ impl<'m> Pilot<'m> {
     fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() && transition.to != Mode::Flying {
-            self.wants_setpoints = false;
+            self.wanted_since = None;
         }
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();

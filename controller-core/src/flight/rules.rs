@@ -44,6 +44,10 @@ pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
 /// How long an armed vehicle may idle on the ground, us.
 pub const IDLING_MAX: u64 = 10_000_000;
 
+/// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and arms within a
+/// second or two, and who arms later may not know that anybody did.
+pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
+
 /// How long a battery must be low before anything is done, us: it sags under a burst of thrust.
 pub const BATTERY_LASTING: u64 = 3_000_000;
 

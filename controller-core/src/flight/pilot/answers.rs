@@ -9,7 +9,7 @@ use crate::flight::exchange::{Battery, Inputs};
 use crate::flight::permission::{self, Start, require};
 use crate::flight::refusal::{Refusal, field};
 use crate::flight::request::Request;
-use crate::flight::rules::{GROUND_STATION_SILENCE_MAX, Mode};
+use crate::flight::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_WANTED_MAX};
 use crate::flight::watch::Seen;
 use crate::governor::Setpoint;
 
@@ -29,6 +29,16 @@ impl<'m> Pilot<'m> {
         let start = self.may_arm(inputs, estimate)?;
         let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
         chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
+    }
+
+    /// Setpoints are no longer wanted where anything else is asked for but arming, or somebody stops the motors, or they have been
+    /// wanted on the ground for too long.
+    pub(super) fn take_back(&mut self, inputs: &Inputs) {
+        let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
+        let stops = inputs.disarm || inputs.killed;
+        let since = self.wanted_since.filter(|_| goes_on && !stops);
+        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_WANTED_MAX;
+        self.wanted_since = since.filter(|since| self.mode.is_armed() || is_recent(since));
     }
 
     /// Whether a request is granted. Granting one readies the chain for it.
@@ -54,7 +64,7 @@ impl<'m> Pilot<'m> {
                 let may = self.mode.may_arm() || self.mode == Mode::Idling || self.mode.is_guided();
                 require(may && self.mode != Mode::Landing, Refusal::NotInTheAir)?;
                 require(!self.mode.is_guided() || self.newest.fresh(inputs.now).is_some(), Refusal::NoSetpoints)?;
-                self.wants_setpoints = true;
+                self.wanted_since = Some(inputs.now);
                 Ok(())
             }
             Request::Hold => {

@@ -23,7 +23,7 @@ impl Pilot<'_> {
     ) -> Conditions {
         let granted = inputs.request.filter(|_| answer == Some(Ok(())));
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
-        let fresh = self.wants_setpoints && self.newest.fresh(inputs.now).is_some();
+        let fresh = self.wanted_since.is_some() && self.newest.fresh(inputs.now).is_some();
         let setpoints = fresh && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))

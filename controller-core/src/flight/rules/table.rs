@@ -59,9 +59,9 @@ pub const TABLE: [Row; 98] = {
         row(Idling,     BatteryCritical,     Checks,     Reason::BatteryCritical),
         row(Idling,     BatteryLow,          Checks,     Reason::BatteryLow),
         row(Idling,     Overrun,             Checks,     Reason::Overrun),
+        row(Idling,     LandRequested,       Checks,     Reason::Landed),
         row(Idling,     TakeOffRequested,    TakingOff,  Reason::TakeOffCommanded),
         row(Idling,     SetpointsRequested,  Flying,     Reason::SetpointsCommanded),
-        row(Idling,     LandRequested,       Checks,     Reason::Landed),
         row(Idling,     IdlingOver,          Checks,     Reason::IdlingOver),
 
         row(TakingOff,  Killed,              Stopped,    Reason::Killed),
