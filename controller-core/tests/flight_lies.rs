@@ -6,9 +6,9 @@ mod flight;
 
 use controller_core::estimator::{Rejected, Taken};
 use controller_core::flight::rules::COASTING_MAX;
-use controller_core::flight::{Mode, Outcome, Output, PERIOD, Reason, Stamped};
+use controller_core::flight::{Mode, Outcome, Output, PERIOD, Reason, Request, Stamped};
 use controller_core::prelude::*;
-use flight::{Body, Flight, Told, displaced, go_to};
+use flight::{Body, Flight, SPOOLING, Told, displaced, go_to};
 use nalgebra::UnitQuaternion;
 use std::f64::consts::PI;
 
@@ -203,6 +203,29 @@ fn a_frame_that_moves_and_says_so_is_flown_on_in_without_a_lurch() {
         let there = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, turn)) * place + offset;
         let reference = last.flown.unwrap().unwrap().reference;
         assert!((reference.position.cast::<f64>() - there).norm() < 0.02, "{}", reference.position);
+    }
+}
+
+#[test]
+fn a_frame_that_moves_while_the_rotors_are_brought_up_takes_the_reference_along() {
+    for request in [Request::FlySetpoints, Request::TakeOff(Some(1.0))] {
+        let mut flight = Flight::idling();
+        // Long enough for its frame to be an old one.
+        flight.ticks(200);
+        flight.inputs.request = Some(request);
+        flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
+        assert_eq!(flight.tick().answer, Some(Ok(())));
+        flight.ticks(20);
+        flight.told = moved(Vector3::new(20.0, 0.0, 3.0), 1.0, 1);
+        for _ in 20..SPOOLING - 2 {
+            let outcome = flight.tick();
+            assert!(outcome.mode.flies());
+            let flown = outcome.flown.unwrap().unwrap();
+            assert!(flown.position_error.norm() < 0.01, "{request:?}: {}", flown.position_error);
+            assert!(flown.wrench.torque.norm() < 1e-3, "{request:?}: {}", flown.wrench.torque);
+        }
+        assert_eq!(flight.ticks(300).health.jumps, 1);
+        assert!(flight.tilt() < 0.02 && flight.body.velocity.xy().norm() < 0.05, "{request:?}");
     }
 }
 

@@ -214,7 +214,12 @@ impl<'m> Chain<'m> {
     /// As [`Self::start`].
     pub fn regain(&mut self, state: &State) -> Result<(), InputError> {
         let velocity = slowed(&state.velocity, self.speed);
-        self.governor.start(&state.position, &velocity, &self.reference.heading)
+        self.governor.start(&state.position, &velocity, &self.reference.heading)?;
+        if !self.spool.is_over() {
+            // The governor's reference is not flown yet: this one waits at rest for the rotors, where the vehicle is.
+            self.reference = resting(&state.position, &self.reference.heading);
+        }
+        Ok(())
     }
 
     /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which may have
