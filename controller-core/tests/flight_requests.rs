@@ -3,9 +3,19 @@
 mod flight;
 
 use controller_core::flight::rules::SETPOINTS_WANTED_MAX;
-use controller_core::flight::{Mode, Outcome, PERIOD, Request};
-use controller_core::governor::Setpoint;
+use controller_core::flight::{Mode, Outcome, PERIOD, Refusal, Request, SETPOINT_AGE_MAX};
+use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::prelude::*;
 use flight::{Flight, go_to};
+
+/// Outside the fence.
+fn far() -> Setpoint {
+    go_to(5_000.0, 0.0, 2.0)
+}
+
+fn velocity(x: f32) -> Setpoint {
+    Setpoint { motion: Motion::Velocity(Vector3::new(x, 0.0, 0.0)), turn: Turn::Keep }
+}
 
 /// A tick with a request.
 fn ask(flight: &mut Flight, request: Request) -> Outcome {
@@ -58,6 +68,45 @@ fn a_take_off_that_is_granted_goes_before_setpoints_wanted_earlier_and_rises() {
     let outcome = stream(&mut flight, go_to(0.0, 0.0, 2.0), 2_000);
     assert_eq!(outcome.mode, Mode::Holding);
     assert!((flight.body.position.z - from - 3.0).abs() < 0.1, "{}", flight.body.position.z - from);
+}
+
+#[test]
+fn a_stream_that_ends_in_setpoints_that_are_refused_has_ended_all_the_same() {
+    for refused in [far(), velocity(f32::NAN)] {
+        let mut flight = Flight::armed();
+        assert_eq!(stream(&mut flight, velocity(0.1), 50).mode, Mode::Flying);
+        let mut ticks = 0;
+        while flight.pilot.mode() == Mode::Flying {
+            assert!(matches!(stream(&mut flight, refused, 1).setpoint, None | Some(Err(_))));
+            ticks += 1;
+            assert!(ticks <= SETPOINT_AGE_MAX / PERIOD, "{refused:?}");
+        }
+        assert_eq!((flight.pilot.mode(), ticks), (Mode::Holding, SETPOINT_AGE_MAX / PERIOD));
+    }
+}
+
+#[test]
+fn a_setpoint_that_is_refused_begins_no_flight_and_says_why() {
+    // The fence is placed by arming.
+    let mut flight = Flight::settled();
+    stream(&mut flight, far(), 1);
+    for request in [Request::FlySetpoints, Request::Arm] {
+        flight.inputs.setpoint = Some(far());
+        assert_eq!(ask(&mut flight, request).answer, Some(Ok(())));
+    }
+    let outcome = stream(&mut flight, far(), 10);
+    assert_eq!((outcome.mode, outcome.setpoint), (Mode::Idling, Some(Err(Refusal::OutsideFence))));
+    flight.inputs.setpoint = Some(far());
+    let outcome = ask(&mut flight, Request::FlySetpoints);
+    assert_eq!((outcome.mode, outcome.answer), (Mode::Idling, Some(Ok(()))));
+    // One that may be flown does begin it.
+    assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
+    let mut flight = Flight::armed();
+    assert_eq!(ask(&mut flight, Request::Hold).mode, Mode::Holding);
+    flight.ticks(SETPOINT_AGE_MAX / PERIOD);
+    flight.inputs.setpoint = Some(far());
+    let outcome = ask(&mut flight, Request::FlySetpoints);
+    assert_eq!((outcome.mode, outcome.answer), (Mode::Holding, Some(Err(Refusal::NoSetpoints))));
 }
 
 #[test]

@@ -100,7 +100,7 @@ pub struct Outcome {
     pub home: Option<Vector3<f32>>,
     /// Whether the vehicle has left the ground where it was armed, and has not landed.
     pub is_airborne: bool,
-    /// Whether the setpoint was accepted, where setpoints are flown.
+    /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited for.
     pub setpoint: Option<Result<(), Refusal>>,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,

@@ -36,7 +36,7 @@ pub struct Pilot<'m> {
     /// When a pose was refused last for what it says, us; not counted on once a vehicle without a pose has levelled.
     lied_at: Option<u64>,
     bench: Bench,
-    /// The newest setpoint, and since when somebody wants setpoints flown, us.
+    /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
     newest: Newest,
     wanted_since: Option<u64>,
     thrust_check: ThrustCheck,
@@ -106,7 +106,7 @@ impl<'m> Pilot<'m> {
     fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let followed = self.follow(estimate);
         let seen = self.look(inputs, estimate);
-        if let Some(setpoint) = &inputs.setpoint {
+        if let Some(setpoint) = inputs.setpoint.as_ref().filter(|setpoint| self.may_come(setpoint)) {
             self.newest.keep(setpoint, inputs.now);
         }
         self.take_back(inputs);
@@ -122,7 +122,12 @@ impl<'m> Pilot<'m> {
         if let Some(transition) = transition {
             self.enter(&transition, inputs, estimate);
         }
-        let setpoint = inputs.setpoint.filter(|_| self.mode == Mode::Flying).map(|setpoint| self.accept(&setpoint));
+        let setpoint = inputs.setpoint.and_then(|setpoint| match self.mode {
+            Mode::Flying => Some(self.accept(&setpoint)),
+            // Somebody waits for a flight that it does not begin.
+            Mode::Idling if self.wanted_since.is_some() => self.check(&setpoint).err().map(Err),
+            _ => None,
+        });
         let (output, flown) = self.output(estimate, inputs.now);
         let scale = flown.as_ref().and_then(|flown| flown.as_ref().ok()).map(|flown| flown.thrust_scale);
         Outcome {
@@ -190,7 +195,7 @@ impl<'m> Pilot<'m> {
             (Mode::Idling, _) => self.fence.place(&chain.reference().position),
             (Mode::Flying, _) => {
                 if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
-                    // One that is refused leaves the vehicle where it is.
+                    // It was checked when it came.
                     let _ = chain.accept(setpoint);
                 }
             }

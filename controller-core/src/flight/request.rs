@@ -30,7 +30,7 @@ pub enum Request {
     MotorSetting(MotorSetting),
 }
 
-/// The newest setpoint.
+/// The newest setpoint that may be flown.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Newest(Option<(Setpoint, u64)>);
 

@@ -73,6 +73,14 @@ pub(super) struct Parts {
 }
 
 impl Setpoint {
+    /// Whether the governor would take it.
+    ///
+    /// # Errors
+    /// Names the field that is not finite or out of range.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        self.checked().map(|_| ())
+    }
+
     /// Its parts, where every one of them is finite and in range.
     pub(super) fn checked(&self) -> Result<Parts, InputError> {
         let still = Vector3::zeros();

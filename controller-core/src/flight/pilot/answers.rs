@@ -63,7 +63,7 @@ impl<'m> Pilot<'m> {
             Request::FlySetpoints => {
                 let may = self.mode.may_arm() || self.mode == Mode::Idling || self.mode.is_guided();
                 require(may && self.mode != Mode::Landing, Refusal::NotInTheAir)?;
-                require(!self.mode.is_guided() || self.newest.fresh(inputs.now).is_some(), Refusal::NoSetpoints)?;
+                require(!self.mode.is_guided() || self.has_setpoint(inputs.now), Refusal::NoSetpoints)?;
                 self.wanted_since = Some(inputs.now);
                 Ok(())
             }
@@ -129,5 +129,22 @@ impl<'m> Pilot<'m> {
     pub(super) fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
         require(self.fence.allows(setpoint), Refusal::OutsideFence)?;
         self.with_chain(|chain| chain.accept(setpoint).map_err(Refusal::Setpoint))
+    }
+
+    /// Whether a setpoint may be flown.
+    pub(super) fn check(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)?;
+        setpoint.check().map_err(|error| Refusal::Setpoint(field(error)))
+    }
+
+    /// Whether a setpoint is one to remember: what is refused does not keep a stream alive. The fence is placed by arming, so
+    /// before that it is not asked.
+    pub(super) fn may_come(&self, setpoint: &Setpoint) -> bool {
+        if self.mode.is_armed() { self.check(setpoint).is_ok() } else { setpoint.check().is_ok() }
+    }
+
+    /// Whether there is a setpoint to be flown now.
+    pub(super) fn has_setpoint(&self, now: u64) -> bool {
+        self.newest.fresh(now).is_some_and(|setpoint| self.fence.allows(setpoint))
     }
 }

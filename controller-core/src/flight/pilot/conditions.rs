@@ -23,8 +23,8 @@ impl Pilot<'_> {
     ) -> Conditions {
         let granted = inputs.request.filter(|_| answer == Some(Ok(())));
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
-        let fresh = self.wanted_since.is_some() && self.newest.fresh(inputs.now).is_some();
-        let setpoints = fresh && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
+        let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now);
+        let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
             .with(Condition::Killed, inputs.killed)
