@@ -3,7 +3,7 @@
 mod flight;
 
 use controller_core::flight::rules::SETPOINTS_WANTED_MAX;
-use controller_core::flight::{Mode, Outcome, PERIOD, Refusal, Request, SETPOINT_AGE_MAX};
+use controller_core::flight::{Mode, Outcome, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, go_to};
@@ -144,3 +144,43 @@ fn setpoints_asked_for_on_the_ground_are_wanted_for_five_seconds() {
     assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
 }
 
+/// Going down by the IMU alone, told to land meanwhile, and poses again from the next tick on.
+fn told_to_land_without_a_pose() -> Flight {
+    let mut flight = Flight::armed();
+    flight.ticks(50);
+    flight.present.pose = false;
+    flight.until(Reason::PoseLost, 110);
+    assert_eq!(ask(&mut flight, Request::Land).answer, Some(Ok(())));
+    flight.ticks(30);
+    flight.present.pose = true;
+    flight
+}
+
+#[test]
+fn a_landing_that_is_granted_without_a_pose_is_begun_when_there_is_one() {
+    let mut flight = told_to_land_without_a_pose();
+    flight.until(Reason::PoseRegained, 20);
+    flight.until(Reason::LandCommanded, 1);
+    // Once: who holds afterwards holds.
+    assert_eq!(ask(&mut flight, Request::Hold).mode, Mode::Holding);
+    assert_eq!(flight.ticks(300).mode, Mode::Holding);
+}
+
+#[test]
+fn a_landing_that_is_granted_without_a_pose_gives_way_to_what_is_asked_for_later() {
+    let mut flight = told_to_land_without_a_pose();
+    flight.until(Reason::PoseRegained, 20);
+    assert_eq!(ask(&mut flight, Request::Hold).answer, Some(Ok(())));
+    assert_eq!(flight.ticks(300).mode, Mode::Holding);
+    // Nor does it outlast its flight.
+    let mut flight = told_to_land_without_a_pose();
+    flight.inputs.disarm = true;
+    flight.tick();
+    flight.body = Flight::new().body;
+    flight.ground = flight::GROUND;
+    flight.ticks(300);
+    for request in [Request::Arm, Request::TakeOff(None)] {
+        assert_eq!(ask(&mut flight, request).answer, Some(Ok(())));
+    }
+    assert_eq!(flight.ticks(2_000).mode, Mode::Holding);
+}

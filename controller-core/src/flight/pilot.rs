@@ -39,6 +39,8 @@ pub struct Pilot<'m> {
     /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
     newest: Newest,
     wanted_since: Option<u64>,
+    /// Whether a landing was granted to a vehicle without a pose: it begins when there is one.
+    must_still_land: bool,
     thrust_check: ThrustCheck,
 }
 
@@ -72,6 +74,7 @@ impl<'m> Pilot<'m> {
             bench: Bench::NONE,
             newest: Newest::default(),
             wanted_since: None,
+            must_still_land: false,
             thrust_check: ThrustCheck::default(),
         }
     }
@@ -183,6 +186,7 @@ impl<'m> Pilot<'m> {
         if transition.from.is_armed() && transition.to != Mode::Flying {
             self.wanted_since = None;
         }
+        self.must_still_land &= matches!(transition.reason, Reason::PoseRegained | Reason::PoseLost);
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
         }

@@ -22,7 +22,7 @@ pub enum Request {
     Hold,
     /// Fly to a setpoint and hold it.
     GoTo(Setpoint),
-    /// Land and disarm.
+    /// Land and disarm; without a pose, as soon as there is one.
     Land,
     /// Turn one motor slowly.
     MotorTest(MotorTest),

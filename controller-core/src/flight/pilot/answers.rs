@@ -80,6 +80,7 @@ impl<'m> Pilot<'m> {
             }
             Request::Land => {
                 let may = self.mode == Mode::Idling || self.mode.flies();
+                self.must_still_land = self.mode == Mode::Descending;
                 require(may, Refusal::NotInTheAir)
             }
         }

@@ -29,7 +29,7 @@ listed! {
         SetpointsRequested,
         /// Holding, here or at a point, was requested and granted.
         HoldRequested,
-        /// Landing was requested and granted.
+        /// Landing was requested and granted; without a pose, earlier.
         LandRequested,
         /// Idling has lasted [`super::IDLING_MAX`].
         IdlingOver,
