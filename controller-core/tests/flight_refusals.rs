@@ -9,6 +9,7 @@ use controller_core::flight::{
     Battery, FlightSettings, Grounded, Mode, MotorSetting, MotorTest, Output, PERIOD, Pilot, Refusal, Request, Setting,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::imu::ImuFault;
 use controller_core::prelude::*;
 use flight::{
     Flight, Handed, SETTLING, at_rest, at_rest_with, certified, configuration, displaced, estimator, go_to, memory,
@@ -343,6 +344,25 @@ fn a_motors_controller_is_told_nothing_where_motors_turn_or_of_one_that_is_not_t
 #[test]
 fn a_clock_whose_crystal_does_not_run_does_not_arm() {
     refuses(Handed { is_clock_doubtful: true, ..at_rest(NOW) }, Refusal::ClockDoubtful);
+}
+
+#[test]
+fn an_imu_that_has_failed_does_not_arm_and_begins_no_flight() {
+    for fault in ImuFault::ALL {
+        refuses(Handed { imu_fault: Some(fault), ..at_rest(NOW) }, Refusal::Imu(fault));
+        let mut flight = Flight::idling();
+        flight.inputs.imu_fault = Some(fault);
+        assert_eq!(answer(&mut flight, Request::TakeOff(None)), Err(Refusal::Imu(fault)));
+        for imu_fault in [Some(fault), None] {
+            flight.inputs.imu_fault = imu_fault;
+            flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
+            answer(&mut flight, Request::FlySetpoints).unwrap();
+            assert_eq!(flight.pilot.mode() == Mode::Flying, imu_fault.is_none());
+        }
+        // In flight the estimate is what counts.
+        flight.inputs.imu_fault = Some(fault);
+        assert_eq!(flight.tick().mode, Mode::Flying);
+    }
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::flight;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
+use crate::shared::{Asked, Event, INCREMENTS, Latest, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
@@ -28,6 +28,9 @@ const WRITING_MAX: u64 = 2_000;
 
 /// The greatest age of a voltage that counts, us.
 const VOLTAGE_AGE_MAX: u64 = 1_000_000;
+
+/// How long a fault of the IMU counts after it was seen last, us.
+const IMU_FAULT_LASTING: u64 = 1_000_000;
 
 /// How often poses that are refused, and faults of the estimator, are told, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
@@ -105,12 +108,12 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
         self.tell_of_the_estimate(&outcome, now);
-        let report = self.report(&outcome);
+        let report = self.report(&inputs, &outcome);
         self.shared.report.put(report, now);
         let (parameters, voltage) = (&self.shared.parameters, self.shared.voltage.get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
-        let voltage = voltage.filter(|voltage| voltage.age(now) <= VOLTAGE_AGE_MAX).map(|voltage| voltage.value);
+        let voltage = recent(&self.shared.voltage, VOLTAGE_AGE_MAX, now);
         self.shared.recorder.record(report.mode.is_armed(), || report.tick(now, command, voltage));
         command
     }
@@ -128,6 +131,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
+            imu_fault: recent(&self.shared.imu_fault, IMU_FAULT_LASTING, now),
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
@@ -145,10 +149,10 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn battery(&self, now: u64) -> Battery {
         let parameters = &self.shared.parameters;
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
-        match self.shared.voltage.get().filter(|voltage| voltage.age(now) <= VOLTAGE_AGE_MAX) {
+        match recent(&self.shared.voltage, VOLTAGE_AGE_MAX, now) {
             None => Battery::Unknown,
-            Some(voltage) if voltage.value < critical => Battery::Critical,
-            Some(voltage) if voltage.value < low => Battery::Low,
+            Some(voltage) if voltage < critical => Battery::Critical,
+            Some(voltage) if voltage < low => Battery::Low,
             Some(_) => Battery::Good,
         }
     }
@@ -205,7 +209,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    fn report(&self, outcome: &Outcome) -> Report {
+    fn report(&self, inputs: &Inputs, outcome: &Outcome) -> Report {
         let flown = outcome.flown.as_ref().and_then(|flown| flown.as_ref().ok());
         Report {
             mode: outcome.mode,
@@ -213,6 +217,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             is_airborne: outcome.is_airborne,
             state: outcome.estimated.map(|estimated| estimated.state),
             health: outcome.health,
+            imu_fault: inputs.imu_fault,
             home: outcome.home,
             reference: flown.map(|flown| flown.reference),
             wrench: flown.map(|flown| flown.wrench),
@@ -228,6 +233,11 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.shared.announce(if fault.is_some() { Event::MotorsLost } else { Event::MotorsRegained });
         }
     }
+}
+
+/// A value that is at most so old, us.
+fn recent<M: RawMutex, T: Copy>(latest: &Latest<M, T>, age_max: u64, now: u64) -> Option<T> {
+    latest.get().filter(|value| value.age(now) <= age_max).map(|value| value.value)
 }
 
 /// Everything that waits in a queue.

@@ -3,6 +3,7 @@
 //! | from | what | to | at most this old |
 //! |---|---|---|---|
 //! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
+//! | IMU | [`Shared::imu_fault`] | control | 1 s |
 //! | IMU | [`Shared::increments`] | control | a tick: each taken once |
 //! | link | [`Shared::poses`] | control | a tick: each taken once; [`controller_core::estimator`] decides |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
@@ -59,6 +60,7 @@ use crate::recorder::Recorder;
 use controller_core::estimator::{Increment, PoseMeasurement};
 use controller_core::flight::{ImuSample, Mode, Refusal, Stamped};
 use controller_core::governor::Setpoint;
+use controller_core::imu::ImuFault;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
@@ -86,6 +88,8 @@ pub const REPLIES: usize = 8;
 pub struct Shared<M: RawMutex> {
     /// The newest inertial sample, calibrated and low-passed, with its data-ready time.
     pub imu: Latest<M, ImuSample>,
+    /// The newest fault of gyro or accelerometer.
+    pub imu_fault: Latest<M, ImuFault>,
     /// What the inertial samples add up to, in order. Put them in with [`Self::increment`].
     pub increments: Queue<M, Increment, INCREMENTS>,
     /// Calibrations that somebody asked for; none ends what is under way.
@@ -159,6 +163,7 @@ impl<M: RawMutex> Shared<M> {
     pub const fn new() -> Self {
         Self {
             imu: Latest::new(),
+            imu_fault: Latest::new(),
             increments: Queue::new(),
             calibrations: Queue::new(),
             poses: Queue::new(),

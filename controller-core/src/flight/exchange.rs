@@ -9,6 +9,7 @@ use crate::allocation::Thrusts;
 use crate::error::InputError;
 use crate::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
 use crate::governor::Setpoint;
+use crate::imu::ImuFault;
 use crate::measurement::Stamped;
 use nalgebra::Vector3;
 
@@ -36,6 +37,8 @@ pub struct Inputs<'a> {
     pub now: u64,
     /// What the IMU did, each increment beginning where the last ended: two of 5 ms, where nothing is late.
     pub increments: &'a [Increment],
+    /// What is, or was within the last second, wrong with gyro or accelerometer.
+    pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.
     pub poses: &'a [Stamped<PoseMeasurement>],
     /// When the ground station was last heard, us.

@@ -5,6 +5,7 @@
 use crate::certificate::certified::Refused;
 use crate::error::{InputError, ParameterError};
 use crate::estimator::Fault;
+use crate::imu::ImuFault;
 use core::fmt;
 
 /// Why a pilot can never arm until it is made anew, with another configuration.
@@ -95,6 +96,8 @@ pub enum Refusal {
     DisarmCommanded,
     /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
     ImuStale,
+    /// Gyro or accelerometer has failed, or had a moment ago.
+    Imu(ImuFault),
     /// The estimate is not healthy, for this before all.
     Estimator(Fault),
     /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
@@ -141,6 +144,7 @@ impl fmt::Display for Refusal {
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",
             Self::ImuStale => "Refused: no IMU sample for 20 ms",
+            Self::Imu(fault) => fault.text(),
             Self::Estimator(fault) => fault.text(),
             Self::PosesUnsettled => "Refused: poses not believed for a whole second",
             Self::Moving => "Refused: the vehicle moves",

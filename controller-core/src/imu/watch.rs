@@ -36,6 +36,20 @@ worded! {
     }
 }
 
+impl ImuFault {
+    /// Whether the gyro is what fails.
+    #[must_use]
+    pub const fn is_of_the_gyro(self) -> bool {
+        matches!(self, Self::GyroStuck | Self::GyroSaturated)
+    }
+
+    /// Whether the accelerometer is what fails.
+    #[must_use]
+    pub const fn is_of_the_accelerometer(self) -> bool {
+        matches!(self, Self::AccelerometerSilent | Self::AccelerometerStuck | Self::AccelerometerSaturated)
+    }
+}
+
 /// Full scales, rad/s and m/s^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranges {

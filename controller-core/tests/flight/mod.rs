@@ -17,6 +17,7 @@ use controller_core::flight::{
     Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::imu::ImuFault;
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
 use nalgebra::UnitQuaternion;
@@ -89,6 +90,7 @@ pub fn pose(position: Vector3<f32>, attitude: Quaternion<f32>) -> PoseMeasuremen
 pub struct Handed {
     pub now: u64,
     pub increments: Vec<Increment>,
+    pub imu_fault: Option<ImuFault>,
     pub poses: Vec<Stamped<PoseMeasurement>>,
     pub ground_station: Option<u64>,
     pub request: Option<Request>,
@@ -106,6 +108,7 @@ impl Handed {
         let Self {
             now,
             increments,
+            imu_fault,
             poses,
             ground_station,
             request,
@@ -120,6 +123,7 @@ impl Handed {
         pilot.tick(&Inputs {
             now: *now,
             increments,
+            imu_fault: *imu_fault,
             poses,
             ground_station: *ground_station,
             request: *request,

@@ -93,6 +93,9 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         if self.is_simulated && matches!(fault, ImuFault::GyroStuck | ImuFault::AccelerometerStuck) {
             return;
         }
+        if fault.is_of_the_gyro() || fault.is_of_the_accelerometer() {
+            self.shared.imu_fault.put(fault, time);
+        }
         let Some(seen) = self.seen.get_mut(fault as usize) else { return };
         let is_new = seen.is_none_or(|seen| time.saturating_sub(seen) >= QUIET);
         *seen = Some(time);

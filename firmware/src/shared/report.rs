@@ -4,6 +4,7 @@ use crate::hardware::MotorCommand;
 use crate::recorder::tick::Tick;
 use controller_core::estimator::Health;
 use controller_core::flight::Mode;
+use controller_core::imu::ImuFault;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::Vector3;
@@ -21,6 +22,8 @@ pub struct Report {
     pub state: Option<State>,
     /// What that is worth.
     pub health: Health,
+    /// What is, or was a moment ago, wrong with gyro or accelerometer.
+    pub imu_fault: Option<ImuFault>,
     /// Where it was armed, or stands if it is not, m, world.
     pub home: Option<Vector3<f32>>,
     /// What the law follows; none while it does not fly.
@@ -41,6 +44,7 @@ impl Report {
         is_airborne: false,
         state: None,
         health: Health::NONE,
+        imu_fault: None,
         home: None,
         reference: None,
         wrench: None,

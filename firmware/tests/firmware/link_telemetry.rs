@@ -2,6 +2,7 @@
 
 use controller_core::estimator::{Estimator, EstimatorParameters, Health, Settings};
 use controller_core::flight::Mode;
+use controller_core::imu::ImuFault;
 use controller_core::state::State;
 use firmware::link::origin::Origin;
 use firmware::link::telemetry::{motion, vehicle};
@@ -102,6 +103,14 @@ fn sensors_are_healthy_only_while_they_are() {
     let mut lost = report();
     lost.health.pose_age = None;
     assert!(!bits(Some(&lost)).intersects(poses) && bits(Some(&lost)).contains(imu));
+    for (fault, failed, other) in [
+        (ImuFault::AccelerometerSilent, Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL, Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO),
+        (ImuFault::AccelerometerStuck, Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL, Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO),
+        (ImuFault::GyroSaturated, Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO, Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL),
+    ] {
+        let health = bits(Some(&Report { imu_fault: Some(fault), ..report() }));
+        assert!(!health.contains(failed) && health.contains(other), "{fault}");
+    }
     assert!(!bits(Some(&Report::NONE)).intersects(poses | imu | Sensor::MAV_SYS_STATUS_PREARM_CHECK));
     assert!(bits(None).is_empty());
     // It may be armed where it says so.

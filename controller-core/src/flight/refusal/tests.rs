@@ -41,8 +41,11 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Setpoint(LONG),
     ];
     let reasons = Reason::ALL.iter().map(ToString::to_string);
-    let refusals =
-        refusals.into_iter().chain(grounded.map(Refusal::Grounded)).chain(Fault::ALL.map(Refusal::Estimator));
+    let refusals = refusals
+        .into_iter()
+        .chain(grounded.map(Refusal::Grounded))
+        .chain(Fault::ALL.map(Refusal::Estimator))
+        .chain(ImuFault::ALL.map(Refusal::Imu));
     let mut texts: Vec<_> = reasons.chain(refusals.map(|refusal| refusal.to_string())).collect();
     for text in &texts {
         assert!(text.len() <= TEXT_MAX && text.len() > 4, "{text}");

@@ -4,6 +4,7 @@ use crate::parameters::table::{Name, PARAMETERS};
 use crate::shared::{Event, Report, Severity, Text, Traffic};
 use controller_core::estimator::{COASTING_AFTER, Fault, Health};
 use controller_core::flight::{Mode, PERIOD};
+use controller_core::imu::ImuFault;
 use mavlink::dialects::common::{
     AVAILABLE_MODES_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA,
     MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag, MavModeProperty, MavParamType,
@@ -141,8 +142,10 @@ pub fn status(
     if let Some(report) = report {
         let Health { faults, pose_age, .. } = report.health;
         let has = |fault: Fault| faults.contain(fault);
-        health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO, !has(Fault::ImuStale) && !has(Fault::GyroBias));
-        health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL, !has(Fault::ImuStale) && !has(Fault::AccelerometerBias));
+        let [gyro, accelerometer] = [ImuFault::is_of_the_gyro, ImuFault::is_of_the_accelerometer]
+            .map(|is_of| !has(Fault::ImuStale) && !report.imu_fault.is_some_and(is_of));
+        health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO, gyro && !has(Fault::GyroBias));
+        health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL, accelerometer && !has(Fault::AccelerometerBias));
         health.set(poses, pose_age.is_some_and(|age| age <= COASTING_AFTER) && !has(Fault::Inconsistent));
         health.set(Sensor::MAV_SYS_STATUS_AHRS, report.state.is_some() && !has(Fault::Uncertain));
         health.set(control, report.mode != Mode::Locked);

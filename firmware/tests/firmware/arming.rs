@@ -1,0 +1,104 @@
+//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed.
+
+use crate::support::Simulated;
+use crate::support::receiver::{Local, texts};
+use controller_core::estimator::PoseMeasurement;
+use controller_core::flight::{Mode, Pose, Request, Stamped, Velocity};
+use controller_core::imu::{Calibration, ImuParameters};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::boot;
+use firmware::control::Control;
+use firmware::hardware::{Clock, Fault, MotorCommand, Motors, RawImu, Watchdog};
+use firmware::imu::Flow;
+use firmware::shared::Asked;
+use nalgebra::{Quaternion, Vector3};
+
+/// A vehicle at rest: what its accelerometer says at a time, us, what its battery's, and whether its motors' frames go out.
+struct Vehicle {
+    force: fn(u64) -> Option<Vector3<f32>>,
+    voltage: fn(u64) -> Option<f32>,
+    frames: fn(u64) -> Result<(), Fault>,
+}
+
+/// Everything as it should be, and no battery to measure.
+const WELL: Vehicle = Vehicle { force: noisy, voltage: |_| None, frames: |_| Ok(()) };
+
+fn noisy(time: u64) -> Option<Vector3<f32>> {
+    Some(Vector3::new(0.0, 0.0, 9.81 + 1e-3 * (time / 1_000 % 2) as f32))
+}
+
+struct Frames<'a>(&'a Simulated, fn(u64) -> Result<(), Fault>);
+
+impl Motors for Frames<'_> {
+    async fn write(&mut self, _: MotorCommand) -> Result<(), Fault> {
+        self.1(self.0.now())
+    }
+}
+
+struct Patient;
+
+impl Watchdog for Patient {
+    fn feed(&mut self) {}
+}
+
+/// What the IMU's task and a camera put down at `now`, us.
+fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, now: u64) {
+    let jitter = if now / 1_000 % 2 == 0 { 1e-4 } else { -1e-4 };
+    let angular_velocity = Vector3::new(jitter, 0.0, 0.0);
+    flow.take(&RawImu { time: now, angular_velocity, specific_force: (vehicle.force)(now) });
+    if now % 10_000 == 0 {
+        let zero = Vector3::zeros();
+        let pose = Pose::new(zero, Velocity::World(zero), Quaternion::identity()).unwrap();
+        let _ = shared.poses.put(Stamped { value: PoseMeasurement::new(&pose), time: now });
+        shared.ground_station.put((), now);
+        if let Some(voltage) = (vehicle.voltage)(now) {
+            shared.voltage.put(voltage, now);
+        }
+    }
+}
+
+/// Each of these is asked for at its time, us, of four seconds: the mode then, and what was said since the first of them.
+fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mode, Vec<String>) {
+    let clock = Simulated::default();
+    let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
+    let mut control = Control::new(shared, pilot, outputs);
+    let mut flow = Flow::new(shared, &ImuParameters::BMI088, &Calibration::NONE).unwrap();
+    let mut frames = Frames(&clock, vehicle.frames);
+    let mut said = Vec::new();
+    clock.run(4_000_000, control.run(&clock, &mut frames, &mut Patient), |now| {
+        sense(shared, &mut flow, vehicle, now);
+        let words = texts(shared);
+        said.extend(words.into_iter().filter(|_| now > requests[0].0));
+        if let Some(&(_, request)) = requests.iter().find(|(at, _)| *at == now) {
+            shared.request(Asked { request, command: None }).unwrap();
+        }
+    });
+    (shared.report.get().unwrap().value.mode, said)
+}
+
+/// Asked to arm after three seconds.
+const ARM: [(u64, Request); 1] = [(3_000_000, Request::Arm)];
+
+/// It does not arm, and says this.
+fn refuses(shared: &Local, vehicle: &Vehicle, words: &str) {
+    let (mode, said) = asked(shared, vehicle, &ARM);
+    assert!(!mode.is_armed() && said.iter().any(|said| said == words), "{mode:?} {said:?}");
+}
+
+fn arms(shared: &Local, vehicle: &Vehicle) {
+    let (mode, said) = asked(shared, vehicle, &ARM);
+    assert_eq!(mode, Mode::Idling, "{said:?}");
+}
+
+#[test]
+fn an_accelerometer_that_has_failed_does_not_arm_until_it_has_been_well_for_a_second() {
+    arms(&Local::new(), &WELL);
+    let silent = |time| if time < 1_800_000 { noisy(time) } else { None };
+    refuses(&Local::new(), &Vehicle { force: silent, ..WELL }, "IMU: accelerometer does not answer");
+    let stuck = |_| noisy(0);
+    refuses(&Local::new(), &Vehicle { force: stuck, ..WELL }, "IMU: accelerometer stuck");
+    let lately = |time| if (1_800_000..=2_100_000).contains(&time) { None } else { noisy(time) };
+    refuses(&Local::new(), &Vehicle { force: lately, ..WELL }, "IMU: accelerometer does not answer");
+    let once = |time| if (1_800_000..=1_900_000).contains(&time) { None } else { noisy(time) };
+    arms(&Local::new(), &Vehicle { force: once, ..WELL });
+}
