@@ -372,6 +372,16 @@ fn a_battery_that_is_low_does_not_arm() {
     }
 }
 
+#[test]
+fn a_battery_that_is_to_be_watched_and_is_not_measured_does_not_arm_and_is_flown_on() {
+    refuses(Handed { battery: Battery::Missing, ..at_rest(NOW) }, Refusal::BatteryMissing);
+    let mut flight = Flight::armed();
+    for _ in 0..500 {
+        flight.inputs.battery = Battery::Missing;
+        assert_eq!(flight.tick().mode, Mode::Flying);
+    }
+}
+
 /// It never arms, says why, and tests motors nevertheless.
 fn is_grounded(mut pilot: Pilot, grounded: Grounded) {
     assert_eq!(pilot.grounded(), Some(grounded));

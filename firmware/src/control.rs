@@ -15,7 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::flight;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, INCREMENTS, Latest, POSES, Queue, Report, Shared, Timing};
+use crate::shared::{Asked, Event, INCREMENTS, Latest, POSES, Queue, Report, Severity, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
@@ -56,6 +56,7 @@ pub struct Control<'a, M: RawMutex> {
 struct Complaint {
     setpoint: Option<Refusal>,
     law: Option<InputError>,
+    battery: bool,
     writing: Option<Fault>,
     estimator: Option<EstimatorFault>,
     /// Before these times, us, no refused pose and no fault of the estimator is told again.
@@ -107,6 +108,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         self.tell(&outcome, asked);
+        self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
         self.tell_of_the_estimate(&outcome, now);
         let report = self.report(&inputs, &outcome);
         self.shared.report.put(report, now);
@@ -145,11 +147,13 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// What the battery has left, by its voltage; nobody knows without a recent reading.
+    /// What the battery has left, by its voltage. Without a recent reading nobody knows, which matters where somebody has set a voltage
+    /// to act on.
     fn battery(&self, now: u64) -> Battery {
         let parameters = &self.shared.parameters;
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
         match recent(&self.shared.voltage, VOLTAGE_AGE_MAX, now) {
+            None if low > 0.0 || critical > 0.0 => Battery::Missing,
             None => Battery::Unknown,
             Some(voltage) if voltage < critical => Battery::Critical,
             Some(voltage) if voltage < low => Battery::Low,
@@ -183,6 +187,15 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let (true, Some(Ok(flown))) = (outcome.is_thrust_doubtful, &outcome.flown) {
             self.shared.announce(Event::Thrust(flown.thrust_scale));
         }
+    }
+
+    /// That nothing watches the battery of an armed vehicle any more: landing for want of a reading would help nobody.
+    fn tell_of_the_battery(&mut self, is_missing: bool) {
+        if is_missing && !self.complaint.battery {
+            let words = "Battery: no reading for 1 s, nothing watches it";
+            self.shared.announce(Event::new(Severity::Warning, words));
+        }
+        self.complaint.battery = is_missing;
     }
 
     /// Poses that are refused, the estimate's jumps, and its faults, each once in a while.

@@ -19,9 +19,11 @@ pub const PERIOD: u64 = 10_000;
 /// What the battery has left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Battery {
-    /// Nobody measures it.
+    /// Nobody measures it, and nobody wants it watched.
     #[default]
     Unknown,
+    /// It is to be watched, and nobody measures it.
+    Missing,
     /// Enough.
     Good,
     /// Time to land.

@@ -76,6 +76,8 @@ pub enum Refusal {
     ClockDoubtful,
     /// The battery is low.
     BatteryLow,
+    /// The battery is to be watched, and there is no reading of it.
+    BatteryMissing,
     /// Motors stop in the air by force only.
     InTheAir,
     /// Only an armed vehicle on the ground takes off.
@@ -134,6 +136,7 @@ impl fmt::Display for Refusal {
             Self::Busy => "Refused: parameters in work, or a restart",
             Self::ClockDoubtful => "Refused: the clock's crystal does not run",
             Self::BatteryLow => "Refused: the battery is low",
+            Self::BatteryMissing => "Refused: battery to be watched is not measured",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",
             Self::NotIdling => "Refused: arm on the ground first",
             Self::NotInTheAir => "Refused: not in the air",

@@ -1,4 +1,4 @@
-//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed.
+//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody measures.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
@@ -10,6 +10,7 @@ use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::imu::Flow;
+use firmware::parameters::table::Name;
 use firmware::shared::Asked;
 use nalgebra::{Quaternion, Vector3};
 
@@ -101,4 +102,36 @@ fn an_accelerometer_that_has_failed_does_not_arm_until_it_has_been_well_for_a_se
     refuses(&Local::new(), &Vehicle { force: lately, ..WELL }, "IMU: accelerometer does not answer");
     let once = |time| if (1_800_000..=1_900_000).contains(&time) { None } else { noisy(time) };
     arms(&Local::new(), &Vehicle { force: once, ..WELL });
+}
+
+const NOT_MEASURED: &str = "Refused: battery to be watched is not measured";
+
+/// With a battery that is to be watched.
+fn watching(name: Name) -> Local {
+    let shared = Local::new();
+    shared.parameters.set(name, 10.5).unwrap();
+    shared
+}
+
+#[test]
+fn a_battery_that_is_to_be_watched_does_not_arm_unless_it_is_measured() {
+    for name in [Name::BatteryLow, Name::BatteryCritical] {
+        refuses(&watching(name), &WELL, NOT_MEASURED);
+        // Nor once the wire has come off.
+        let until = |time| (time < 1_900_000).then_some(12.0);
+        refuses(&watching(name), &Vehicle { voltage: until, ..WELL }, NOT_MEASURED);
+        arms(&watching(name), &Vehicle { voltage: |_| Some(12.0), ..WELL });
+    }
+}
+
+#[test]
+fn a_battery_that_is_measured_no_more_in_flight_is_told_of_once_and_nothing_is_done() {
+    let wish = [(2_000_000, Request::Arm), (2_100_000, Request::TakeOff(None))];
+    let words = "Battery: no reading for 1 s, nothing watches it";
+    let told = |said: &[String]| said.iter().filter(|said| *said == words).count();
+    let until = |time| (time < 2_300_000).then_some(12.0);
+    for (shared, times) in [(watching(Name::BatteryLow), 1), (Local::new(), 0)] {
+        let (mode, said) = asked(&shared, &Vehicle { voltage: until, ..WELL }, &wish);
+        assert_eq!((mode, told(&said)), (Mode::TakingOff, times), "{said:?}");
+    }
 }

@@ -21,6 +21,7 @@ impl<'m> Pilot<'m> {
         require(!inputs.is_busy, Refusal::Busy)?;
         require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
+        require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
         // An accelerometer that has failed says what it said last, which is what one at rest says.
         inputs.imu_fault.map_or(Ok(()), |fault| Err(Refusal::Imu(fault)))?;
         permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))

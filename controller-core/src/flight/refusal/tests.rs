@@ -31,6 +31,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Busy,
         Refusal::ClockDoubtful,
         Refusal::BatteryLow,
+        Refusal::BatteryMissing,
         Refusal::InTheAir,
         Refusal::NotIdling,
         Refusal::NotInTheAir,
