@@ -366,6 +366,11 @@ fn an_imu_that_has_failed_does_not_arm_and_begins_no_flight() {
 }
 
 #[test]
+fn motors_that_are_not_reached_do_not_arm() {
+    refuses(Handed { motors_fail: true, ..at_rest(NOW) }, Refusal::MotorsFail);
+}
+
+#[test]
 fn a_battery_that_is_low_does_not_arm() {
     for battery in [Battery::Low, Battery::Critical] {
         refuses(Handed { battery, ..at_rest(NOW) }, Refusal::BatteryLow);

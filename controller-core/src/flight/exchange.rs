@@ -55,6 +55,8 @@ pub struct Inputs<'a> {
     pub is_busy: bool,
     /// Whether nobody knows how exact the clock is: its crystal does not run.
     pub is_clock_doubtful: bool,
+    /// Whether the last tick's command did not reach the motors.
+    pub motors_fail: bool,
     /// What the battery has left.
     pub battery: Battery,
     /// Whether the last tick came to its end too late.

@@ -74,6 +74,8 @@ pub enum Refusal {
     Busy,
     /// The clock's crystal does not run.
     ClockDoubtful,
+    /// Commands do not reach the motors.
+    MotorsFail,
     /// The battery is low.
     BatteryLow,
     /// The battery is to be watched, and there is no reading of it.
@@ -135,6 +137,7 @@ impl fmt::Display for Refusal {
             Self::Killed => "Refused: the kill switch is on",
             Self::Busy => "Refused: parameters in work, or a restart",
             Self::ClockDoubtful => "Refused: the clock's crystal does not run",
+            Self::MotorsFail => "Refused: the motors' frames do not go out",
             Self::BatteryLow => "Refused: the battery is low",
             Self::BatteryMissing => "Refused: battery to be watched is not measured",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",

@@ -24,6 +24,8 @@ pub struct Report {
     pub health: Health,
     /// What is, or was a moment ago, wrong with gyro or accelerometer.
     pub imu_fault: Option<ImuFault>,
+    /// Whether the command of the tick before did not reach the motors.
+    pub motors_fail: bool,
     /// Where it was armed, or stands if it is not, m, world.
     pub home: Option<Vector3<f32>>,
     /// What the law follows; none while it does not fly.
@@ -45,6 +47,7 @@ impl Report {
         state: None,
         health: Health::NONE,
         imu_fault: None,
+        motors_fail: false,
         home: None,
         reference: None,
         wrench: None,

@@ -1,4 +1,5 @@
-//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody measures.
+//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody measures, motors that
+//! are not reached.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
@@ -134,4 +135,15 @@ fn a_battery_that_is_measured_no_more_in_flight_is_told_of_once_and_nothing_is_d
         let (mode, said) = asked(&shared, &Vehicle { voltage: until, ..WELL }, &wish);
         assert_eq!((mode, told(&said)), (Mode::TakingOff, times), "{said:?}");
     }
+}
+
+#[test]
+fn motors_whose_frames_do_not_go_out_do_not_arm() {
+    let words = "Refused: the motors' frames do not go out";
+    refuses(
+        &Local::new(),
+        &Vehicle { frames: |time| if time < 2_900_000 { Ok(()) } else { Err(Fault) }, ..WELL },
+        words,
+    );
+    arms(&Local::new(), &Vehicle { frames: |time| if time > 2_900_000 { Ok(()) } else { Err(Fault) }, ..WELL });
 }

@@ -113,6 +113,10 @@ fn sensors_are_healthy_only_while_they_are() {
     }
     assert!(!bits(Some(&Report::NONE)).intersects(poses | imu | Sensor::MAV_SYS_STATUS_PREARM_CHECK));
     assert!(bits(None).is_empty());
+    let motors = Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS;
+    let unreached = Report { motors_fail: true, ..report() };
+    assert!(bits(Some(&well)).contains(motors) && !bits(Some(&unreached)).contains(motors));
+    assert!(bits(Some(&unreached)).contains(Sensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION));
     // It may be armed where it says so.
     for (mode, ready, armable) in [(Mode::Ready, true, true), (Mode::Checks, false, false), (Mode::Flying, false, true)]
     {

@@ -20,6 +20,7 @@ impl<'m> Pilot<'m> {
         require(!inputs.killed, Refusal::Killed)?;
         require(!inputs.is_busy, Refusal::Busy)?;
         require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
+        require(!inputs.motors_fail, Refusal::MotorsFail)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
         // An accelerometer that has failed says what it said last, which is what one at rest says.

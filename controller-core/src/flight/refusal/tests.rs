@@ -30,6 +30,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Killed,
         Refusal::Busy,
         Refusal::ClockDoubtful,
+        Refusal::MotorsFail,
         Refusal::BatteryLow,
         Refusal::BatteryMissing,
         Refusal::InTheAir,

@@ -149,6 +149,7 @@ pub fn status(
         health.set(poses, pose_age.is_some_and(|age| age <= COASTING_AFTER) && !has(Fault::Inconsistent));
         health.set(Sensor::MAV_SYS_STATUS_AHRS, report.state.is_some() && !has(Fault::Uncertain));
         health.set(control, report.mode != Mode::Locked);
+        health.set(Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS, report.mode != Mode::Locked && !report.motors_fail);
         health.set(Sensor::MAV_SYS_STATUS_PREARM_CHECK, report.ready || report.mode.is_armed());
     }
     SYS_STATUS_DATA {
