@@ -15,7 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::flight;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, INCREMENTS, Latest, POSES, Queue, Report, Severity, Shared, Timing};
+use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Severity, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
@@ -115,7 +115,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let (parameters, voltage) = (&self.shared.parameters, self.shared.voltage.get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
-        let voltage = recent(&self.shared.voltage, VOLTAGE_AGE_MAX, now);
+        let voltage = self.shared.voltage.recent(VOLTAGE_AGE_MAX, now);
         self.shared.recorder.record(report.mode.is_armed(), || report.tick(now, command, voltage));
         command
     }
@@ -133,7 +133,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
-            imu_fault: recent(&self.shared.imu_fault, IMU_FAULT_LASTING, now),
+            imu_fault: self.shared.imu_fault.recent(IMU_FAULT_LASTING, now),
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm.take() || handed_over,
@@ -153,7 +153,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn battery(&self, now: u64) -> Battery {
         let parameters = &self.shared.parameters;
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
-        match recent(&self.shared.voltage, VOLTAGE_AGE_MAX, now) {
+        match self.shared.voltage.recent(VOLTAGE_AGE_MAX, now) {
             None if low > 0.0 || critical > 0.0 => Battery::Missing,
             None => Battery::Unknown,
             Some(voltage) if voltage < critical => Battery::Critical,
@@ -248,11 +248,6 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.shared.announce(if fault.is_some() { Event::MotorsLost } else { Event::MotorsRegained });
         }
     }
-}
-
-/// A value that is at most so old, us.
-fn recent<M: RawMutex, T: Copy>(latest: &Latest<M, T>, age_max: u64, now: u64) -> Option<T> {
-    latest.get().filter(|value| value.age(now) <= age_max).map(|value| value.value)
 }
 
 /// Everything that waits in a queue.

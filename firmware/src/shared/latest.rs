@@ -26,6 +26,12 @@ impl<M: RawMutex, T: Copy> Latest<M, T> {
         self.0.lock(Cell::get)
     }
 
+    /// The value, left in place, if it is at most so old at `now`, us.
+    #[must_use]
+    pub fn recent(&self, age_max: u64, now: u64) -> Option<T> {
+        self.get().filter(|value| value.age(now) <= age_max).map(|value| value.value)
+    }
+
     /// The value with its time, taken away.
     #[must_use]
     pub fn take(&self) -> Option<Stamped<T>> {

@@ -45,10 +45,10 @@ impl Watchdog for Patient {
 
 /// What the IMU's task and a camera put down at `now`, us.
 fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, now: u64) {
-    let jitter = if now / 1_000 % 2 == 0 { 1e-4 } else { -1e-4 };
+    let jitter = if (now / 1_000).is_multiple_of(2) { 1e-4 } else { -1e-4 };
     let angular_velocity = Vector3::new(jitter, 0.0, 0.0);
     flow.take(&RawImu { time: now, angular_velocity, specific_force: (vehicle.force)(now) });
-    if now % 10_000 == 0 {
+    if now.is_multiple_of(10_000) {
         let zero = Vector3::zeros();
         let pose = Pose::new(zero, Velocity::World(zero), Quaternion::identity()).unwrap();
         let _ = shared.poses.put(Stamped { value: PoseMeasurement::new(&pose), time: now });
