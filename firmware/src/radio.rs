@@ -13,12 +13,13 @@
 //! - The sticks ask for velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as anybody's setpoints;
 //!   what comes from the link is then refused. On the ground they begin a flight when the stick is pushed up.
 //! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`] no longer
-//!   is; its setpoints cease, and the vehicle holds, as for any other.
+//!   is. If its sticks flew, the vehicle holds, and nobody takes over unasked: setpoints of the link go on being refused until somebody
+//!   on it asks to fly them, or the radio is heard again and its switch says so.
 
 pub mod sticks;
 
 use crate::hardware::Clock;
-use crate::shared::{Asked, Event, Severity, Shared};
+use crate::shared::{Asked, Event, Full, Severity, Shared};
 use controller_core::flight::{Mode, Request};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -106,13 +107,15 @@ pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
     shared: &'a Shared<M>,
     last: Option<(Frame, u64)>,
+    /// Whether a hold is still to be asked for: nobody asks again who is silent.
+    hold_due: bool,
 }
 
 impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing heard yet.
     #[must_use]
     pub fn new(shared: &'a Shared<M>) -> Self {
-        Self { parser: CrsfParser::new(), shared, last: None }
+        Self { parser: CrsfParser::new(), shared, last: None, hold_due: false }
     }
 
     /// Takes bytes that came at `now`, us, and acts on the frames of channels that they complete.
@@ -134,6 +137,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         self.shared.ground_station.put((), now);
         self.shared.killed.put(frame.killed, now);
         self.shared.sticks.put(frame.flies == Switch::High, now);
+        self.hold_due = false;
         // Switches act when they are moved while somebody is heard.
         if let Some((before, _)) = self.last.replace((frame, now)) {
             self.moved(&before, &frame);
@@ -149,8 +153,18 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     pub fn listen(&mut self, now: u64) {
         if self.last.is_some_and(|(_, heard)| now.saturating_sub(heard) > SILENCE) {
             self.last = None;
+            self.hold_due = self.shared.sticks.get().is_some_and(|sticks| sticks.value);
             self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
         }
+        if self.hold_due {
+            self.hold_due = self.is_flown() && self.request(Request::Hold).is_err();
+        }
+    }
+
+    /// Whether setpoints are flown, or may be next. What holds, lands or stands is left to do so.
+    fn is_flown(&self) -> bool {
+        let report = self.shared.report.get();
+        report.is_some_and(|report| matches!(report.value.mode, Mode::Flying | Mode::TakingOff))
     }
 
     fn moved(&self, before: &Frame, frame: &Frame) {
@@ -189,6 +203,10 @@ impl<'a, M: RawMutex> Radio<'a, M> {
 
     fn ask(&self, request: Request) {
         // Where there is no room, the next frame asks again, or its pilot does.
-        let _ = self.shared.request(Asked { request, command: None });
+        let _ = self.request(request);
+    }
+
+    fn request(&self, request: Request) -> Result<(), Full> {
+        self.shared.request(Asked { request, command: None })
     }
 }

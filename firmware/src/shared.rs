@@ -9,7 +9,7 @@
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
-//! | radio | [`Shared::killed`]; [`Shared::sticks`] | control; link | as last heard; 0.5 s |
+//! | radio | [`Shared::killed`]; [`Shared::sticks`] | control; link | as last heard |
 //! | radio | [`Shared::ground_station`], [`Shared::setpoint`], [`Shared::requests`] | control | as the link's |
 //! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
 //! | link | [`Shared::origin`] | link, its other half | until another comes |
@@ -120,7 +120,8 @@ pub struct Shared<M: RawMutex> {
     pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
     pub killed: Latest<M, bool>,
-    /// Whether a radio's sticks fly, by its switch.
+    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link asks to fly
+    /// setpoints.
     pub sticks: Latest<M, bool>,
     /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
     pub disarm: Flag,

@@ -14,6 +14,8 @@ use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::radio::SILENCE as RADIO_SILENCE;
 use crate::shared::{Event, Ping, Reply, Severity, Shared, Traffic};
+use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
+use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -95,6 +97,8 @@ pub struct Receiver<'a, M: RawMutex> {
     /// When the time may be told again, us.
     next_time_told: u64,
     traffic: Traffic,
+    /// The last setpoint that was refused because the sticks fly.
+    kept: Option<Stamped<Setpoint>>,
 }
 
 impl<'a, M: RawMutex> Receiver<'a, M> {
@@ -112,6 +116,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             log_refused: Occasionally::default(),
             next_time_told: 0,
             traffic: Traffic::default(),
+            kept: None,
         }
     }
 
@@ -204,19 +209,31 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        let sticks = self.shared.sticks.get();
-        if sticks.is_some_and(|sticks| sticks.value && sticks.age(frame.time) <= RADIO_SILENCE) {
-            self.refused();
-            self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
-            return;
-        }
         let state = self.shared.report.get().and_then(|report| report.value.state);
         match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
+            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
+            Ok(value) if self.shared.sticks.get().is_some_and(|sticks| sticks.value) => {
+                self.kept = Some(Stamped { value, time: frame.time });
+                self.refused();
+                self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
+            }
             Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
             Err(refusal) => {
                 self.refused();
                 self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
             }
+        }
+    }
+
+    /// Somebody asks to fly setpoints at `now`, us: sticks that have fallen silent stand back, and what was sent meanwhile counts.
+    fn take_over(&mut self, now: u64) {
+        let sticks = self.shared.sticks.get();
+        if sticks.is_none_or(|sticks| !sticks.value || sticks.age(now) <= RADIO_SILENCE) {
+            return;
+        }
+        self.shared.sticks.put(false, now);
+        if let Some(kept) = self.kept.take().filter(|kept| kept.age(now) <= SETPOINT_AGE_MAX) {
+            self.shared.setpoint.put(kept.value, kept.time);
         }
     }
 

@@ -1,16 +1,20 @@
 //! A radio's frames in, bytes as its receiver sends them: what switches and sticks do, and what silence does.
 
 use crate::support::Simulated;
+use crate::support::desk::Desk;
 use crate::support::line::{Delivery, Incoming, Line};
-use crate::support::receiver::{Fed, Local, texts};
+use crate::support::receiver::{Fed, Local, command, texts};
 use controller_core::flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use firmware::radio::{Radio, SILENCE, receive};
-use firmware::shared::Report;
-use mavlink::dialects::common::{MavFrame, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA};
+use firmware::shared::{Asked, Report};
+use mavlink::dialects::common::{
+    COMMAND_LONG_DATA, MavCmd, MavFrame, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
 use nalgebra::{UnitQuaternion, Vector3};
+use std::ops::Range;
 
 /// Channel values at the ends and in the middle.
 const LOW: u16 = 172;
@@ -169,20 +173,120 @@ fn in_the_air_sticks_take_over_when_they_are_moved_and_land_when_all_the_way_dow
     assert!(steered(Mode::Landing, true, [0.0, 0.4, 0.0, 0.0]).1.is_empty());
 }
 
+/// A setpoint from the link, and what asks to fly such.
+fn target() -> SET_POSITION_TARGET_LOCAL_NED_DATA {
+    SET_POSITION_TARGET_LOCAL_NED_DATA {
+        type_mask: PositionTargetTypemask::from_bits_retain(0b1101_1111_1000),
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        ..Default::default()
+    }
+}
+
+fn offboard() -> COMMAND_LONG_DATA {
+    command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0, 0.0, 0.0, 0.0])
+}
+
 #[test]
 fn while_the_sticks_fly_nobody_else_does() {
     let shared = Local::new();
     Radio::new(&shared).take(&channels(HIGH, HIGH, LOW), 0);
-    let target = SET_POSITION_TARGET_LOCAL_NED_DATA {
-        type_mask: PositionTargetTypemask::from_bits_retain(0b1101_1111_1000),
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        ..Default::default()
-    };
+    let target = target();
     let mut fed = Fed::new(&shared);
     fed.message(&target, 100_000);
     assert!(shared.setpoint.get().is_none());
     assert!(texts(&shared).contains(&"Setpoint refused: the sticks fly".to_owned()));
-    // Silent, it flies no more.
+    // Not even when it is silent, unless somebody asks to.
     fed.message(&target, 2_000_000);
+    assert!(shared.setpoint.get().is_none());
+    fed.message(&offboard(), 2_500_000);
+    assert_eq!(requests(&shared), [Request::FlySetpoints]);
+    // There must be one for that to be granted.
+    assert!(shared.setpoint.take().is_some_and(|setpoint| setpoint.time == 2_000_000));
+    fed.message(&target, 2_600_000);
     assert!(shared.setpoint.get().is_some());
+}
+
+#[test]
+fn sticks_that_fly_do_not_stand_back_because_somebody_asks() {
+    let shared = Local::new();
+    let mut radio = Radio::new(&shared);
+    let mut fed = Fed::new(&shared);
+    radio.take(&channels(HIGH, HIGH, LOW), 0);
+    fed.message(&target(), 100_000);
+    fed.message(&offboard(), SILENCE);
+    fed.message(&target(), SILENCE + 100_000);
+    assert!(shared.setpoint.get().is_none());
+    // Heard again, its switch says who flies.
+    radio.take(&AT_REST, 10_000_000);
+    fed.message(&target(), 10_000_000);
+    assert!(shared.setpoint.get().is_some());
+}
+
+/// What is asked for once a radio with its switch `flies` has fallen silent in a mode.
+fn asked_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
+    let shared = Local::new();
+    let mut radio = Radio::new(&shared);
+    radio.take(&channels(HIGH, flies, LOW), 0);
+    report(&shared, mode, true);
+    radio.listen(SILENCE);
+    assert!(requests(&shared).is_empty());
+    (1..5).for_each(|wait| radio.listen(SILENCE + wait * 100_000));
+    requests(&shared)
+}
+
+#[test]
+fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
+    for mode in Mode::ALL {
+        let flown = matches!(mode, Mode::Flying | Mode::TakingOff);
+        assert_eq!(asked_in_silence(mode, HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
+        assert_eq!(asked_in_silence(mode, LOW), [], "{mode:?}");
+    }
+    // Where there is no room, again.
+    let shared = Local::new();
+    let mut radio = Radio::new(&shared);
+    radio.take(&channels(HIGH, HIGH, LOW), 0);
+    report(&shared, Mode::Flying, true);
+    while shared.request(Asked { request: Request::Land, command: None }).is_ok() {}
+    radio.listen(SILENCE + 1);
+    requests(&shared);
+    radio.listen(SILENCE + 100_001);
+    assert_eq!(requests(&shared), [Request::Hold]);
+}
+
+#[test]
+fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
+    let shared = Local::new();
+    let mut desk = Desk::new(&shared);
+    let (mut radio, mut fed) = (Radio::new(&shared), Fed::new(&shared));
+    let companion = SET_POSITION_TARGET_LOCAL_NED_DATA { x: 40.0, z: -20.0, ..target() };
+    let mut fly = |desk: &mut Desk<'_>, ticks: Range<u64>, heard: bool| {
+        for tick in ticks {
+            let now = desk.now;
+            shared.ground_station.put((), now);
+            fed.message(&companion, now);
+            if tick == 800 {
+                fed.message(&offboard(), now);
+            }
+            if heard {
+                let mut channels = channels(if tick < 220 { LOW } else { HIGH }, HIGH, LOW);
+                channels[2] = if (230..236).contains(&tick) { 1400 } else { MIDDLE };
+                radio.take(&channels, now);
+            }
+            radio.listen(now);
+            desk.tick();
+        }
+        shared.report.get().unwrap().value
+    };
+    let report = fly(&mut desk, 0..400, true);
+    assert_eq!(report.mode, Mode::Flying, "{:?}", texts(&shared));
+    let place = report.reference.unwrap().position;
+    let report = fly(&mut desk, 400..460, false);
+    assert_eq!(report.mode, Mode::Holding, "{:?}", texts(&shared));
+    let report = fly(&mut desk, 460..800, false);
+    let moved = (report.reference.unwrap().position - place).norm();
+    assert!(report.mode == Mode::Holding && moved < 0.1, "{:?}, {moved} m", report.mode);
+    // It may if somebody asks for that.
+    let report = fly(&mut desk, 800..1_100, false);
+    let moved = (report.reference.unwrap().position - place).norm();
+    assert!(report.mode == Mode::Flying && moved > 0.2, "{:?}, {moved} m", report.mode);
 }

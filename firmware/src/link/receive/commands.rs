@@ -8,6 +8,7 @@ use crate::link::origin::Origin;
 use crate::link::telemetry::vehicle;
 use crate::link::unknown::command_of;
 use crate::shared::{Asked, Event, Procedure, Reply, Severity};
+use controller_core::flight::Request;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
 use nalgebra::Vector3;
@@ -55,7 +56,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         let (call, sender) = (Call::from(message), frame.header.system);
         let command = call.command;
         let result = if self.commander.may(&call, sender, self.shared.is_armed(), frame.time) {
-            match self.act(&call) {
+            match self.act(&call, frame) {
                 Some(result) => result,
                 None => return,
             }
@@ -67,12 +68,15 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Acts on a command; what to answer, unless somebody else does.
-    pub(super) fn act(&mut self, call: &Call) -> Option<MavResult> {
+    fn act(&mut self, call: &Call, frame: &Frame<'_>) -> Option<MavResult> {
         let report = self.shared.report.get();
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
         let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
+                if request == Request::FlySetpoints {
+                    self.take_over(frame.time);
+                }
                 let asked = self.shared.request(Asked { request, command: Some(call.command) });
                 return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }

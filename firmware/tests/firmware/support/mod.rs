@@ -3,6 +3,7 @@
 pub mod bodies;
 pub mod card;
 pub mod chip;
+pub mod desk;
 pub mod line;
 pub mod receiver;
 pub mod simulator;

@@ -1,0 +1,49 @@
+//! A vehicle on a desk: it never moves, whatever its motors are told, and its sensors and poses say so.
+
+use super::receiver::Local;
+use controller_core::estimator::{Increment, PoseMeasurement};
+use controller_core::flight::{Mode, PERIOD, Pose, Stamped, Velocity};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::boot;
+use firmware::control::Control;
+use firmware::hardware::MotorCommand;
+use nalgebra::{Quaternion, Vector3};
+
+/// Control with everything that it needs to arm but a ground station.
+pub struct Desk<'a> {
+    shared: &'a Local,
+    control: Control<'a, NoopRawMutex>,
+    /// When the last tick was, us.
+    pub now: u64,
+}
+
+impl<'a> Desk<'a> {
+    /// Just booted.
+    pub fn new(shared: &'a Local) -> Self {
+        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
+        Self { shared, control: Control::new(shared, pilot, outputs), now: 0 }
+    }
+
+    /// One tick on, with what the IMU and a camera say of a vehicle at rest.
+    pub fn tick(&mut self) -> MotorCommand {
+        let zero = Vector3::zeros();
+        for start in [self.now, self.now + PERIOD / 2] {
+            self.shared.increment(Increment {
+                start,
+                end: start + PERIOD / 2,
+                delta_angle: zero,
+                delta_velocity: Vector3::new(0.0, 0.0, 9.81 * 5e-3),
+                angular_velocity: zero,
+            });
+        }
+        self.now += PERIOD;
+        let pose = Pose::new(zero, Velocity::World(zero), Quaternion::identity()).unwrap();
+        self.shared.poses.put(Stamped { value: PoseMeasurement::new(&pose), time: self.now }).unwrap();
+        self.control.tick(self.now)
+    }
+
+    /// The mode after the last tick.
+    pub fn mode(&self) -> Mode {
+        self.shared.report.get().unwrap().value.mode
+    }
+}
