@@ -107,6 +107,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.pilot.choose(&flight::settings(&self.shared.parameters));
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
+        if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
+            self.shared.commander.put(asked.and_then(|asked| asked.sender), now);
+        }
         self.tell(&outcome, asked);
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
         self.tell_of_the_estimate(&outcome, now);

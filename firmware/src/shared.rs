@@ -12,6 +12,7 @@
 //! | radio | [`Shared::killed`]; [`Shared::sticks`] | control; link | as last heard |
 //! | radio | [`Shared::ground_station`], [`Shared::setpoint`], [`Shared::requests`] | control | as the link's |
 //! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
+//! | control | [`Shared::commander`]: who armed | link | while it is armed |
 //! | link | [`Shared::origin`] | link, its other half | until another comes |
 //! | status | [`Shared::voltage`] | control, link | 1 s |
 //! | control | [`Shared::report`] | link, status | one report a tick |
@@ -125,6 +126,8 @@ pub struct Shared<M: RawMutex> {
     pub sticks: Latest<M, bool>,
     /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
     pub disarm: Flag,
+    /// The station on the link that armed the vehicle, by its system, and when; none if somebody else did.
+    pub commander: Latest<M, Option<u8>>,
     /// Answers to requests. Put them in with [`Self::answer`].
     pub answers: Queue<M, Reply, REPLIES>,
     /// Where the local frame is on the globe, if a ground station has said so.
@@ -182,6 +185,7 @@ impl<M: RawMutex> Shared<M> {
             killed: Latest::new(),
             sticks: Latest::new(),
             disarm: Flag::new(),
+            commander: Latest::new(),
             answers: Queue::new(),
             origin: Latest::new(),
             voltage: Latest::new(),

@@ -128,7 +128,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
-        self.commander.hear(frame.header.system, frame.time);
+        self.commander.hear(frame.header.system, self.shared.commander.get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             // In a simulation the simulator says where the vehicle is.

@@ -17,6 +17,8 @@ pub struct Asked {
     pub request: Request,
     /// The command it came by, if it was one.
     pub command: Option<MavCmd>,
+    /// The system that sent it, if it came over the link.
+    pub sender: Option<u8>,
 }
 
 /// What is to be calibrated of the inertial sensors: see [`crate::imu`].

@@ -117,7 +117,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
             let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-            shared.request(Asked { request, command: Some(command) }).unwrap();
+            shared.request(Asked { request, command: Some(command), sender: None }).unwrap();
         }
         if now == 45_000 {
             shared.hil.raise();

@@ -1,15 +1,16 @@
 //! Commands, parameters, heartbeats and pings in: what they do, and what is answered.
 
+use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, answer, command, replies, report, texts};
 use crate::support::{patched, v1, v2};
 use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, REQUESTS, Reply};
-use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavResult, MavType, PARAM_REQUEST_LIST_DATA,
     PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
 const ARM_DISARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
 
@@ -32,7 +33,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
         let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM) });
+        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM), sender: Some(255) });
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }
@@ -320,4 +321,62 @@ fn the_vehicle_answers_to_its_new_number_at_once() {
     assert!(!shared.disarm.is_raised());
     fed.message(&COMMAND_LONG_DATA { target_system: 9, ..disarm() }, 0);
     assert!(shared.disarm.is_raised());
+}
+
+/// A ground station's, of this system.
+fn from(system: u8, sequence: u8, message: &COMMAND_LONG_DATA) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.serialize_message_data(MavHeader { system_id: system.into(), component_id: 190, sequence }, message);
+    raw.raw_bytes().to_vec()
+}
+
+/// A vehicle on a desk, in the mode that it is in after `ask` had its say in each of three seconds' ticks.
+fn desk<'a>(shared: &'a Local, mut ask: impl FnMut(u64, u64)) -> Desk<'a> {
+    let mut desk = Desk::new(shared);
+    for tick in 0..300 {
+        shared.ground_station.put((), desk.now);
+        ask(tick, desk.now);
+        desk.tick();
+    }
+    desk
+}
+
+/// Whether a force disarm of this station stops the motors.
+fn stops(fed: &mut Fed<'_>, desk: &mut Desk<'_>, system: u8) -> bool {
+    fed.bytes(&from(system, 99, &disarm()), desk.now);
+    desk.tick();
+    !desk.mode().is_armed()
+}
+
+#[test]
+fn a_station_that_was_refused_keeps_nobody_from_stopping_the_motors() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let mut desk = desk(&shared, |tick, now| {
+        match tick {
+            // Too early: nobody may arm yet.
+            20 => fed.bytes(&from(255, 1, &arm()), now),
+            // A radio does, later.
+            250 => shared.request(Asked { request: Request::Arm, command: None, sender: None }).unwrap(),
+            _ => {}
+        }
+        fed.bytes(&from(255, tick as u8, &command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [0.0; 5])), now);
+    });
+    assert_eq!(desk.mode(), Mode::Idling, "{:?}", texts(&shared));
+    assert!(stops(&mut fed, &mut desk, 254), "{:?}", texts(&shared));
+}
+
+#[test]
+fn of_two_that_ask_at_once_the_one_that_is_granted_commands() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let mut desk = desk(&shared, |tick, now| {
+        if tick == 250 {
+            fed.bytes(&from(255, 1, &arm()), now);
+            fed.bytes(&from(254, 1, &arm()), now);
+        }
+    });
+    assert_eq!(desk.mode(), Mode::Idling, "{:?}", texts(&shared));
+    assert!(!stops(&mut fed, &mut desk, 254));
+    assert!(stops(&mut fed, &mut desk, 255), "{:?}", texts(&shared));
 }

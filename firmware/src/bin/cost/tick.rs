@@ -67,7 +67,7 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
             _ => None,
         };
         if let Some((request, command)) = asked {
-            let _ = shared.request(Asked { request, command: Some(command) });
+            let _ = shared.request(Asked { request, command: Some(command), sender: None });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {

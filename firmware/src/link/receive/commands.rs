@@ -55,15 +55,16 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         let (call, sender) = (Call::from(message), frame.header.system);
         let command = call.command;
-        let result = if self.commander.may(&call, sender, self.shared.is_armed(), frame.time) {
-            match self.act(&call, frame) {
-                Some(result) => result,
-                None => return,
-            }
-        } else {
-            self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
-            MavResult::MAV_RESULT_DENIED
-        };
+        let result =
+            if !self.shared.is_armed() || self.commander.may(&call, sender, self.shared.commander.get(), frame.time) {
+                match self.act(&call, frame) {
+                    Some(result) => result,
+                    None => return,
+                }
+            } else {
+                self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
+                MavResult::MAV_RESULT_DENIED
+            };
         self.shared.reply(Reply::Command { command, result });
     }
 
@@ -77,7 +78,8 @@ impl<M: RawMutex> Receiver<'_, M> {
                 if request == Request::FlySetpoints {
                     self.take_over(frame.time);
                 }
-                let asked = self.shared.request(Asked { request, command: Some(call.command) });
+                let (command, sender) = (Some(call.command), Some(frame.header.system));
+                let asked = self.shared.request(Asked { request, command, sender });
                 return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }
             Action::ForceDisarm => self.shared.request_disarm(),
