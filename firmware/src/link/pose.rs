@@ -43,6 +43,8 @@ pub enum PoseRefusal {
     Frame,
     /// The sender's time is not after that of its last message.
     Repeated,
+    /// It was under way for more than [`LATE_MAX`], says TIMESYNC.
+    Late,
     /// Another source is being listened to.
     SecondSource,
 }
@@ -53,6 +55,7 @@ impl fmt::Display for PoseRefusal {
             Self::Numbers(error) => error.fmt(f),
             Self::Frame => f.write_str("use LOCAL_NED and BODY_FRD"),
             Self::Repeated => f.write_str("its time does not advance"),
+            Self::Late => f.write_str("more than 0.5 s late"),
             Self::SecondSource => f.write_str("another source is in use"),
         }
     }
@@ -71,8 +74,9 @@ struct Source {
     arrived: u64,
     /// When what that said was true, us; none before the first.
     stamped: Option<u64>,
-    /// What it was taken to have been under way, us.
+    /// What it was taken to have been under way, us, and whether by TIMESYNC.
     delay: u64,
+    synchronised: bool,
 }
 
 /// Turns messages into poses.
@@ -124,6 +128,7 @@ impl Poses {
             arrived: frame.time,
             stamped: None,
             delay,
+            synchronised: false,
         };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
@@ -132,6 +137,10 @@ impl Poses {
             }
             *source = fresh;
         }
+        if source.is_late(time, frame.time) {
+            return Err(PoseRefusal::Late);
+        }
+        let begun = source.clock.as_ref().map(SenderClock::begun);
         let stamp = match &mut source.clock {
             _ if time == 0 => Some(frame.time),
             Some(clock) => clock.stamp(time, frame.time),
@@ -140,7 +149,11 @@ impl Poses {
                 Some(frame.time)
             }
         };
-        let delay = source.delay(time, delay);
+        if begun.is_some() && begun != source.clock.as_ref().map(SenderClock::begun) {
+            source.begin_anew();
+        }
+        let synchronised = source.delay(time);
+        let delay = synchronised.unwrap_or(delay);
         let stamp = stamp.map(|stamp| stamp.saturating_sub(delay)).ok_or(PoseRefusal::Repeated)?;
         // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
         if source.stamped.is_some_and(|last| stamp <= last) {
@@ -148,19 +161,37 @@ impl Poses {
             return if delay > source.delay { Ok(None) } else { Err(PoseRefusal::Repeated) };
         }
         (source.arrived, source.stamped, source.delay) = (frame.time, Some(stamp), delay);
+        source.synchronised = synchronised.is_some();
         Ok(Some(stamp))
     }
 }
 
 impl Source {
-    /// What a message that says `time` took at least, us: by TIMESYNC if that is of the clock which stamps the messages; else `known`.
-    fn delay(&self, time: u64, known: u64) -> u64 {
-        let Some(clock) = self.clock.filter(|_| time != 0) else { return known };
-        let Some(Offset { value, error }) = self.sync.offset(self.arrived) else { return known };
+    /// What a message that says `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps the messages.
+    fn delay(&self, time: u64) -> Option<u64> {
+        let clock = self.clock.as_ref().filter(|_| time != 0)?;
+        let Offset { value, error } = self.sync.offset(self.arrived)?;
         let delay = clock.offset() - value;
         // No message is here before it was sent; and one that is too late is none.
         let plausible = (-i128::from(error)..=i128::from(LATE_MAX)).contains(&delay);
-        if plausible { u64::try_from(delay).unwrap_or(0) } else { known }
+        plausible.then(|| u64::try_from(delay).unwrap_or(0))
+    }
+
+    /// Whether a message that says `time` and arrived at `arrived`, us, is too late by what TIMESYNC says. A time that does not advance
+    /// is not late: it is no new one, or its clock was set.
+    fn is_late(&self, time: u64, arrived: u64) -> bool {
+        let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
+        let known = self.sync.recent(arrived).filter(|_| self.synchronised && goes_on && time != 0);
+        known.is_some_and(|Offset { value, error }| {
+            i128::from(arrived) - i128::from(time) - value > i128::from(LATE_MAX) + i128::from(error)
+        })
+    }
+
+    /// The sender's clock was set: what TIMESYNC said is of another. The line is what it was, until the next answer says better.
+    fn begin_anew(&mut self) {
+        let value =
+            self.clock.as_ref().filter(|_| self.synchronised).map(|clock| clock.offset() - i128::from(self.delay));
+        self.sync = value.map_or_else(TimeSync::default, |value| TimeSync::presumed(value, self.arrived));
     }
 }
 

@@ -12,7 +12,8 @@
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one that would be more
 //! than [`LATE_MAX`] late. A clock that was set back, or stood still, or begins anew, goes on from frame to frame as the vehicle's
-//! does. After [`STEADY`] such frames it is believed, and o is found anew.
+//! does. After [`STEADY`] such frames it is believed, and o is found anew. A line that is that late from some time on looks the same;
+//! who knows better by TIMESYNC must refuse its messages first.
 
 /// Frames in a row that prove a clock that is not where it was: 50 ms at 100 Hz.
 pub const STEADY: u8 = 5;
@@ -33,6 +34,8 @@ pub struct SenderClock {
     offset: i128,
     /// The sender's time of the last message that was taken, and when that arrived, us.
     last: (u64, u64),
+    /// When the first message of what is known arrived, us.
+    begun: u64,
     /// Frames that were not taken, and would prove another clock.
     trial: Option<Trial>,
 }
@@ -50,7 +53,7 @@ impl SenderClock {
     /// From a sender's first message.
     #[must_use]
     pub fn new(time: u64, arrived: u64) -> Self {
-        Self { offset: difference(arrived, time), last: (time, arrived), trial: None }
+        Self { offset: difference(arrived, time), last: (time, arrived), begun: arrived, trial: None }
     }
 
     /// o, with what every message takes at least, us: the vehicle's clock less the sender's.
@@ -59,14 +62,26 @@ impl SenderClock {
         self.offset
     }
 
+    /// When it was found, us. It changes when the sender's clock was set and is believed again.
+    #[must_use]
+    pub fn begun(&self) -> u64 {
+        self.begun
+    }
+
+    /// Whether a message that says `time` comes after the last one by its sender's clock.
+    #[must_use]
+    pub fn advances(&self, time: u64) -> bool {
+        time > self.last.0
+    }
+
     /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time is not a new
     /// one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
         let drifted = self.offset + i128::from(arrived.saturating_sub(self.last.1) / DRIFT);
         let late = difference(arrived, time) - drifted;
-        if time > self.last.0 && late <= i128::from(LATE_MAX) {
+        if self.advances(time) && late <= i128::from(LATE_MAX) {
             let offset = drifted.min(difference(arrived, time));
-            *self = Self { offset, last: (time, arrived), trial: None };
+            *self = Self { offset, last: (time, arrived), trial: None, ..*self };
         } else {
             let trial = self.trial.and_then(|trial| trial.next(time, arrived));
             let trial = trial.unwrap_or(Trial { first: (time, arrived), last: time, count: 1 });

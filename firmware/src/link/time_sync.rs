@@ -7,7 +7,8 @@
 //! o = (t_1 + t_2) / 2 - s          and if they do not, |error| <= (t_2 - t_1) / 2
 //! ```
 //!
-//! The answer with the least error counts. An old one's error grows by what two clocks part. So o holds no delay of the line, which
+//! The answer with the least error counts. An old one's error grows by what two clocks part. Where [`SET`] answers in a row cannot be of
+//! the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
 //! [`SenderClock`](super::sender_clock::SenderClock) cannot tell from a clock that is behind.
 
 use super::sender_clock::DRIFT;
@@ -15,6 +16,13 @@ use mavlink::dialects::common::TIMESYNC_DATA;
 
 /// The longest that an answer may take, us.
 pub const ANSWER_MAX: u64 = 100_000;
+
+/// Answers in a row that contradict the best one and prove that the clock was set: a single one may be of another clock in the same
+/// system.
+const SET: u8 = 2;
+
+/// How long ago an answer may be that still speaks for what is known, us: three questions' time.
+const RECENT: u64 = 3_000_000;
 
 /// What the clocks differ by, the vehicle's less the sender's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +38,10 @@ pub struct Offset {
 pub struct TimeSync {
     /// The best answer, and when it came, us.
     best: Option<(Offset, u64)>,
+    /// When the last answer came that did not contradict it, us.
+    confirmed: Option<u64>,
+    /// Answers since that did.
+    contradictions: u8,
 }
 
 /// The question, at `now`, us.
@@ -50,6 +62,12 @@ fn nanoseconds(time: u64) -> i64 {
 }
 
 impl TimeSync {
+    /// Of a clock that differs by about `value`, us, at `now`, us: any answer knows better.
+    #[must_use]
+    pub fn presumed(value: i128, now: u64) -> Self {
+        Self { best: Some((Offset { value, error: ANSWER_MAX }, now)), ..Self::default() }
+    }
+
     /// Takes an answer that arrived at `arrived`, us. One to a question of a time to come, or of long ago, says nothing.
     pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
         let asked = u64::try_from(message.ts1 / 1_000).ok();
@@ -58,9 +76,25 @@ impl TimeSync {
         };
         let value = i128::from(arrived) - i128::from(took / 2) - i128::from(message.tc1 / 1_000);
         let offset = Offset { value, error: took.div_ceil(2) };
-        if self.offset(arrived).is_none_or(|best| offset.error <= best.error) {
+        let best = self.offset(arrived);
+        let is_other = best.is_some_and(|best| {
+            (offset.value - best.value).unsigned_abs() > u128::from(offset.error) + u128::from(best.error)
+        });
+        self.contradictions = if is_other { self.contradictions.saturating_add(1) } else { 0 };
+        if best.is_none_or(|best| offset.error <= best.error) || self.contradictions >= SET {
             self.best = Some((offset, arrived));
+            self.contradictions = 0;
         }
+        if self.contradictions == 0 {
+            self.confirmed = Some(arrived);
+        }
+    }
+
+    /// What is known at `now`, us, if an answer has lately agreed.
+    #[must_use]
+    pub fn recent(&self, now: u64) -> Option<Offset> {
+        let confirmed = self.confirmed?;
+        self.offset(now).filter(|_| now.saturating_sub(confirmed) <= RECENT)
     }
 
     /// What is known at `now`, us.
@@ -104,6 +138,29 @@ mod tests {
         // 200 ppm: after 20 s the first is as doubtful as the second.
         exchange(&mut sync, 20_000_000, 9_000, 4_000, 4_000);
         assert_eq!(sync.offset(20_008_000), Some(Offset { value: -9_000, error: 4_000 }));
+    }
+
+    #[test]
+    fn a_clock_that_was_set_is_known_by_its_second_answer() {
+        let mut sync = TimeSync::default();
+        exchange(&mut sync, 0, 700_000, 500, 500);
+        exchange(&mut sync, 1_000_000, 900_000, 4_000, 4_000);
+        assert_eq!(sync.offset(1_000_000).unwrap().value, -700_000);
+        // A single one may be of another clock.
+        exchange(&mut sync, 2_000_000, 700_000, 4_000, 4_000);
+        exchange(&mut sync, 3_000_000, 900_000, 4_000, 4_000);
+        assert_eq!(sync.offset(3_000_000).unwrap().value, -700_000);
+        assert!(sync.recent(5_008_000).is_some() && sync.recent(5_008_001).is_none());
+        exchange(&mut sync, 4_000_000, 900_000, 4_000, 4_000);
+        assert_eq!(sync.recent(4_008_000), Some(Offset { value: -900_000, error: 4_000 }));
+    }
+
+    #[test]
+    fn what_is_presumed_gives_way_to_any_answer() {
+        let mut sync = TimeSync::presumed(-3, 0);
+        assert_eq!((sync.offset(0).unwrap().value, sync.recent(0)), (-3, None));
+        exchange(&mut sync, 1_000_000, 9_000, 10_000, 90_000);
+        assert!(sync.recent(1_100_000).unwrap().value > 0);
     }
 
     #[test]

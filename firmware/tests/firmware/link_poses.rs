@@ -258,6 +258,67 @@ fn timesync_of_another_clock_says_nothing_and_a_delay_that_was_measured_does() {
     assert_eq!(newest(&shared).unwrap().time, 70_000);
 }
 
+/// A sender that answers TIMESYNC once a second, the first time more quickly than ever again; a pose each 10 ms for as long as there are
+/// `ticks`; what its clock says of a true time and how late its poses are is `line`'s to say. What became of each.
+fn synchronised(shared: &Local, ticks: u64, line: impl Fn(u64) -> (u64, u64)) -> Vec<(u64, Option<u64>)> {
+    let mut fed = Fed::new(shared);
+    let mut answered = 0;
+    let truths = (0..ticks).map(|count| 1_000_000 + 10_000 * count);
+    let stamps = truths.map(|truth| {
+        let (says, late) = line(truth);
+        let arrived = truth + late;
+        fed.message(&odometry(says), arrived);
+        let stamp = newest(shared).map(|pose| pose.time);
+        if arrived >= answered + 1_000_000 {
+            let way = if answered == 0 { 500 } else { 3_000 };
+            answered = arrived;
+            let asked = arrived - 2 * way;
+            let sent = line(asked + way).0;
+            fed.message(&TIMESYNC_DATA { tc1: sent as i64 * 1_000, ts1: asked as i64 * 1_000 }, arrived);
+        }
+        (truth, stamp)
+    });
+    stamps.collect()
+}
+
+/// Greatest error of the stamps of poses from `from` on, us.
+fn worst(stamps: &[(u64, Option<u64>)], from: u64) -> u64 {
+    let errors = stamps.iter().filter(|(truth, _)| *truth >= from);
+    errors.filter_map(|(truth, stamp)| stamp.map(|stamp| stamp.abs_diff(*truth))).max().unwrap()
+}
+
+#[test]
+fn what_timesync_said_of_a_clock_does_not_count_once_it_was_set_back() {
+    for back in [100_000, 200_000, 450_000, 5_000_000] {
+        let shared = Local::new();
+        let clock = |truth: u64| 1_700_000_000_000_000 + truth - if truth >= 5_500_000 { back } else { 0 };
+        let stamps = synchronised(&shared, 1_500, |truth| (clock(truth), 20_000));
+        assert!(worst(&stamps, 2_500_000) <= 3_500, "{back}: {} us", worst(&stamps, 2_500_000));
+        let lost = stamps.iter().filter(|(truth, stamp)| *truth >= 2_500_000 && stamp.is_none()).count();
+        assert!(lost <= usize::from(STEADY), "{lost}");
+    }
+}
+
+#[test]
+fn a_stream_that_timesync_knows_to_be_late_is_never_fresh() {
+    let shared = Local::new();
+    let late = |truth: u64| if truth < 5_000_000 { 20_000 } else { 620_000 };
+    let stamps = synchronised(&shared, 2_000, |truth| (1_700_000_000_000_000 + truth, late(truth)));
+    let taken = stamps.iter().filter(|(truth, _)| *truth >= 2_500_000);
+    assert!(taken.into_iter().all(|(truth, stamp)| stamp.is_some() == (*truth < 5_000_000)));
+    assert!(texts(&shared).contains(&"Pose refused: more than 0.5 s late".to_owned()));
+}
+
+#[test]
+fn a_clock_that_stood_still_is_believed_once_timesync_has_said_so() {
+    let shared = Local::new();
+    let clock = |truth: u64| if truth < 5_000_000 { truth } else { truth.saturating_sub(900_000).max(5_000_000) };
+    let stamps = synchronised(&shared, 1_500, |truth| (1_700_000_000_000_000 + clock(truth), 20_000));
+    let back = stamps.iter().find(|(truth, stamp)| *truth > 6_000_000 && stamp.is_some()).unwrap().0;
+    assert!(back < 8_000_000 && worst(&stamps, back) <= 25_000, "{back}, {} us", worst(&stamps, back));
+    assert!(worst(&stamps, back + 1_500_000) <= 3_500);
+}
+
 #[test]
 fn one_source_is_listened_to_at_a_time() {
     let shared = Local::new();
