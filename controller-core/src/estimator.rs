@@ -73,8 +73,9 @@ use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
 use stream::Stream;
 
-/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves.
-pub const REBASE_EVERY: u64 = 1_000_000;
+/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves. Longer than
+/// anybody flies without a pose that is believed, or a stream of lies would be flown from one move to the next.
+pub const REBASE_EVERY: u64 = 3_000_000;
 
 /// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it moved:
 /// 10 degrees.

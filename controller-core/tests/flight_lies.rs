@@ -246,6 +246,29 @@ fn a_frame_that_moves_under_way_makes_the_vehicle_brake_and_hold() {
 }
 
 #[test]
+fn a_counter_that_runs_is_flown_no_longer_than_silence() {
+    // Each frame elsewhere, with a count of its own; so many ticks from pose to pose.
+    for every in [1, 5, 20, 100] {
+        let mut flight = hovering();
+        let from = flight.inputs.now;
+        flight.told = Box::new(move |body, time| {
+            let frame = (time - from) / PERIOD / every;
+            let told = displaced(body, time, &Vector3::new(3.0 * frame as f64, 0.0, 0.0), &NOWHERE);
+            Stamped { value: told.value.reset_counter(frame as u8), ..told }
+        });
+        for tick in 1..=1_000 {
+            flight.present.pose = tick % every == 0;
+            let mode = flight.tick().mode;
+            let expected = if tick <= COASTING_MAX / PERIOD { Mode::Flying } else { Mode::Descending };
+            assert!(
+                mode == expected || tick.abs_diff(COASTING_MAX / PERIOD) <= every,
+                "{every}: {mode:?} in tick {tick}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_body_found_where_coasting_may_have_led_is_flown_on_from_without_a_lurch() {
     let mut flight = hovering();
     let place = flight.body.position;

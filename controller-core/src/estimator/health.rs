@@ -98,8 +98,9 @@ impl Statistics {
         }
         self.last = Some(verdict);
         match verdict {
-            Ok(Taken::Waiting | Taken::Aligning) => self.counts.0 = self.counts.0.saturating_add(1),
-            Ok(Taken::Fused | Taken::Started | Taken::Rebased | Taken::Refound) => {
+            // A pose that moves the frame agrees with nothing yet: those after it say whether it can be believed.
+            Ok(Taken::Waiting | Taken::Aligning | Taken::Rebased) => self.counts.0 = self.counts.0.saturating_add(1),
+            Ok(Taken::Fused | Taken::Started | Taken::Refound) => {
                 self.counts.0 = self.counts.0.saturating_add(1);
                 self.fused_at = self.fused_at.max(time);
             }

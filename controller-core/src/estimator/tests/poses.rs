@@ -94,7 +94,10 @@ fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
         motion::pose(&truth, &offset, &turn).reset_counter(1)
     };
     let moved = Stamped { value: made(&rig, rig.now - 5_000), time: rig.now - 5_000 };
+    let believed = rig.now - rig.estimator.health(rig.now).pose_age.unwrap();
     assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
+    // It has yet to be agreed with.
+    assert_eq!(rig.estimator.health(rig.now).pose_age, Some(rig.now - believed));
     let (state, truth) = (rig.estimator.state(rig.now).unwrap(), rig.truth(rig.now));
     let position = turn * truth.position + offset;
     assert!((state.state.position.cast::<f64>() - position).norm() < 2e-3);
@@ -143,9 +146,9 @@ fn velocities_are_believed_where_the_settings_give_them_a_deviation() {
 #[test]
 fn a_counter_that_runs_moves_no_frame_and_a_tilted_frame_is_none() {
     let mut rig = Rig::new(rest);
-    rig.fly(2_000_000, 20_000);
+    rig.fly(4_000_000, 20_000);
     let mut count = 0_u8;
-    let last = rig.fly_with(900_000, 20_000, |rig, time| {
+    let last = rig.fly_with(2_900_000, 20_000, |rig, time| {
         count = count.wrapping_add(1);
         let away = Vector3::x() * f64::from(count);
         motion::pose(&rig.truth(time), &away, &UnitQuaternion::identity()).reset_counter(count)
@@ -153,7 +156,7 @@ fn a_counter_that_runs_moves_no_frame_and_a_tilted_frame_is_none() {
     assert!(last.unwrap().is_err(), "{last:?}");
     assert_eq!(rig.estimator.health(rig.now).jumps, 1);
     let mut rig = Rig::new(rest);
-    rig.fly(2_000_000, 20_000);
+    rig.fly(4_000_000, 20_000);
     let tilt = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.3);
     let tilted = motion::pose(&rig.truth(0), &Vector3::zeros(), &tilt).reset_counter(1);
     let tilted = Stamped { value: tilted, time: rig.now };
