@@ -126,8 +126,25 @@ fn sensors_are_healthy_only_while_they_are() {
 }
 
 #[test]
+fn a_position_is_not_controlled_without_a_pose() {
+    let place = Sensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+        | Sensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
+        | Sensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION;
+    let attitude = Sensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION;
+    for (mode, controlled) in [(Mode::Holding, true), (Mode::Landing, true), (Mode::Descending, false)] {
+        let report = Report { mode, ..report() };
+        let health = vehicle::status(None, Some(&report), Traffic::default(), None).onboard_control_sensors_health;
+        assert!(health.contains(attitude), "{mode:?}");
+        assert_eq!(health & place, if controlled { place } else { Sensor::empty() }, "{mode:?}");
+    }
+}
+
+#[test]
 fn ground_and_air_are_told_apart() {
     for (mode, is_airborne, landed) in [
+        // Nobody knows yet, or any more.
+        (Mode::Boot, false, MavLandedState::MAV_LANDED_STATE_UNDEFINED),
+        (Mode::Stopped, false, MavLandedState::MAV_LANDED_STATE_UNDEFINED),
         (Mode::Ready, false, MavLandedState::MAV_LANDED_STATE_ON_GROUND),
         (Mode::TakingOff, false, MavLandedState::MAV_LANDED_STATE_ON_GROUND),
         (Mode::TakingOff, true, MavLandedState::MAV_LANDED_STATE_TAKEOFF),

@@ -69,10 +69,11 @@ pub fn current_mode(mode: Mode) -> CURRENT_MODE_DATA {
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
 }
 
-/// Whether it is on the ground.
+/// Whether it is on the ground; nobody knows of what was stopped in the air, nor before there is anything to tell by.
 #[must_use]
 pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     let landed_state = match report.mode {
+        Mode::Boot | Mode::Stopped => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
         _ if !report.is_airborne => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
         Mode::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
         Mode::Landing | Mode::Descending => MavLandedState::MAV_LANDED_STATE_LANDING,
@@ -133,6 +134,10 @@ pub fn status(
         | Sensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
         | Sensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
         | Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS;
+    // By the IMU alone the vehicle is held level and sinks; where it drifts and turns to nobody knows.
+    let without_pose = Sensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION
+        | Sensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
+        | Sensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL;
     let mut present = inertial | poses | control | Sensor::MAV_SYS_STATUS_AHRS | Sensor::MAV_SYS_STATUS_PREARM_CHECK;
     present.set(Sensor::MAV_SYS_STATUS_SENSOR_BATTERY, voltage.is_some());
     present.set(Sensor::MAV_SYS_STATUS_LOGGING, is_logged.is_some());
@@ -150,6 +155,9 @@ pub fn status(
         health.set(Sensor::MAV_SYS_STATUS_AHRS, report.state.is_some() && !has(Fault::Uncertain));
         health.set(control, report.mode != Mode::Locked);
         health.set(Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS, report.mode != Mode::Locked && !report.motors_fail);
+        if report.mode == Mode::Descending {
+            health.remove(without_pose);
+        }
         health.set(Sensor::MAV_SYS_STATUS_PREARM_CHECK, report.ready || report.mode.is_armed());
     }
     SYS_STATUS_DATA {
