@@ -42,6 +42,9 @@ const AUTO_TAKEOFF: f32 = 2.0;
 const AUTO_LOITER: f32 = 3.0;
 const AUTO_LAND: f32 = 6.0;
 
+/// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one (MAV_DO_REPOSITION_FLAGS_RELATIVE_YAW).
+const RELATIVE_YAW: u32 = 2;
+
 /// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
 const REPETITION: u64 = 1_000_000;
 
@@ -148,9 +151,10 @@ fn tell(number: f32, reply: impl Fn(Kind) -> Reply) -> Action {
     kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), |kind| Action::Tell(reply(kind)))
 }
 
-/// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the heading.
+/// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the heading,
+/// and so does zero from where it points.
 fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
-    let [.., yaw, _, _, altitude] = call.parameters;
+    let [_, flags, _, yaw, _, _, altitude] = call.parameters;
     let Some((latitude, longitude, frame)) = call.place else {
         return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
     };
@@ -165,7 +169,16 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
         return DENIED;
     }
     let place = origin.local(&Place { latitude, longitude, altitude });
-    let turn = if yaw.is_finite() { Turn::Angle { angle: frames::heading(yaw), rate: 0.0 } } else { Turn::Keep };
+    // Of a yaw that counts from where the vehicle points only none is understood: no turn.
+    let is_relative = flags as u32 & RELATIVE_YAW != 0;
+    if is_relative && yaw.is_finite() && yaw != 0.0 {
+        return Action::Unsupported("Reposition: yaw from north only");
+    }
+    let turn = if yaw.is_finite() && !is_relative {
+        Turn::Angle { angle: frames::heading(yaw), rate: 0.0 }
+    } else {
+        Turn::Keep
+    };
     Action::Ask(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
 }
 

@@ -1,6 +1,6 @@
 //! What is asked of the vehicle, beside what it shall do: messages, missions, places, the time, nonsense.
 
-use crate::support::receiver::{Fed, Local, answer, command, replies};
+use crate::support::receiver::{Fed, Local, answer, command, replies, texts};
 use crate::support::{extended, v2_of_payload};
 use controller_core::flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
@@ -88,6 +88,16 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
         assert!((position - Vector3::new(-20.0, 10.0, 3.0)).norm() < 0.02, "{position}");
         assert_eq!(turned, turn);
     }
+    // A yaw that counts from where the vehicle points is none from north.
+    let relative = |yaw: f32| COMMAND_INT_DATA { param2: 3.0, ..goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, yaw) };
+    for yaw in [0.0, f32::NAN] {
+        let turn = asked(&relative(yaw)).map(|request| matches!(request, Request::GoTo(to) if to.turn == Turn::Keep));
+        assert_eq!(turn, Some(true), "{yaw}");
+    }
+    let shared = Local::new();
+    Fed::new(&shared).message(&relative(0.5), 0);
+    assert_eq!(shared.requests.take(), None);
+    assert_eq!(texts(&shared), ["Reposition: yaw from north only"]);
     assert_eq!(asked(&goto(MavFrame::MAV_FRAME_GLOBAL, f32::NAN, 0.0)), None);
     assert_eq!(asked(&goto(MavFrame::MAV_FRAME_LOCAL_NED, 3.0, 0.0)), None);
 }
