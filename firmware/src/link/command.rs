@@ -26,6 +26,7 @@ use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};
 use controller_core::flight::{MotorSetting, MotorTest, Request, Setting};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use heapless::Deque;
 use mavlink::dialects::common::{
     ActuatorConfiguration, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult,
     MotorTestThrottleType,
@@ -47,6 +48,9 @@ const RELATIVE_YAW: u32 = 2;
 
 /// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
 const REPETITION: u64 = 1_000_000;
+
+/// Commands that are remembered to know one again.
+const REMEMBERED: usize = 8;
 
 /// What to do about a command.
 #[derive(Debug, Clone, PartialEq)]
@@ -275,16 +279,25 @@ fn set_mode(call: &Call, armed: bool) -> Action {
 /// Knows a command that was delivered twice.
 ///
 /// A command sent again on purpose carries a new sequence number and acts again: arming twice is refused by the flight
-/// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor test.
+/// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor test, nor arm what
+/// was disarmed in between. One that goes on being delivered acts once every [`REPETITION`].
 #[derive(Debug, Default)]
-pub struct Repetitions(Option<(Header, u16, u64)>);
+pub struct Repetitions(Deque<(Header, u16, u64), REMEMBERED>);
 
 impl Repetitions {
-    /// Whether this command's frame is the last one's again.
+    /// Whether this command's frame is one again that was acted on.
     pub fn is_repeated(&mut self, frame: &Frame<'_>) -> bool {
-        let last = self.0.replace((frame.header, frame.checksum, frame.time));
-        last.is_some_and(|(header, checksum, time)| {
-            (header, checksum) == (frame.header, frame.checksum) && frame.time.saturating_sub(time) < REPETITION
-        })
+        let is_same = |(header, checksum, time): &(Header, u16, u64)| {
+            (*header, *checksum) == (frame.header, frame.checksum) && frame.time.saturating_sub(*time) < REPETITION
+        };
+        if self.0.iter().any(is_same) {
+            return true;
+        }
+        if self.0.is_full() {
+            self.0.pop_front();
+        }
+        // There is room for it now.
+        let _ = self.0.push_back((frame.header, frame.checksum, frame.time));
+        false
     }
 }

@@ -88,6 +88,43 @@ fn the_same_frame_again_does_not_act_again() {
 }
 
 #[test]
+fn what_a_line_delivers_twice_does_not_arm_after_a_disarm() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let disarm = command(ARM_DISARM, [0.0; 5]);
+    for now in [0, 50_000, 900_000] {
+        fed.bytes(&v2(1, &arm()), now);
+        fed.bytes(&v2(2, &disarm), now + 10_000);
+    }
+    let asked: Vec<_> = std::iter::from_fn(|| shared.requests.take()).map(|asked| asked.request).collect();
+    assert_eq!(asked, [Request::Arm, Request::Disarm]);
+    // Others in between do not make it forgotten at once.
+    (3..10).for_each(|sequence| fed.bytes(&v2(sequence, &command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5])), 920_000));
+    requests(&shared);
+    fed.bytes(&v2(2, &disarm), 930_000);
+    assert_eq!(requests(&shared), 0);
+}
+
+#[test]
+fn a_frame_that_goes_on_being_delivered_acts_once_a_second() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let acted = (0..20).filter(|count| {
+        fed.bytes(&v2(1, &command(ARM_DISARM, [0.0; 5])), count * 500_000);
+        requests(&shared) == 1
+    });
+    assert_eq!(acted.count(), 10);
+}
+
+#[test]
+fn a_client_that_asks_again_and_counts_how_often_is_heard() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    (0..3).for_each(|confirmation| fed.message(&COMMAND_LONG_DATA { confirmation, ..arm() }, 1_000));
+    assert_eq!(requests(&shared), 3);
+}
+
+#[test]
 fn a_motor_test_names_motor_level_and_time() {
     let shared = Local::new();
     Fed::new(&shared).message(&command(MavCmd::MAV_CMD_DO_MOTOR_TEST, [4.0, 0.0, 12.5, 1.5, 1.0]), 0);
