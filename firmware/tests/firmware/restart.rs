@@ -71,6 +71,25 @@ fn other_restarts_are_unsupported_in_words() {
     assert!(!shared.restarting.is_raised());
 }
 
+#[test]
+fn what_is_refused_leaves_alone_what_was_accepted() {
+    for (accepted, refused) in [(1.0, 3.0), (3.0, 1.0)] {
+        let shared = restartable(Mode::Ready);
+        assert_eq!(asked(&shared, accepted), (MavResult::MAV_RESULT_ACCEPTED, vec![], true));
+        let words = vec!["Restart: another one is under way".to_owned()];
+        assert_eq!(asked(&shared, refused), (MavResult::MAV_RESULT_TEMPORARILY_REJECTED, words, true));
+        assert_eq!(shared.into_bootloader.is_raised(), accepted == 3.0);
+        // Asked again, it is as if it were asked once.
+        assert_eq!(asked(&shared, accepted), (MavResult::MAV_RESULT_ACCEPTED, vec![], true));
+    }
+    let shared = restartable(Mode::Ready);
+    shared.has_bootloader.lower();
+    asked(&shared, 1.0);
+    let words = vec!["Restart: there is no bootloader".to_owned()];
+    assert_eq!(asked(&shared, 3.0), (MavResult::MAV_RESULT_UNSUPPORTED, words, true));
+    assert!(!shared.into_bootloader.is_raised());
+}
+
 /// When it was restarted, and whether into its bootloader.
 struct Machine<'a>(&'a Simulated, &'a Cell<Option<(u64, bool)>>, &'a Local);
 

@@ -98,28 +98,34 @@ impl<M: RawMutex> Receiver<'_, M> {
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }
 
-    /// Has the vehicle restarted, into its bootloader or not, once this answer is out.
+    /// Has the vehicle restarted, into its bootloader or not, once this answer is out. What is refused leaves alone what was accepted.
     fn restart(&mut self, into_bootloader: bool) -> MavResult {
         let shared = self.shared;
-        if into_bootloader {
-            shared.into_bootloader.raise();
-        } else {
-            shared.into_bootloader.lower();
-        }
-        // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
-        shared.restarting.raise();
         let (refused, result) = if !shared.can_restart.is_raised() {
             ("Restart: nobody here can do that", MavResult::MAV_RESULT_UNSUPPORTED)
         } else if into_bootloader && !shared.has_bootloader.is_raised() {
             ("Restart: there is no bootloader", MavResult::MAV_RESULT_UNSUPPORTED)
-        } else if shared.is_turning() {
-            ("Restart: only disarmed, and no motor turning", MavResult::MAV_RESULT_DENIED)
         } else if shared.saving.is_raised() {
             ("Restart: parameters are being saved", MavResult::MAV_RESULT_TEMPORARILY_REJECTED)
+        } else if shared.restarting.is_raised() {
+            if shared.into_bootloader.is_raised() == into_bootloader {
+                return MavResult::MAV_RESULT_ACCEPTED;
+            }
+            ("Restart: another one is under way", MavResult::MAV_RESULT_TEMPORARILY_REJECTED)
         } else {
-            return MavResult::MAV_RESULT_ACCEPTED;
+            if into_bootloader {
+                shared.into_bootloader.raise();
+            } else {
+                shared.into_bootloader.lower();
+            }
+            // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+            shared.restarting.raise();
+            if !shared.is_turning() {
+                return MavResult::MAV_RESULT_ACCEPTED;
+            }
+            shared.restarting.lower();
+            ("Restart: only disarmed, and no motor turning", MavResult::MAV_RESULT_DENIED)
         };
-        shared.restarting.lower();
         shared.announce(Event::new(Severity::Warning, refused));
         result
     }
