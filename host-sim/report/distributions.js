@@ -81,7 +81,7 @@ class Spread {
     return this.logarithmic ? this.least * (this.greatest / this.least) ** part : this.least + part * (this.greatest - this.least);
   }
 
-  paintBars(context, { bins, count, color: name, dashed }) {
+  paintBars(context, { bins, count, color: name, line }) {
     const { chart } = this;
     const outline = [[chart.x(this.least), chart.y(0)]];
     bins.forEach((bin, place) => {
@@ -91,7 +91,7 @@ class Spread {
     outline.push([chart.x(this.greatest), chart.y(0)]);
     context.strokeStyle = context.fillStyle = color(name);
     context.lineWidth = 1.5;
-    context.setLineDash(dashed ? [5, 4] : []);
+    context.setLineDash(PATTERNS[line]);
     chart.line(outline);
     context.setLineDash([]);
     context.globalAlpha = 0.18;
@@ -99,12 +99,12 @@ class Spread {
     context.globalAlpha = 1;
   }
 
-  paintShare(context, { quantiles, finite, count, color: name, dashed }) {
+  paintShare(context, { quantiles, finite, count, color: name, line }) {
     const { chart } = this;
     context.strokeStyle = color(name);
     context.lineWidth = 1.75;
     const points = [...quantiles].map((value, place) => [chart.x(value), chart.y(((place / (quantiles.length - 1)) * finite) / Math.max(count, 1))]);
-    context.setLineDash(dashed ? [5, 4] : []);
+    context.setLineDash(PATTERNS[line]);
     if (points.length > 0) chart.line([...points, [chart.x(this.greatest), points[points.length - 1][1]]]);
     context.setLineDash([]);
   }

@@ -139,13 +139,13 @@ class Plot {
     }
   }
 
-  paintCurve(context, { source, column, color: name, dashed }) {
+  paintCurve(context, { source, column, color: name, line }) {
     const { chart } = this;
     const values = source.column(column);
     context.strokeStyle = color(name);
-    context.lineWidth = dashed ? 1.25 : 1.75;
+    context.lineWidth = line === "solid" ? 1.75 : 1.25;
     context.lineJoin = "round";
-    context.setLineDash(dashed ? [5, 4] : []);
+    context.setLineDash(PATTERNS[line]);
     context.beginPath();
     let drawing = false;
     for (let row = source.row(view.from); row <= Math.min(source.row(view.to) + 1, source.rows - 1); row += 1) {

@@ -2,13 +2,13 @@
 
 use crate::section_six::SectionSix;
 use host_sim::plots::canvas::draw;
-use host_sim::plots::panel::{BLUE, Bound, Curve, INK, Panel, Scale, VERMILION};
+use host_sim::plots::panel::{BLUE, Bound, Curve, INK, Line, Panel, Scale, VERMILION};
 use host_sim::rivals::half_turn::Course;
 use plotters::prelude::*;
 use std::error::Error;
 
-fn curve(label: &str, color: RGBColor, dashed: bool, points: Vec<(f64, f64)>) -> Curve {
-    Curve { label: label.to_owned(), color, dashed, width: if dashed { 2 } else { 3 }, points }
+fn curve(label: &str, color: RGBColor, line: Line, points: Vec<(f64, f64)>) -> Curve {
+    Curve { label: label.to_owned(), color, line, width: if line == Line::Dashed { 2 } else { 3 }, points }
 }
 
 /// The paper's design over the other.
@@ -19,7 +19,7 @@ fn panel(
     [first, second]: [(&str, Vec<(f64, f64)>); 2],
     bounds: Vec<Bound>,
 ) -> Panel {
-    let curves = vec![curve(second.0, VERMILION, true, second.1), curve(first.0, BLUE, false, first.1)];
+    let curves = vec![curve(second.0, VERMILION, Line::Dashed, second.1), curve(first.0, BLUE, Line::Solid, first.1)];
     Panel { title, quantity, scale, curves, bounds }
 }
 

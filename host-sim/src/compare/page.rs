@@ -6,6 +6,7 @@ use super::scenes::Scene;
 use super::shown::{Shown, THINNED, Thrown};
 use crate::campaign::outcome::Outcome;
 use crate::flier::OURS;
+use crate::plots::panel::Line;
 use crate::report::distribution::Distribution;
 use crate::report::document;
 use crate::report::page::{Block, Page, Section};
@@ -17,16 +18,17 @@ use crate::rivals::kind::Kind;
 use crate::table::short;
 use scenario::Scenario;
 
-/// Ours, then the rivals in their order; half of these are dashed, so that no two curves differ by their colour alone.
-pub const LOOKS: [(Color, bool); 8] = [
-    (Color::Ink, false),
-    (Color::Blue, false),
-    (Color::Vermilion, false),
-    (Color::Green, false),
-    (Color::Orange, false),
-    (Color::Purple, true),
-    (Color::Sky, true),
-    (Color::Grey, true),
+/// Ours, then the rivals in their order. Curves whose colours look alike to people who confuse red and green are drawn with different patterns:
+/// green, purple and grey; vermilion and orange; blue and sky.
+pub const LOOKS: [(Color, Line); 8] = [
+    (Color::Ink, Line::Solid),
+    (Color::Blue, Line::Solid),
+    (Color::Vermilion, Line::Dashed),
+    (Color::Green, Line::Solid),
+    (Color::Orange, Line::Solid),
+    (Color::Purple, Line::Dotted),
+    (Color::Sky, Line::Dashed),
+    (Color::Grey, Line::Dashed),
 ];
 /// Scenes that begin upside down: how far each law falls is shown, too.
 const FALLS: [&str; 2] = ["upside down", "heavy"];
@@ -166,8 +168,8 @@ fn plots(compared: &Compared) -> Vec<Plot> {
         let curves = |quantity: &str| {
             let curve = |(place, law): (usize, &&'static str)| {
                 shown.get(place)?.as_ref()?;
-                let (color, dashed) = LOOKS[place % LOOKS.len()];
-                Some(Curve { track, column: format!("{law}_{quantity}"), label: (*law).to_owned(), color, dashed })
+                let (color, line) = LOOKS[place % LOOKS.len()];
+                Some(Curve { track, column: format!("{law}_{quantity}"), label: (*law).to_owned(), color, line })
             };
             compared.names.iter().enumerate().filter_map(curve).collect()
         };

@@ -1,7 +1,8 @@
 //! The pictures of a comparison: curves of all laws over each other, ours on top.
 //!
-//! Colours are Okabe and Ito's eight, ours black and thick; half of the rivals are dashed as well, so that no two curves differ by their colour alone.
+//! Colours are Okabe and Ito's, with a grey; ours is black and thick. Patterns are those of the page's [`LOOKS`].
 
+use super::page::LOOKS;
 use super::shown::{Shown, Thrown};
 use crate::plots::canvas::{PlotError, draw};
 use crate::plots::panel::{BLUE, Curve, GREEN, Panel, Scale, VERMILION};
@@ -15,17 +16,8 @@ const ORANGE: RGBColor = RGBColor(230, 159, 0);
 const SKY: RGBColor = RGBColor(86, 180, 233);
 const PURPLE: RGBColor = RGBColor(204, 121, 167);
 const GREY: RGBColor = RGBColor(120, 120, 120);
-/// Ours, then the rivals in their order; dashed or not.
-const LOOKS: [(RGBColor, bool); 8] = [
-    (BLACK_INK, false),
-    (BLUE, false),
-    (VERMILION, false),
-    (GREEN, false),
-    (ORANGE, false),
-    (PURPLE, true),
-    (SKY, true),
-    (GREY, true),
-];
+/// Ours, then the rivals in their order.
+const INKS: [RGBColor; LOOKS.len()] = [BLACK_INK, BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, GREY];
 
 /// One of the quantities shown, over time.
 type Get = fn(&Shown) -> &Vec<(f64, f64)>;
@@ -33,9 +25,9 @@ type Get = fn(&Shown) -> &Vec<(f64, f64)>;
 /// One curve of each law.
 fn curves(names: &[&str], points: impl Fn(usize) -> Option<Vec<(f64, f64)>>) -> Vec<Curve> {
     let curve = |law: usize| {
-        let (color, dashed) = LOOKS[law % LOOKS.len()];
+        let (color, (_, line)) = (INKS[law % INKS.len()], LOOKS[law % LOOKS.len()]);
         let label = names.get(law).map_or_else(String::new, |name| (*name).to_owned());
-        Some(Curve { label, color, dashed, width: if law == 0 { 4 } else { 2 }, points: points(law)? })
+        Some(Curve { label, color, line, width: if law == 0 { 4 } else { 2 }, points: points(law)? })
     };
     // Ours last: on top. One of the two laws that differ about half a turn only is enough.
     (0..names.len()).rev().filter(|law| names.get(*law) != Some(&Kind::Continuous.name())).filter_map(curve).collect()

@@ -31,14 +31,46 @@ pub enum Scale {
     Log,
 }
 
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Line {
+    /// Without gaps.
+    Solid,
+    /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them apart.
+    Dashed,
+    /// In dots: a second such pattern.
+    Dotted,
+}
+
+impl Line {
+    /// What the style sheet calls it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::Dashed => "dashed",
+            Self::Dotted => "dotted",
+        }
+    }
+
+    /// Lengths of a dash and of the gap behind it.
+    const fn pattern(self) -> Option<(i32, i32)> {
+        match self {
+            Self::Solid => None,
+            Self::Dashed => Some((7 * FINE, 4 * FINE)),
+            Self::Dotted => Some((2 * FINE, 3 * FINE)),
+        }
+    }
+}
+
 /// A line through the samples.
 pub struct Curve {
     /// Its name in the legend; none, no entry.
     pub label: String,
     /// Its colour.
     pub color: RGBColor,
-    /// Dashed: something asked for rather than flown.
-    pub dashed: bool,
+    /// How it is drawn.
+    pub line: Line,
     /// Pixels; a curve that others may cover is wider, so that its rim shows.
     pub width: u32,
     /// (s, the panel's unit).
@@ -97,7 +129,7 @@ impl Panel {
         for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
             draw_dashes(area, x, x + SAMPLE, 43 * FINE, curve)?;
             x += SAMPLE + 6 * FINE;
-            area.draw(&Text::new(curve.label.as_str(), (x, 35 * FINE), font(14).into_font().color(&INK)))?;
+            area.draw(&Text::new(curve.label.as_str(), (x, 35 * FINE), font(15).into_font().color(&INK)))?;
             x += CHARACTER * curve.label.chars().count() as i32 + 18 * FINE;
         }
         Ok(())
@@ -116,10 +148,10 @@ impl Panel {
     {
         let end = self.end();
         let mut chart = ChartBuilder::on(area)
-            .x_label_area_size(38 * FINE)
-            .y_label_area_size(64 * FINE)
+            .x_label_area_size(46 * FINE)
+            .y_label_area_size(76 * FINE)
             .build_cartesian_2d(0.0..end, vertical)?;
-        let axis = font(13).into_font().color(&INK);
+        let axis = font(15).into_font().color(&INK);
         chart
             .configure_mesh()
             .bold_line_style(GRID.stroke_width(FINE as u32))
@@ -127,7 +159,7 @@ impl Panel {
             .axis_style(INK.stroke_width(FINE as u32))
             .set_all_tick_mark_size(5 * FINE)
             .label_style(axis.clone())
-            .axis_desc_style(font(14).into_font().color(&INK))
+            .axis_desc_style(font(15).into_font().color(&INK))
             .x_labels(9)
             .y_labels(7)
             .x_label_formatter(&|value| format_linear(*value, end))
@@ -146,7 +178,7 @@ impl Panel {
             // Outside the bound; inside, where another one lies just outside.
             let up = (bound.value >= 0.0) != self.is_inner(bound);
             let (side, gap) = if up { (VPos::Bottom, -3 * FINE) } else { (VPos::Top, 3 * FINE) };
-            let style = font(12).into_font().color(&bound.color).pos(Pos::new(HPos::Right, side));
+            let style = font(13).into_font().color(&bound.color).pos(Pos::new(HPos::Right, side));
             let left = 6 * FINE + LABEL_WIDTH * self.crowd(index) as i32;
             let text = EmptyElement::at((end, bound.value)) + Text::new(bound.label.clone(), (-left, gap), style);
             chart.plotting_area().draw(&text)?;
@@ -157,11 +189,10 @@ impl Panel {
             if self.scale == Scale::Log {
                 points.iter_mut().for_each(|point| point.1 = point.1.max(LEAST_ON_LOG));
             }
-            if curve.dashed {
-                chart.draw_series(DashedLineSeries::new(points, 6 * FINE, 4 * FINE, style))?;
-            } else {
-                chart.draw_series(LineSeries::new(points, style))?;
-            }
+            match curve.line.pattern() {
+                Some((dash, gap)) => chart.draw_series(DashedLineSeries::new(points, dash, gap, style))?,
+                None => chart.draw_series(LineSeries::new(points, style))?,
+            };
         }
         Ok(())
     }
@@ -216,9 +247,9 @@ impl Panel {
     }
 }
 
-/// The one typeface, at a size in pixels.
+/// The one typeface, at a size in pixels; the drawing library makes type smaller than asked, by a factor of 1.24.
 fn font(size: i32) -> (&'static str, i32) {
-    ("sans-serif", size * FINE)
+    ("sans-serif", size * FINE * 124 / 100)
 }
 
 /// Below this an error on a logarithmic axis is single precision's noise, and drawn as this.
@@ -235,11 +266,11 @@ fn draw_dashes<DB: DrawingBackend>(
     curve: &Curve,
 ) -> DrawingResult<DB> {
     let style = curve.color.stroke_width(curve.width * FINE as u32);
-    let dash = if curve.dashed { 6 * FINE } else { to - from };
+    let (dash, gap) = curve.line.pattern().unwrap_or((to - from, 0));
     let mut x = from;
     while x < to {
         area.draw(&PathElement::new(vec![(x, y), ((x + dash).min(to), y)], style))?;
-        x += dash + 4 * FINE;
+        x += dash + gap;
     }
     Ok(())
 }

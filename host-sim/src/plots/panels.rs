@@ -1,6 +1,6 @@
 //! The eight panels: which curves, against which bounds.
 
-use super::panel::{BLUE, Bound, Curve, GREEN, INK, Panel, Scale, VERMILION};
+use super::panel::{BLUE, Bound, Curve, GREEN, INK, Line, Panel, Scale, VERMILION};
 use super::record::Sample;
 use crate::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
 use crate::table::short;
@@ -179,7 +179,7 @@ fn bound(value: f64, label: String) -> Bound {
 
 fn curve(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f64) -> Curve {
     let points = samples.iter().map(|sample| (sample.time, get(sample))).collect();
-    Curve { label: label.to_owned(), color, dashed: false, width: 2, points }
+    Curve { label: label.to_owned(), color, line: Line::Solid, width: 2, points }
 }
 
 /// A curve that shows beneath its reference once the two agree.
@@ -188,5 +188,5 @@ fn flown(samples: &[Sample], label: &str, color: RGBColor, get: fn(&Sample) -> f
 }
 
 fn desired(samples: &[Sample], label: &str, get: fn(&Sample) -> f64) -> Curve {
-    Curve { dashed: true, width: 1, ..curve(samples, label, INK, get) }
+    Curve { line: Line::Dashed, width: 1, ..curve(samples, label, INK, get) }
 }

@@ -56,6 +56,9 @@ pub fn picture(samples: &[Sample]) -> Result<String, PlotError> {
         for sample in poses(samples, 4.0 * view.arm) {
             view.draw_vehicle(root, sample)?;
         }
+        if let Some(first) = samples.first() {
+            view.draw_start(root, first)?;
+        }
         view.draw_legend(root, samples)
     })
 }
@@ -166,6 +169,14 @@ impl View {
             }
         }
         root.draw(&self.line([at(0.0, 0.0, 0.0), at(0.0, 0.0, 1.5)].into_iter(), stroke(VERMILION, 3)))
+    }
+
+    /// A word beside the first vehicle.
+    fn draw_start<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, first: &Sample) -> DrawingResult<DB> {
+        let (x, y) = self.pixel(&first.position);
+        let beside = (1.2 * self.arm * self.scale) as i32 + 6;
+        let font = ("sans-serif", 19 * FINE).into_font().style(FontStyle::Bold).color(&INK);
+        root.draw(&Text::new("start", (x + beside * FINE, y - 8 * FINE), font))
     }
 
     fn draw_legend<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, samples: &[Sample]) -> DrawingResult<DB> {

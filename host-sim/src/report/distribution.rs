@@ -6,6 +6,7 @@
 use super::plot::Color;
 use super::prose::{Cell, Table};
 use super::track::encoded;
+use crate::plots::panel::Line;
 use crate::table::{percent, short};
 use serde_json::{Value, json};
 
@@ -28,8 +29,8 @@ pub struct Distribution {
     /// A name and each flight's value: one group, or one for each law or vehicle. A value that is not finite is a flight
     /// that never came so far; it is counted and not drawn.
     pub groups: Vec<(String, Vec<f64>)>,
-    /// The colour of each group, and whether it is dashed; beyond the last come the colours of [`Color::CYCLE`].
-    pub looks: Vec<(Color, bool)>,
+    /// The colour of each group, and how its line is drawn; beyond the last come the colours of [`Color::CYCLE`].
+    pub looks: Vec<(Color, Line)>,
 }
 
 impl Distribution {
@@ -40,8 +41,8 @@ impl Distribution {
         let axis = self.axis(&sorted);
         let groups = self.groups.iter().zip(&sorted).enumerate().map(|(place, ((label, values), sorted))| {
             let quantiles: Vec<f32> = (0..=QUANTILES).map(|step| quantile(sorted, step) as f32).collect();
-            let (color, dashed) = self.looks.get(place).copied().unwrap_or((Color::of(place), false));
-            json!({ "label": label, "color": color.name(), "dashed": dashed, "count": values.len(), "finite": sorted.len(),
+            let (color, line) = self.looks.get(place).copied().unwrap_or((Color::of(place), Line::Solid));
+            json!({ "label": label, "color": color.name(), "line": line.name(), "count": values.len(), "finite": sorted.len(),
                 "quantiles": if sorted.is_empty() { String::new() } else { encoded(&quantiles) },
                 "bins": self.counts(sorted, axis) })
         });
@@ -132,7 +133,7 @@ mod tests {
             logarithmic: false,
             bound: Some(0.9),
             groups,
-            looks: vec![(Color::Sky, true)],
+            looks: vec![(Color::Sky, Line::Dotted)],
         }
     }
 
@@ -145,7 +146,7 @@ mod tests {
         let json = spread.json();
         let group = &json["groups"][0];
         let bins: u64 = group["bins"].as_array().unwrap().iter().map(|bin| bin.as_u64().unwrap()).sum();
-        assert_eq!((group["color"].as_str(), group["dashed"].as_bool()), (Some("sky"), Some(true)));
+        assert_eq!((group["color"].as_str(), group["line"].as_str()), (Some("sky"), Some("dotted")));
         assert_eq!((bins, group["finite"].as_u64(), group["count"].as_u64()), (1000, Some(1000), Some(1002)));
         let bytes = STANDARD.decode(group["quantiles"].as_str().unwrap()).unwrap();
         let quantiles: Vec<f32> = bytes.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();

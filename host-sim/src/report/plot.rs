@@ -2,6 +2,7 @@
 
 use super::prose::{Cell, Table};
 use super::track::Track;
+use crate::plots::panel::Line;
 use crate::table::short;
 use serde_json::{Value, json};
 
@@ -63,21 +64,21 @@ pub struct Curve {
     pub label: String,
     /// Its colour.
     pub color: Color,
-    /// Dashed: something asked for rather than flown; or one of many laws, so that not colour alone tells them apart.
-    pub dashed: bool,
+    /// How it is drawn.
+    pub line: Line,
 }
 
 impl Curve {
     /// A full line from the page's first track.
     #[must_use]
     pub fn new(column: impl Into<String>, label: impl Into<String>, color: Color) -> Self {
-        Self { track: 0, column: column.into(), label: label.into(), color, dashed: false }
+        Self { track: 0, column: column.into(), label: label.into(), color, line: Line::Solid }
     }
 
     /// The same, dashed.
     #[must_use]
     pub fn dashed(self) -> Self {
-        Self { dashed: true, ..self }
+        Self { line: Line::Dashed, ..self }
     }
 }
 
@@ -133,7 +134,7 @@ impl Plot {
     pub fn json(&self) -> Value {
         let curves = self.curves.iter().map(|curve| {
             json!({ "track": curve.track, "column": curve.column, "label": curve.label, "color": curve.color.name(),
-                "dashed": curve.dashed })
+                "line": curve.line.name() })
         });
         let bounds = self.bounds.iter().map(|bound| {
             json!({ "value": bound.value, "label": bound.label, "color": bound.color.name(), "always": bound.always, "text": self.measure(bound.value) })
