@@ -84,7 +84,7 @@ fn a_late_pose_is_judged_by_itself_and_not_by_those_after_it() {
 #[test]
 fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
     let mut rig = Rig::new(tumble);
-    rig.fly(3_000_000, 20_000);
+    rig.fly(4_000_000, 20_000);
     let (offset, turn) = (Vector3::new(30.0, -5.0, 1.0), UnitQuaternion::from_scaled_axis(Vector3::z() * 2.0));
     // The new frame is the old one, turned about the origin and shifted.
     let made = |rig: &Rig, time: u64| {
