@@ -178,6 +178,15 @@ fn whatever_texts_and_file_names_hold_an_error_is_one_line_that_no_terminal_acts
 }
 
 #[test]
+fn a_mark_of_byte_order_before_draws_is_read_over() {
+    let directory = directory("marked");
+    std::fs::write(directory.join("brief.toml"), brief()).unwrap();
+    std::fs::write(directory.join("draws.toml"), "\u{feff}[campaign]\nflightz = 1\n").unwrap();
+    let message = stderr(&host_sim(&directory, &["campaign", "brief.toml", "--draws", "draws.toml"]));
+    assert!(message.contains("draws.toml: campaign.flightz: unknown key"), "{message}");
+}
+
+#[test]
 fn a_sessions_errors_name_the_file() {
     let directory = directory("named");
     std::fs::write(directory.join("mine.toml"), PAPER).unwrap();

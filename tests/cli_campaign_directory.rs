@@ -45,9 +45,10 @@ fn a_damaged_result_is_refused_by_merge_and_flown_again_by_its_campaign() {
     // As it was described before results were hashed.
     let older = described.lines().filter(|line| !line.contains("result_sha256")).collect::<Vec<_>>().join("\n");
     assert!(described.contains("result_sha256"), "{described}");
-    for place in (0..whole.len()).step_by(whole.len() / 97) {
+    // At the last two of these places, in the footer, Arrow's reader panics, and at some between.
+    for place in (0..whole.len()).step_by(whole.len() / 97).chain([whole.len() - 31, whole.len() - 19]) {
         let mut damaged = whole.clone();
-        damaged[place] ^= 0x55;
+        damaged[place] ^= 0x80;
         fs::write(&result, &damaged).unwrap();
         let refused = host_sim(&directory, &["merge", "out", "--out", "merged"]);
         let message = stderr(&refused);

@@ -348,7 +348,13 @@ impl Judge {
         assert_eq!(outcome.transition.map_or(before, |transition| transition.to), outcome.mode);
         assert_eq!(outcome.transition.is_some(), before != outcome.mode);
         assert_eq!(outcome.answer.is_some(), arrival.request.is_some());
-        assert_eq!(outcome.setpoint.is_some(), arrival.position.is_some() && outcome.mode == Mode::Flying);
+        let judged = match outcome.mode {
+            Mode::Flying => arrival.position.is_some(),
+            // What begins no flight is refused, where one is waited for.
+            Mode::Idling => arrival.position.is_some() && matches!(outcome.setpoint, Some(Err(_))),
+            _ => false,
+        };
+        assert_eq!(outcome.setpoint.is_some(), judged);
     }
 }
 

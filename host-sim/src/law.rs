@@ -199,11 +199,16 @@ impl LawServer {
     /// Why the law does not take a dt that other laws would.
     fn too_long(&self, period: f64, error: &ParameterError) -> String {
         match self.bandwidth {
-            Some(bandwidth) if error.field.starts_with("estimates.force_bandwidth") => format!(
-                "dt: must be at most {} s, {} over this file's greatest estimates.force_bandwidth of {bandwidth}/s, found {period}",
-                ForceGenerator::STEP_MAX / bandwidth,
-                ForceGenerator::STEP_MAX
-            ),
+            Some(bandwidth) if error.field.starts_with("estimates.force_bandwidth") => {
+                // In whole microseconds, and one that is taken.
+                let is_taken = |us: f64| bandwidth <= ForceGenerator::STEP_MAX / (us * 1e-6) as f32;
+                let us = (1e6 * f64::from(ForceGenerator::STEP_MAX / bandwidth)).round();
+                let greatest = if is_taken(us) { us } else { us - 1.0 } / 1e6;
+                format!(
+                    "dt: must be at most {greatest} s, {} over this file's greatest estimates.force_bandwidth of {bandwidth}/s, found {period}",
+                    ForceGenerator::STEP_MAX
+                )
+            }
             _ => error.to_string(),
         }
     }

@@ -17,6 +17,10 @@ const NORMAL: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
 const ONE_SIDED: f64 = 3.090;
 
+/// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two say something of the same, nothing tells
+/// which of them errs.
+const ALIKE: f64 = 0.9;
+
 /// A bench entry: a share of each logarithm, their sum as it was measured, and its standard uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
@@ -45,17 +49,22 @@ pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usi
         let others = (1.0 - own).max(1e-9);
         (left(entry) / others, entry.deviation / others.sqrt())
     };
-    let worst = entries.iter().map(|entry| (entry, apart(entry)));
-    let worst = worst.max_by(|(_, (a, s)), (_, (b, t))| (a / s).abs().total_cmp(&(b / t).abs()));
-    worst.map(|(entry, (distance, deviation))| {
-        format!(
-            "bench and flight contradict: {} deviates most, by {} from what all the rest says, {} standard uncertainties: measure it again, and see that bench, \
-             log and scenario are of one vehicle",
-            entry.name,
-            percent(distance.exp_m1()),
-            short((distance / deviation).abs())
-        )
-    })
+    let apart: Vec<(&Entry, f64, f64)> = entries
+        .iter()
+        .map(|entry| {
+            let (distance, deviation) = apart(entry);
+            (entry, distance, (distance / deviation).abs())
+        })
+        .collect();
+    let worst = apart.iter().map(|(_, _, times)| *times).fold(0.0, f64::max);
+    let suspects = apart.iter().filter(|(_, _, times)| *times >= ALIKE * worst);
+    let suspects = suspects.map(|(entry, distance, times)| {
+        format!("{} by {} ({} standard uncertainties)", entry.name, percent(distance.exp_m1()), short(*times))
+    });
+    Some(format!(
+        "bench and flight contradict: from what all the rest says deviates most {}: measure it again, and see that bench, log and scenario are of one vehicle",
+        suspects.collect::<Vec<_>>().join(" or ")
+    ))
 }
 
 /// The variance of the sum of these shares.

@@ -145,8 +145,8 @@ fn a_dt_that_the_files_estimates_do_not_allow_is_refused_with_the_greatest_that_
 
 #[test]
 fn a_line_beyond_all_measure_is_refused_once_and_the_next_is_served() {
-    let fits = format!("{:1$}\n", line(&[]), LONGEST - 1);
-    let long = format!("{:1$}\n", line(&[]), LONGEST);
+    let of = |length: usize| line(&[]) + &" ".repeat(length - line(&[]).len() - 1) + "\n";
+    let (fits, long) = (of(LONGEST), of(LONGEST + 1));
     let input = format!("{long}{fits}{}", "0".repeat(5 * LONGEST));
     let mut output = Vec::new();
     server().serve(input.as_bytes(), &mut output).unwrap();

@@ -111,7 +111,7 @@ fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
 #[test]
 fn a_pose_from_before_the_frame_moved_is_too_late() {
     let mut rig = Rig::new(tumble);
-    rig.fly(3_000_000, 20_000);
+    rig.fly(4_000_000, 20_000);
     let away = Vector3::new(30.0, -5.0, 1.0);
     let moved = motion::pose(&rig.truth(rig.now - 5_000), &away, &UnitQuaternion::identity()).reset_counter(1);
     let moved = Stamped { value: moved, time: rig.now - 5_000 };
