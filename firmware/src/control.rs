@@ -15,7 +15,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::flight;
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Severity, Shared, Timing};
+use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
 use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
@@ -196,8 +196,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// That nothing watches the battery of an armed vehicle any more: landing for want of a reading would help nobody.
     fn tell_of_the_battery(&mut self, is_missing: bool) {
         if is_missing && !self.complaint.battery {
-            let words = "Battery: no reading for 1 s, nothing watches it";
-            self.shared.announce(Event::new(Severity::Warning, words));
+            self.shared.announce(Event::BatteryMissing);
         }
         self.complaint.battery = is_missing;
     }

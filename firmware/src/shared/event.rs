@@ -67,6 +67,8 @@ pub enum Event {
     MotorsLost,
     /// They do again.
     MotorsRegained,
+    /// The battery that is to be watched is not measured.
+    BatteryMissing,
     /// Anything else, in words.
     Words(Severity, Text),
 }
@@ -85,7 +87,9 @@ impl Event {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
             Self::Input(_) | Self::MotorsLost => Severity::Critical,
             Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
-            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) | Self::Thrust(_) => Severity::Warning,
+            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) | Self::Thrust(_) | Self::BatteryMissing => {
+                Severity::Warning
+            }
             Self::Words(severity, _) => *severity,
         }
     }
@@ -103,6 +107,7 @@ impl fmt::Display for Event {
             Self::Thrust(scale) => write!(f, "Thrust x{scale:.2}: check battery, mass, THR_CURVE"),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
+            Self::BatteryMissing => f.write_str("Battery: no reading for 1 s, nothing watches it"),
             Self::Words(_, text) => f.write_str(text.as_str()),
         }
     }
