@@ -12,6 +12,7 @@
 //! Every key is a field of [`ExtendedParameters`] under the same name; `docs/scenario-file.md` lists them.
 
 use crate::section::{FieldError, Section};
+use controller_core::extended::controller::Controller;
 use controller_core::extended::parameters::{
     AttitudeParameters, EstimateParameters, Extended, ExtendedParameters, HeadingParameters, PositionParameters,
 };
@@ -78,7 +79,7 @@ pub const ESTIMATES: [&str; 15] = [
 pub fn read_extended(root: &Section, vehicle: &Vehicle, period: f64) -> Result<Extended, FieldError> {
     let parameters = read_gains(&root.section("gains")?, read_estimates(root)?)?;
     let extended = Extended::new(parameters, vehicle).map_err(|error| root.refused(&error))?;
-    extended.check_period(period as f32).map_err(|error| root.refused(&error))?;
+    Controller::check_period(&extended, period as f32).map_err(|error| root.refused(&error))?;
     Ok(extended)
 }
 

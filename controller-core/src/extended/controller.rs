@@ -147,7 +147,7 @@ impl Controller {
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::NotBelow(longest))?;
-        parameters.check_period(period)?;
+        Self::check_period(parameters, period)?;
         let p = &parameters.position;
         Ok(Self {
             vehicle: *vehicle,
@@ -168,6 +168,15 @@ impl Controller {
             settling: actuators.settling(period),
             memory: Self::fresh(vehicle, Estimates::NONE),
         })
+    }
+
+    /// Checks what is defined for ticks that are not too long only: the generators of the force and of the heading, `period` in s.
+    ///
+    /// # Errors
+    /// Names `estimates.force_bandwidth_…`, `gains.c_1` or `gains.c_2`.
+    pub fn check_period(parameters: &Extended, period: f32) -> Result<(), ParameterError> {
+        ForceGenerator::check(&parameters.estimates, period)?;
+        heading::check(&parameters.heading, period)
     }
 
     /// A memory of `estimates` and nothing else.

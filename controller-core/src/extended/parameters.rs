@@ -1,7 +1,5 @@
 //! The constants of the extended law, validated.
 
-use super::force::ForceGenerator;
-use super::heading;
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::vehicle::Vehicle;
 use core::ops::Deref;
@@ -261,15 +259,6 @@ impl Extended {
         let extended = Self(parameters);
         require(extended.greatest_fall() < vehicle.gravity, "gains.m_down", Reason::NotBelow(vehicle.gravity))?;
         Ok(extended)
-    }
-
-    /// Checks what is defined for ticks that are not too long only: the generators of the force and of the heading, `period` in s.
-    ///
-    /// # Errors
-    /// Names `estimates.force_bandwidth_…`, `gains.c_1` or `gains.c_2`.
-    pub fn check_period(&self, period: f32) -> Result<(), ParameterError> {
-        ForceGenerator::check(&self.estimates, period)?;
-        heading::check(&self.heading, period)
     }
 
     /// M_z- + D_z, m/s^2: how far below g + p_d'' the vertical command may be.

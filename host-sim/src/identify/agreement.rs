@@ -5,7 +5,6 @@
 //! [`DEVIATIONS`] no combination is worth its uncertainty: a number was mistyped, or another vehicle weighed, and least squares would
 //! share the error out among all numbers, with tight intervals around the wrong values.
 
-use super::quantities::Known;
 use crate::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
@@ -20,6 +19,15 @@ const ONE_SIDED: f64 = 3.090;
 /// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two say something of the same, nothing tells
 /// which of them errs.
 const ALIKE: f64 = 0.9;
+
+/// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// The logarithms.
+    pub values: SVector<f64, 5>,
+    /// Theirs.
+    pub covariance: SMatrix<f64, 5, 5>,
+}
 
 /// A bench entry: a share of each logarithm, their sum as it was measured, and its standard uncertainty.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,7 +10,7 @@
 //! with one degree of freedom less than there are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay
 //! and that of the lag, so it misses only where one of them does.
 
-use super::agreement::{Entry, contradiction};
+use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
 use super::fit::{BLOCKS, Fit};
 use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
@@ -144,15 +144,6 @@ fn delay(lag: &Quantity, whole: &Quantity) -> Quantity {
 
 fn spanned(value: f64, interval: [f64; 2]) -> Quantity {
     Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * COVERAGE), interval }
-}
-
-/// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Known {
-    /// The logarithms.
-    pub values: SVector<f64, 5>,
-    /// Theirs.
-    pub covariance: SMatrix<f64, 5, 5>,
 }
 
 /// What flight and bench know together, and in words how they contradict each other, if they do.
