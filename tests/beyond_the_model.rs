@@ -4,7 +4,7 @@
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
-use controller_core::extended::controller::Estimates;
+use controller_core::extended::memory::Estimates;
 use controller_core::flight::{
     FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
 };

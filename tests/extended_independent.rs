@@ -14,7 +14,7 @@ use crate::support::oracle::rounding::vector4;
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
 use controller_core::extended::actuators::ActuatorParameters;
-use controller_core::extended::controller::Memory;
+use controller_core::extended::memory::Memory;
 use controller_core::heading::Heading;
 use controller_core::law::Law as Flown;
 use controller_core::reference::Reference;

@@ -15,6 +15,7 @@
 //! | [`thrust_floor`] | a least thrust that follows the torque, so that no rotor is asked for less than it can give | 6 |
 //! | [`thrust_scale`] | an estimate of what the rotors deliver of what is commanded | 7 |
 //! | [`actuators`] | what the rotors were commanded, through their lag and delay: what the estimates compare with | 8 |
+//! | [`memory`] | what it remembers from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`parameters`] | all of its constants, validated | |
 //!
@@ -25,6 +26,7 @@ pub mod attitude;
 pub mod controller;
 pub mod force;
 pub mod heading;
+pub mod memory;
 pub mod parameters;
 pub mod position;
 pub mod saturation;

@@ -5,7 +5,7 @@ use crate::certificate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Command, Diagnostics};
 use crate::error::{InputError, ParameterError};
 use crate::extended;
-use crate::extended::controller::Estimates;
+use crate::extended::memory::Estimates;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 

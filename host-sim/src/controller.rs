@@ -3,7 +3,7 @@
 use crate::rivals::pilot::RivalPilot;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
-use controller_core::extended::controller::Estimates;
+use controller_core::extended::memory::Estimates;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};

@@ -18,7 +18,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::controller::Diagnostics;
 use controller_core::error::{InputError, ParameterError};
-use controller_core::extended::controller::Estimates;
+use controller_core::extended::memory::Estimates;
 use controller_core::law::Law;
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};

@@ -10,10 +10,11 @@
 //! advances by one period as soon as its last value has served. So the wrench is the one for the instant the state was taken, as
 //! in the paper's [`controller`](crate::controller).
 
-use super::actuators::{ActuatorModel, ActuatorState};
+use super::actuators::ActuatorModel;
 use super::attitude::{AttitudeLaw, AttitudeTorque};
 use super::force::{ForceEstimate, ForceGenerator, ForceObserver};
 use super::heading::{self, HeadingLag};
+use super::memory::{Estimates, Last, Memory};
 use super::parameters::{AttitudeParameters, EstimateParameters, Extended};
 use super::position::PositionLaw;
 use super::thrust_floor::ThrustFloor;
@@ -25,57 +26,13 @@ use crate::certificate::certified::Certified;
 use crate::certificate::configuration::{ExtendedLaw, LawParameters};
 use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
-use crate::path_lifting::{self, Lift};
+use crate::path_lifting;
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::Vehicle;
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
-
-/// What the law knows beyond its filters and its lift.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimates {
-    /// The force per mass.
-    pub force: ForceEstimate,
-    /// The averaged torque bias, N m, body frame, before it is cut to its level.
-    pub torque: Vector3<f32>,
-    /// What the rotors deliver of what is commanded.
-    pub scale: f32,
-}
-
-impl Estimates {
-    /// Nothing known.
-    pub const NONE: Self = Self { force: ForceEstimate::NONE, torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
-}
-
-/// The last tick, as far as the estimates need it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Last {
-    velocity: Vector3<f32>,
-    /// R e3.
-    thrust_axis: Vector3<f32>,
-    angular_velocity: Vector3<f32>,
-}
-
-/// Everything the law remembers from one tick to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Memory {
-    /// x_f.
-    pub filter: FilterState,
-    /// The path lifting's memory; none before the first step.
-    pub lift: Option<Lift>,
-    /// The heading's lag; none before the first step.
-    pub heading: Option<HeadingLag>,
-    /// The estimates.
-    pub estimates: Estimates,
-    /// Ticks for which the estimates are still held.
-    held: u32,
-    last: Option<Last>,
-    actuators: ActuatorState,
-    /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
-    acted: Vector4<f32>,
-}
 
 /// What the estimates learn of an interval with. That is the one since the last tick, and not the one to come, where a period
 /// has been changed.
@@ -166,7 +123,7 @@ impl Controller {
             floor: ThrustFloor::new(rotors, parameters.floor_margin),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
-            memory: Self::fresh(vehicle, Estimates::NONE),
+            memory: Memory::fresh(vehicle, Estimates::NONE),
         })
     }
 
@@ -179,31 +136,16 @@ impl Controller {
         heading::check(&parameters.heading, period)
     }
 
-    /// A memory of `estimates` and nothing else.
-    fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Memory {
-        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale, 0.0, 0.0, 0.0);
-        Memory {
-            filter: FilterState::ZERO,
-            lift: None,
-            heading: None,
-            estimates,
-            held: 0,
-            last: None,
-            actuators: ActuatorState::steady(hover),
-            acted: hover,
-        }
-    }
-
     /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
     pub fn reset(&mut self) {
-        self.memory = Self::fresh(&self.vehicle, Estimates::NONE);
+        self.memory = Memory::fresh(&self.vehicle, Estimates::NONE);
     }
 
     /// The same with what has been estimated of the vehicle itself kept, torque and thrust scale: how a flight goes on without a
     /// pose. The force is forgotten: it came from velocities that are no longer known.
     pub fn restart(&mut self) {
         let estimates = Estimates { force: ForceEstimate::NONE, ..self.memory.estimates };
-        self.memory = Self::fresh(&self.vehicle, estimates);
+        self.memory = Memory::fresh(&self.vehicle, estimates);
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on

@@ -8,7 +8,7 @@
 use crate::flight::Tick;
 use crate::report::recorder::{Instant, Kept, Read};
 use controller_core::controller::Diagnostics;
-use controller_core::extended::controller::Estimates;
+use controller_core::extended::memory::Estimates;
 use controller_core::state::State;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use scenario::Scenario;

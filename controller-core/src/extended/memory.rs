@@ -1,0 +1,70 @@
+//! What the extended law remembers from one tick to the next.
+
+use super::actuators::ActuatorState;
+use super::force::ForceEstimate;
+use super::heading::HeadingLag;
+use crate::path_lifting::Lift;
+use crate::position::FilterState;
+use crate::vehicle::Vehicle;
+use nalgebra::{Vector3, Vector4};
+
+/// What the law knows beyond its filters and its lift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimates {
+    /// The force per mass.
+    pub force: ForceEstimate,
+    /// The averaged torque bias, N m, body frame, before it is cut to its level.
+    pub torque: Vector3<f32>,
+    /// What the rotors deliver of what is commanded.
+    pub scale: f32,
+}
+
+impl Estimates {
+    /// Nothing known.
+    pub const NONE: Self = Self { force: ForceEstimate::NONE, torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+}
+
+/// The last tick, as far as the estimates need it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Last {
+    pub velocity: Vector3<f32>,
+    /// R e3.
+    pub thrust_axis: Vector3<f32>,
+    pub angular_velocity: Vector3<f32>,
+}
+
+/// Everything the law remembers from one tick to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Memory {
+    /// x_f.
+    pub filter: FilterState,
+    /// The path lifting's memory; none before the first step.
+    pub lift: Option<Lift>,
+    /// The heading's lag; none before the first step.
+    pub heading: Option<HeadingLag>,
+    /// The estimates.
+    pub estimates: Estimates,
+    /// Ticks for which the estimates are still held.
+    pub(super) held: u32,
+    pub(super) last: Option<Last>,
+    pub(super) actuators: ActuatorState,
+    /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
+    pub(super) acted: Vector4<f32>,
+}
+
+impl Memory {
+    /// A memory of `estimates` and nothing else.
+    pub(super) fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Self {
+        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale, 0.0, 0.0, 0.0);
+        Self {
+            filter: FilterState::ZERO,
+            lift: None,
+            heading: None,
+            estimates,
+            held: 0,
+            last: None,
+            actuators: ActuatorState::steady(hover),
+            acted: hover,
+        }
+    }
+}
