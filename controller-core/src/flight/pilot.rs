@@ -33,8 +33,9 @@ pub struct Pilot<'m> {
     estimation: Estimation<'m>,
     watch: Watch,
     fence: Fence,
-    /// When a pose was refused last for what it says, us; not counted on once a vehicle without a pose has levelled.
-    lied_at: Option<u64>,
+    /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle without a pose has
+    /// levelled.
+    lies: Option<(u64, u64)>,
     bench: Bench,
     /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
     newest: Newest,
@@ -70,7 +71,7 @@ impl<'m> Pilot<'m> {
             estimation: Estimation::new(estimator),
             watch: Watch::default(),
             fence: Fence::new(&settings),
-            lied_at: None,
+            lies: None,
             bench: Bench::NONE,
             newest: Newest::default(),
             wanted_since: None,

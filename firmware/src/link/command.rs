@@ -280,7 +280,7 @@ fn set_mode(call: &Call, armed: bool) -> Action {
 ///
 /// A command sent again on purpose carries a new sequence number and acts again: arming twice is refused by the flight
 /// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor test, nor arm what
-/// was disarmed in between. One that goes on being delivered acts once every [`REPETITION`].
+/// was disarmed in between. One that goes on being delivered acts once a second.
 #[derive(Debug, Default)]
 pub struct Repetitions(Deque<(Header, u16, u64), REMEMBERED>);
 

@@ -7,7 +7,7 @@
 //! o = (t_1 + t_2) / 2 - s          and if they do not, |error| <= (t_2 - t_1) / 2
 //! ```
 //!
-//! The answer with the least error counts. An old one's error grows by what two clocks part. Where [`SET`] answers in a row cannot be of
+//! The answer with the least error counts. An old one's error grows by what two clocks part. Where two answers in a row cannot be of
 //! the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
 //! [`SenderClock`](super::sender_clock::SenderClock) cannot tell from a clock that is behind.
 

@@ -1,7 +1,7 @@
 //! What the rules need to know in a tick.
 
 use super::Pilot;
-use crate::estimator::{COASTING_AFTER, Fault, Rejected};
+use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::Inputs;
@@ -51,8 +51,9 @@ impl Pilot<'_> {
         seen: &Seen,
     ) -> Conditions {
         let elapsed = inputs.now.saturating_sub(self.since);
-        if elapsed < LEVELLING_MAX && estimate.pose.is_some_and(|pose| pose.is_err_and(Rejected::is_lie)) {
-            self.lied_at = Some(inputs.now);
+        let is_levelled = self.mode == Mode::Descending && elapsed >= LEVELLING_MAX;
+        if let (Some(pose), false) = (estimate.pose, is_levelled) {
+            self.hear(pose, inputs.now);
         }
         let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie());
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
@@ -84,10 +85,21 @@ impl Pilot<'_> {
             .with(Condition::Overrun, seen.overrun)
     }
 
-    /// Whether poses were still refused for what they say when the vehicle had levelled: what they agree on later is no better.
+    /// Remembers from when on poses have been refused for what they say, and until when, none having been believed since.
+    fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {
+        match pose {
+            Ok(_) => self.lies = None,
+            Err(rejected) if rejected.is_lie() => self.lies = Some((self.lies.map_or(now, |(first, _)| first), now)),
+            Err(_) => {}
+        }
+    }
+
+    /// Whether poses lied for a while before the vehicle had levelled, or still did then: what they agree on later is no better.
     fn poses_lie(&self) -> bool {
         let levelled = self.since.saturating_add(LEVELLING_MAX);
-        self.lied_at.is_some_and(|at| levelled.saturating_sub(at) <= COASTING_AFTER)
+        self.lies.is_some_and(|(first, last)| {
+            last.saturating_sub(first) >= COASTING_AFTER || levelled.saturating_sub(last) <= COASTING_AFTER
+        })
     }
 
     /// Whether the ground station has been silent for so long, us.
