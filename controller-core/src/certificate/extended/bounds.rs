@@ -2,7 +2,7 @@
 
 use super::motion::cells;
 use super::reach::Reach;
-use super::torque::{TiltCell, Torques};
+use super::torque::{TILT_CELLS, TiltCell, Torques};
 use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::certificate::configuration::Configuration;
@@ -71,11 +71,13 @@ pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<Ex
         }
     }
 
-    let support =
-        |b: &Vector3<f64>, tilt: &TiltCell, swing: f64| torques.feedback(b, tilt) + torques.swung(b, tilt, swing);
+    // What a cell of the motion needs of a tilt is worked out once: on a board all of this is counted in seconds.
+    let tilts: Vec<TiltCell, TILT_CELLS> = torques.tilt_cells().collect();
+    let greatest_swing = torques.swing(swing);
     let worst = |b: &Vector3<f64>| -> Result<f64, ParameterError> {
-        let over_tilts = torques.tilt_cells().map(|tilt| support(b, &tilt, swing)).fold(0.0, math::greater_f64);
-        Ok(over_tilts + torques.gyroscopic(b, rate)?)
+        let lever = torques.lever(b);
+        let along = |tilt| torques.feedback(b, tilt) + torques.swung(&lever, tilt, &greatest_swing);
+        Ok(tilts.iter().map(along).fold(0.0, math::greater_f64) + torques.gyroscopic(b, rate)?)
     };
     let torque = Vector3::new(worst(&Vector3::x())?, worst(&Vector3::y())?, worst(&Vector3::z())?);
 
@@ -93,12 +95,15 @@ pub fn bounds(configuration: &Configuration, parameters: &Extended) -> Result<Ex
             most = math::greater_f64(most, share * other.least + worst(&difference)? + row.thrust * margin);
         }
         let gyroscopic = torques.gyroscopic(&row.torque, rate)?;
+        let lever = torques.lever(&row.torque);
+        let feedback: Vec<f64, TILT_CELLS> = tilts.iter().map(|tilt| torques.feedback(&row.torque, tilt)).collect();
         for cell in cells(&reach) {
             let lift = row.thrust * mass * cell.greatest;
-            let swing = cell.acceleration(turn);
-            for tilt in torques.tilt_cells() {
+            let swing = torques.swing(cell.acceleration(turn));
+            for (tilt, feedback) in tilts.iter().zip(&feedback) {
                 let along = lift * math::greater_f64(tilt.cosine(), 0.0);
-                most = math::greater_f64(most, along + support(&row.torque, &tilt, swing) + gyroscopic);
+                let support = feedback + torques.swung(&lever, tilt, &swing);
+                most = math::greater_f64(most, along + support + gyroscopic);
             }
         }
         // As many as there are rotors: it fits.

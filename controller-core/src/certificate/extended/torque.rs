@@ -54,6 +54,21 @@ impl TiltCell {
     }
 }
 
+/// J b, for a direction b of torque space: its length, kg m^2, and the sine and cosine of its angle to the z axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lever {
+    length: f64,
+    sin: f64,
+    cos: f64,
+}
+
+/// What the desired frame accelerates by: greatest |omega'_12|, and the greatest of it all, rad/s^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swing {
+    across: f64,
+    most: f64,
+}
+
 /// qbar, at whose negative the lift switches.
 #[must_use]
 pub fn switching_scalar(delta: f32) -> f64 {
@@ -123,19 +138,31 @@ impl Torques {
         tilt * (b.x.abs() + b.y.abs()) + yaw * b.z.abs()
     }
 
-    /// Greatest J R~^T omega_d' along `b` for |omega'_12| of at most `swing`, rad/s^2.
+    /// J b.
     #[must_use]
-    #[inline(never)] // called from many places, before flight
-    pub fn swung(&self, b: &Vector3<f64>, tilt: &TiltCell, swing: f64) -> f64 {
-        let [turn, _] = self.turn;
+    pub fn lever(&self, b: &Vector3<f64>) -> Lever {
         let weighted = self.inertia.component_mul(b);
         let (across, about) = (math::hypot(weighted.x, weighted.y), weighted.z.abs());
-        let (length, most) = (math::hypot(across, about), math::hypot(swing, turn));
+        let length = math::hypot(across, about);
+        Lever { length, sin: across / length, cos: about / length }
+    }
+
+    /// |omega'_12| of at most `across`, rad/s^2, with the greatest turn.
+    #[must_use]
+    pub fn swing(&self, across: f64) -> Swing {
+        Swing { across, most: math::hypot(across, self.turn[0]) }
+    }
+
+    /// Greatest J R~^T omega_d' along b.
+    #[must_use]
+    #[inline(never)] // called from many places, before flight
+    pub fn swung(&self, lever: &Lever, tilt: &TiltCell, swing: &Swing) -> f64 {
+        let [turn, _] = self.turn;
+        let (&Lever { length, sin, cos }, &Swing { across: swing, most }) = (lever, swing);
         if length <= 0.0 || most <= 0.0 {
             return 0.0;
         }
         // J b is beta off the z axis; turned by R~ it is alpha off, from |theta - beta| to theta + beta.
-        let (sin, cos) = (across / length, about / length);
         let [(sin_near, cos_near), (sin_far, cos_far)] = tilt.ends;
         let nearest = if cos > cos_near {
             cos_near * cos + sin_near * sin
@@ -252,7 +279,7 @@ mod tests {
                     let turn = f64::from(parameters.heading.acceleration) * random.signed().signum();
                     let acceleration = Vector3::new(side.x, side.y, turn).cast::<f32>();
                     let moved = inertia.component_mul(&rotate_back(&error, &acceleration).cast());
-                    let part = b.dot(&moved).abs() / torques.swung(&b, &tilt, swing);
+                    let part = b.dot(&moved).abs() / torques.swung(&torques.lever(&b), &tilt, &torques.swing(swing));
                     swung[slow][kind] = swung[slow][kind].max(part);
                 }
                 for (part, close) in [(fed, 0.93), (swung[0], 0.99), (swung[1], 0.7)] {
