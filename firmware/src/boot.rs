@@ -3,7 +3,7 @@
 //! What was stored of parameters that the certificate depends on is part of it: see [`crate::parameters::tuned`]. If the vehicle cannot fly with
 //! them, each that was set is named.
 //!
-//! It takes two seconds or more on a Cortex-M4F (350 million instructions: double precision is software there), and more of the
+//! It takes two to six seconds on a Cortex-M4F (350 to 930 million instructions: double precision is software there), and more of the
 //! stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration boots as well: it answers,
 //! tests motors, and never arms, and says which inequality fails.
 
