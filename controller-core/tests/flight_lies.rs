@@ -152,6 +152,13 @@ fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only(
     for lied in [40, 100, 200] {
         assert_eq!(held_again(astray(), lied), None, "{lied}");
     }
+    // Nor does a frame that is said to have moved at the end of it make them true.
+    let end = hovering().inputs.now + 39 * PERIOD;
+    let moved: Told = Box::new(move |body, time| {
+        let pose = displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE);
+        Stamped { value: pose.value.reset_counter(u8::from(time >= end)), ..pose }
+    });
+    assert_eq!(held_again(moved, 40), None);
 }
 
 #[test]

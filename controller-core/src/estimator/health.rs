@@ -98,11 +98,11 @@ impl Statistics {
         }
         self.last = Some(verdict);
         match verdict {
-            // A pose that moves the frame agrees with nothing yet: those after it say whether it can be believed.
-            Ok(Taken::Waiting | Taken::Aligning | Taken::Rebased) => self.counts.0 = self.counts.0.saturating_add(1),
-            Ok(Taken::Fused | Taken::Started | Taken::Refound) => {
+            Ok(taken) => {
                 self.counts.0 = self.counts.0.saturating_add(1);
-                self.fused_at = self.fused_at.max(time);
+                if taken.is_believed() {
+                    self.fused_at = self.fused_at.max(time);
+                }
             }
             Err(_) => self.counts.1 = self.counts.1.saturating_add(1),
         }

@@ -4,6 +4,7 @@ use super::parameters::{
     AttitudeParameters, EstimateParameters, ExtendedParameters, HeadingParameters, PositionParameters,
 };
 use crate::allocation::{QuadX, Rotors};
+use crate::reference::ReferenceBounds;
 use crate::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
@@ -69,3 +70,14 @@ pub(crate) fn rotors() -> Rotors {
         QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
     Rotors::quad_x(quad).unwrap()
 }
+
+/// What it may be asked to fly.
+pub(crate) const REFERENCES: ReferenceBounds = ReferenceBounds {
+    horizontal_speed: 3.0,
+    horizontal_acceleration: 2.4675,
+    vertical_acceleration: 0.1755,
+    jerk: 3.876,
+    snap: 6.089,
+    heading_rate: 1.316,
+    heading_second_derivative: 1.7318,
+};

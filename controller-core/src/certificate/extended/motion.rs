@@ -109,7 +109,6 @@ mod tests {
     use super::*;
     use crate::extended::example;
     use crate::extended::parameters::Extended;
-    use crate::reference::ReferenceBounds;
     use nalgebra::Vector3;
 
     /// |omega_12|, |w| / n and (p / n) sqrt(4 r^2 / n^2 + `turn`^2), for u and its derivatives.
@@ -123,16 +122,7 @@ mod tests {
 
     fn reach() -> (Extended, Reach) {
         let parameters = Extended::new(example::PARAMETERS, &example::vehicle()).unwrap();
-        let references = ReferenceBounds {
-            horizontal_speed: 3.0,
-            horizontal_acceleration: 2.4675,
-            vertical_acceleration: 0.1755,
-            jerk: 3.876,
-            snap: 6.089,
-            heading_rate: 1.316,
-            heading_second_derivative: 1.7318,
-        };
-        let reach = Reach::new(&parameters, &references, 9.81);
+        let reach = Reach::new(&parameters, &example::REFERENCES, 9.81);
         (parameters, reach)
     }
 

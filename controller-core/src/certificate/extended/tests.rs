@@ -6,21 +6,11 @@ use crate::extended::parameters::{EstimateParameters, ExtendedParameters};
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-const REFERENCES: ReferenceBounds = ReferenceBounds {
-    horizontal_speed: 3.0,
-    horizontal_acceleration: 2.4675,
-    vertical_acceleration: 0.1755,
-    jerk: 3.876,
-    snap: 6.089,
-    heading_rate: 1.316,
-    heading_second_derivative: 1.7318,
-};
-
 #[test]
 fn every_rotor_has_a_row_and_weak_rotors_fail_theirs() {
     let vehicle = example::vehicle();
     let parameters = Extended::new(example::PARAMETERS, &vehicle).unwrap();
-    let references = REFERENCES;
+    let references = example::REFERENCES;
     let rotors = example::rotors();
     let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
     let limits = Limits::new(limits, &vehicle).unwrap();
@@ -83,12 +73,12 @@ fn feasible(references: ReferenceBounds, drag: f32) -> [Inequality; 5] {
 
 #[test]
 fn a_reference_is_feasible_with_its_drag_or_not_at_all() {
-    let (dragged, drag) = (feasible(REFERENCES, 0.5), 0.5);
+    let (dragged, drag) = (feasible(example::REFERENCES, 0.5), 0.5);
     let with_drag = ReferenceBounds {
         horizontal_acceleration: 2.4675 + drag * 3.0,
         jerk: 3.876 + drag * 2.4675,
         snap: 6.089 + drag * 3.876,
-        ..REFERENCES
+        ..example::REFERENCES
     };
     for (row, other) in dragged.iter().zip(feasible(with_drag, 0.0)) {
         assert!((row.required - other.required).abs() < 1e-5 && row.available == other.available, "{}", row.name);
@@ -99,6 +89,6 @@ fn a_reference_is_feasible_with_its_drag_or_not_at_all() {
     assert!(thrust.holds() && thrust.available == 40.0);
     // No faster than the heading itself only where rho stays upright.
     assert!(rate.required > 1.316 && acceleration.required > 1.7318);
-    let fast = ReferenceBounds { horizontal_acceleration: 75.0, ..REFERENCES };
+    let fast = ReferenceBounds { horizontal_acceleration: 75.0, ..example::REFERENCES };
     assert!(!feasible(fast, 0.0)[1].holds());
 }

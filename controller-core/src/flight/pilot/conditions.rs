@@ -88,9 +88,9 @@ impl Pilot<'_> {
     /// Remembers from when on poses have been refused for what they say, and until when, none having been believed since.
     fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {
         match pose {
-            Ok(_) => self.lies = None,
+            Ok(taken) if taken.is_believed() => self.lies = None,
             Err(rejected) if rejected.is_lie() => self.lies = Some((self.lies.map_or(now, |(first, _)| first), now)),
-            Err(_) => {}
+            Ok(_) | Err(_) => {}
         }
     }
 
