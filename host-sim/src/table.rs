@@ -22,7 +22,7 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
 #[must_use]
 pub fn short(value: f64) -> String {
     let magnitude = value.abs();
-    if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && magnitude < 1e6 {
+    if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && (0.5..1e6).contains(&magnitude) {
         format!("{value:.0}")
     } else if (1e-3..1e4).contains(&magnitude) {
         let decimals = (3 - magnitude.log10().floor() as i32).max(0) as usize;
@@ -51,8 +51,15 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
-        let cases =
-            [(0.0, "0"), (10.0, "10"), (1.234_56, "1.235"), (1234.56, "1235"), (1.5e-5, "1.50e-5"), (0.5, "0.5")];
+        let cases = [
+            (0.0, "0"),
+            (10.0, "10"),
+            (1.234_56, "1.235"),
+            (1234.56, "1235"),
+            (1.5e-5, "1.50e-5"),
+            (0.5, "0.5"),
+            (2e-10, "2.00e-10"),
+        ];
         for (value, text) in cases {
             assert_eq!(short(value), text);
         }

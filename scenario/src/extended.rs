@@ -12,6 +12,8 @@
 //! Every key is a field of [`ExtendedParameters`] under the same name; `docs/scenario-file.md` lists them.
 
 use crate::section::{FieldError, Section};
+use controller_core::certificate::configuration::ExtendedLaw;
+use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::parameters::{
     AttitudeParameters, EstimateParameters, Extended, ExtendedParameters, HeadingParameters, PositionParameters,
@@ -72,15 +74,35 @@ pub const ESTIMATES: [&str; 15] = [
     "scale_rate",
 ];
 
-/// Reads both sections for `vehicle` and ticks `period` seconds apart.
+/// Reads both sections for `vehicle`, rotors that respond as `actuators` says, and ticks `period` seconds apart.
 ///
 /// # Errors
 /// Names the field that is missing, unknown or refused.
-pub fn read_extended(root: &Section, vehicle: &Vehicle, period: f64) -> Result<Extended, FieldError> {
+pub fn read_extended(
+    root: &Section,
+    vehicle: &Vehicle,
+    actuators: ActuatorParameters,
+    period: f64,
+) -> Result<ExtendedLaw, FieldError> {
     let parameters = read_gains(&root.section("gains")?, read_estimates(root)?)?;
-    let extended = Extended::new(parameters, vehicle).map_err(|error| root.refused(&error))?;
-    Controller::check_period(&extended, period as f32).map_err(|error| root.refused(&error))?;
-    Ok(extended)
+    let parameters = Extended::new(parameters, vehicle).map_err(|error| root.refused(&error))?;
+    Controller::check_period(&parameters, period as f32).map_err(|error| root.refused(&error))?;
+    check_delay(root, &actuators, period)?;
+    Ok(ExtendedLaw { parameters, actuators })
+}
+
+/// Refuses a delay that the law's model of its actuators has no memory for.
+fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f64) -> Result<(), FieldError> {
+    const MOST: usize = DELAY_MAX - 1;
+    ActuatorModel::new(actuators, period as f32).map(|_| ()).map_err(|_| {
+        let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
+        let longest = MOST as f64 * period;
+        let problem = format!(
+            "under the extended law must be, both delays together, at most {MOST} control periods, {longest} s, found {} s",
+            actuators.delay
+        );
+        FieldError::new(field, problem)
+    })
 }
 
 fn read_gains(section: &Section, estimates: EstimateParameters) -> Result<ExtendedParameters, FieldError> {

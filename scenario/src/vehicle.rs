@@ -5,7 +5,7 @@
 
 use crate::extended::read_extended;
 use crate::section::{FieldError, Section};
-use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
@@ -25,8 +25,8 @@ pub fn read_configuration(
     let vehicle = read_vehicle(root)?;
     let limits = read_limits(root, &vehicle)?;
     let configuration = if is_extended(root)? {
-        let parameters = read_extended(root, &vehicle, period)?;
-        Configuration::extended(vehicle, limits, ExtendedLaw { parameters, actuators }, *bounds)
+        let law = read_extended(root, &vehicle, actuators, period)?;
+        Configuration::extended(vehicle, limits, law, *bounds)
     } else if root.has("estimates") {
         let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
         return Err(FieldError::new("estimates", problem));

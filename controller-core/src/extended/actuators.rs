@@ -17,6 +17,9 @@ const REMEMBERED: usize = 8;
 /// The greatest delay that is modelled, samples.
 pub const DELAY_MAX: usize = 4;
 
+/// What single precision may have done to a delay, samples.
+const ROUNDING: f64 = 1e-6;
+
 /// How a vehicle's wrench follows its commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorParameters {
@@ -100,11 +103,11 @@ impl ActuatorModel {
             require(value >= 0.0, field, Reason::Negative)?;
         }
         let longest = (DELAY_MAX - 1) as f32 * period;
-        require(delay <= longest, "sampling.delay", Reason::NotBelow(longest))?;
         let (lag, period) = (f64::from(lag), f64::from(period));
         let samples = f64::from(delay) / period;
-        // A delay of whole samples that rounding put just below is one.
-        let whole = math::floor(samples + 1e-6);
+        // A delay of whole samples that rounding put just below or above is one.
+        require(samples <= (DELAY_MAX - 1) as f64 + ROUNDING, "sampling.delay", Reason::NotBelow(longest))?;
+        let whole = math::floor(samples + ROUNDING);
         let late = (samples - whole).max(0.0) * period;
         // e(t), and the mean of e over t times t, which is the lag times 1 - e(t).
         let decay = |time: f64| if lag > 0.0 { math::exp(-time / lag) } else { 0.0 };
@@ -176,5 +179,11 @@ mod tests {
         assert_eq!(field(f32::INFINITY, 0.0), "rotors.lag");
         assert_eq!(field(0.0, f32::NAN), "sampling.delay");
         assert_eq!(field(0.0, 0.031), "sampling.delay");
+        // Three periods are not beyond it, whatever rounding makes of them.
+        for period_us in 1_u32..=100_000 {
+            let period = f64::from(period_us) * 1e-6;
+            let parameters = ActuatorParameters { lag: 0.0, delay: (3.0 * period) as f32 };
+            assert_eq!(ActuatorModel::new(&parameters, period as f32).unwrap().whole_delay, 3, "{period_us} us");
+        }
     }
 }

@@ -249,13 +249,12 @@ impl Extended {
         require(*floor_margin >= least, "gains.floor_margin", Reason::NotAbove(least))?;
         require(*floor_margin < Self::GREATEST, "gains.floor_margin", Reason::NotBelow(Self::GREATEST))?;
         require(a.alpha < 1.0, "gains.alpha", Reason::NotBelow(1.0))?;
-        require((0.0..1.0).contains(&a.ease), "gains.ease", Reason::NotBelow(1.0))?;
-        require(e.scale_least > 0.1 && e.scale_least <= 1.0, "estimates.scale_least", Reason::NotBelow(1.0))?;
-        require(
-            e.scale_greatest >= 1.0 && e.scale_greatest < 10.0,
-            "estimates.scale_greatest",
-            Reason::NotBelow(10.0),
-        )?;
+        require(a.ease >= 0.0, "gains.ease", Reason::Negative)?;
+        require(a.ease < 1.0, "gains.ease", Reason::NotBelow(1.0))?;
+        require(e.scale_least > 0.1, "estimates.scale_least", Reason::NotAbove(0.1))?;
+        require(e.scale_least <= 1.0, "estimates.scale_least", Reason::NotBelow(1.0))?;
+        require(e.scale_greatest >= 1.0, "estimates.scale_greatest", Reason::NotAbove(1.0))?;
+        require(e.scale_greatest < 10.0, "estimates.scale_greatest", Reason::NotBelow(10.0))?;
         let extended = Self(parameters);
         require(extended.greatest_fall() < vehicle.gravity, "gains.m_down", Reason::NotBelow(vehicle.gravity))?;
         Ok(extended)

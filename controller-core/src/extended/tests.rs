@@ -439,13 +439,16 @@ fn constants_out_of_their_range_are_refused_by_name() {
     assert_eq!(refused(&|p| p.attitude.m_t = 1e-30).field, "gains.m_t");
     assert_eq!(refused(&|p| p.attitude.eta_t = 1e-30).field, "gains.eta_t");
     assert_eq!(refused(&|p| p.attitude.delta = 1.5).field, "gains.delta");
-    let most = ParameterError { field: "gains.ease", reason: Reason::NotBelow(1.0) };
-    assert_eq!(refused(&|p| p.attitude.ease = 1.0), most);
     assert_eq!(refused(&|p| p.attitude.alpha = 1.0).field, "gains.alpha");
-    let most = ParameterError { field: "estimates.scale_least", reason: Reason::NotBelow(1.0) };
-    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1), most);
-    assert_eq!(refused(&|p| p.estimates.scale_greatest = 0.99).field, "estimates.scale_greatest");
-    assert_eq!(refused(&|p| p.estimates.scale_greatest = 10.0).field, "estimates.scale_greatest");
+    // What has two ends says which of them it is beyond.
+    let beyond = |field, reason| ParameterError { field, reason };
+    assert_eq!(refused(&|p| p.attitude.ease = 1.0), beyond("gains.ease", Reason::NotBelow(1.0)));
+    assert_eq!(refused(&|p| p.attitude.ease = -0.1), beyond("gains.ease", Reason::Negative));
+    let (least, greatest) = ("estimates.scale_least", "estimates.scale_greatest");
+    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1), beyond(least, Reason::NotBelow(1.0)));
+    assert_eq!(refused(&|p| p.estimates.scale_least = 0.05), beyond(least, Reason::NotAbove(0.1)));
+    assert_eq!(refused(&|p| p.estimates.scale_greatest = 0.99), beyond(greatest, Reason::NotAbove(1.0)));
+    assert_eq!(refused(&|p| p.estimates.scale_greatest = 10.0), beyond(greatest, Reason::NotBelow(10.0)));
     assert_eq!(refused(&|p| p.estimates.force_across = f32::NAN).field, "estimates.force_across");
     assert_eq!(refused(&|p| p.floor_margin = 0.0).field, "gains.floor_margin");
     // Below it the rounding of a rotor's thrust would show.

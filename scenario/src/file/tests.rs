@@ -2,6 +2,8 @@
 
 use super::*;
 use controller_core::certificate::Certificate;
+use controller_core::certificate::certified::Certified;
+use controller_core::law::Law;
 use nalgebra::Vector3;
 
 /// The paper's file without the section that starts with `head`.
@@ -93,4 +95,30 @@ fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
         let refused = Scenario::parse(&EXTENDED.replace(line, value), "f").err().unwrap();
         assert!(refused.to_string().contains(field), "{refused}");
     }
+}
+
+/// The extended law models commands on their way for three ticks; a delay beyond that is refused here as well, and not by `fly` what
+/// `certify` has certified.
+#[test]
+fn a_delay_that_the_extended_law_has_no_memory_for_is_refused_by_name() {
+    const STUDY_DELAY: &str = "delay = 0.010 ";
+    let at = |rate: &str, delay: &str| {
+        let text = crate::STUDY.replace("rate = 100.0 ", &format!("rate = {rate} "));
+        Scenario::parse(&text.replace(STUDY_DELAY, delay), "f")
+    };
+    for (rate, delay) in [("100.0", "delay = 0.030 "), ("500.0", "delay = 0.006 ")] {
+        let study = at(rate, delay).unwrap();
+        let certified = Certified::new(study.configuration).unwrap();
+        assert!(Law::new(&certified, study.timing.period() as f32).is_ok(), "{delay}");
+    }
+    for (delay, field) in [
+        (STUDY_DELAY, "sampling.delay"),
+        ("delay = 0.004\n[sensors]\ndelay = 0.004 ", "sampling.delay"),
+        ("delay = 0.0\n[sensors]\ndelay = 0.008 ", "sampling.delay"),
+    ] {
+        let refused = at("500.0", delay).err().unwrap().what;
+        assert!(refused.starts_with(field) && refused.contains("at most 3 control periods, 0.006 s"), "{refused}");
+    }
+    let without = crate::STUDY.replace("[sampling]", "[sensors]").replace(STUDY_DELAY, "delay = 0.040 ");
+    assert!(Scenario::parse(&without, "f").err().unwrap().what.starts_with("sensors.delay: "));
 }

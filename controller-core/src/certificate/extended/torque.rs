@@ -110,11 +110,14 @@ impl Torques {
         0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
     }
 
-    /// Greatest w eta q_3 / 2h for r of at least `near`: at q_0 = -qbar, or at q_0 = -(1 - r^2) / eta where that is nearer.
+    /// Greatest w eta q_3 / 2h for r of at least `near`: at q_0 = -qbar, or at q_0 = -(1 - r^2) / eta where that is nearer. Where the lift
+    /// switches only beyond q_0 = -eta, which no certificate allows, h is q_3 there.
     fn yawing(&self, near: f64) -> f64 {
         let [w, eta, ..] = self.attitude;
         let (rest, qbar) = (1.0 - near * near, self.qbar);
-        let square = if rest > eta * qbar {
+        let square = if qbar >= eta && rest >= eta * eta {
+            1.0
+        } else if rest > eta * qbar {
             (rest - qbar * qbar) / (rest + eta * eta - 2.0 * eta * qbar)
         } else {
             rest / (eta * eta)
@@ -240,11 +243,11 @@ mod tests {
         }
     }
 
-    /// The law's own torques, each cell of the tilt by itself: with a narrow hysteresis, and with one so wide that the greatest
-    /// yaw of a nearly inverted vehicle is no longer at the switch.
+    /// The law's own torques, each cell of the tilt by itself: with a narrow hysteresis, with one so wide that the greatest
+    /// yaw of a nearly inverted vehicle is no longer at the switch, and with one that no certificate allows.
     #[test]
     fn in_every_cell_of_the_tilt_no_torque_is_beyond_its_bound() {
-        for (eta, delta) in [(0.1, 0.02), (0.7, 1.0), (0.95, 1.0)] {
+        for (eta, delta) in [(0.1, 0.02), (0.7, 1.0), (0.95, 1.0), (0.3, 0.6), (0.1, 0.2)] {
             let attitude = AttitudeParameters { eta, delta, ..example::PARAMETERS.attitude };
             let parameters = ExtendedParameters { attitude, ..example::PARAMETERS };
             let parameters = Extended::new(parameters, &example::vehicle()).unwrap();
