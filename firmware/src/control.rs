@@ -232,6 +232,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             ready: outcome.ready == Some(Ok(())),
             is_airborne: outcome.is_airborne,
             state: outcome.estimated.map(|estimated| estimated.state),
+            may_fall: outcome.may_fall,
             health: outcome.health,
             imu_fault: inputs.imu_fault,
             motors_fail: inputs.motors_fail,

@@ -155,6 +155,11 @@ fn ground_and_air_are_told_apart() {
         let report = Report { mode, is_airborne, ..report() };
         assert_eq!(vehicle::extended_state(&report).landed_state, landed, "{mode:?}");
     }
+    // It was disarmed by force in the air.
+    for mode in [Mode::Checks, Mode::Ready] {
+        let report = Report { mode, is_airborne: false, may_fall: true, ..report() };
+        assert_eq!(vehicle::extended_state(&report).landed_state, MavLandedState::MAV_LANDED_STATE_UNDEFINED);
+    }
 }
 
 #[test]
