@@ -136,7 +136,10 @@ impl<'m> Pilot<'m> {
         let setpoint = inputs.setpoint.and_then(|setpoint| match self.mode {
             Mode::Flying => Some(self.accept(&setpoint)),
             // Somebody waits for a flight that it does not begin.
-            Mode::Idling if self.wanted_since.is_some() => self.check(&setpoint).err().map(Err),
+            Mode::Idling if self.wanted_since.is_some() => {
+                let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
+                may_begin.err().map(Err)
+            }
             _ => None,
         });
         let (output, flown) = self.output(estimate, inputs.now);
@@ -149,10 +152,10 @@ impl<'m> Pilot<'m> {
             ready,
             home: self.home(estimate),
             is_airborne: self.is_airborne(),
+            may_fall,
             setpoint,
             estimated: estimate.state,
             health: estimate.health,
-            may_fall,
             pose: estimate.pose,
             flown,
             is_thrust_doubtful: self.thrust_check.is_doubtful(scale, inputs.now),
