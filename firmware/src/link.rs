@@ -21,6 +21,7 @@
 //! itself, because matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the
 //! dialect does not know (a frame, a command, a type) is none.
 
+pub mod acknowledgement;
 pub mod command;
 mod commander;
 pub mod download;
@@ -32,12 +33,12 @@ pub mod port;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;
+pub mod set_mode;
 pub mod setpoint;
 pub mod streams;
 pub mod telemetry;
 pub mod time_sync;
 pub mod transmit;
-mod unknown;
 pub mod writer;
 
 /// MAV_COMP_ID_AUTOPILOT1: this component.
