@@ -166,7 +166,7 @@ fn a_ground_station_that_vanishes_leaves_the_vehicle_holding_its_position() {
     assert!((flight.world.pose().position - held).norm() < 0.02, "{held} {}", flight.world.pose().position);
     flight.station.fly_setpoints();
     flight.pass(0.1);
-    assert!(flight.station.heard("Refused: no setpoint in the last second").is_some());
+    assert!(flight.station.heard("Refused: no usable setpoint in the last second").is_some());
     flight.station.go_to([0.0, 0.0, 1.0]);
     flight.station.fly_setpoints();
     flight.pass(10.0);

@@ -9,6 +9,7 @@
 //! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `watch`: whether it follows, has landed, or lies on its back;
+//! - `fall`: whether a vehicle that was stopped in the air lies still again;
 //! - `fence`: how far it may go;
 //! - [`FlightSettings`]: what an operator may choose about failures;
 //! - `thrust_check`: whether the rotors give what they should;
@@ -30,6 +31,7 @@ mod estimate;
 #[cfg(test)]
 pub(crate) mod example;
 mod exchange;
+mod fall;
 mod fence;
 mod lasting;
 mod leaning;

@@ -10,7 +10,7 @@ use controller_core::flight::{
 };
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::{Flight, GROUND, go_to};
+use flight::{Flight, GROUND, SPOOLING, go_to};
 
 /// On its way to a far point, turning.
 fn under_way() -> Flight {
@@ -112,6 +112,39 @@ fn a_pose_regained_within_the_second_is_flown_from_and_the_vehicle_brakes_and_ho
     assert_eq!(flight.tick().setpoint, None);
     flight.inputs.request = Some(Request::FlySetpoints);
     assert_eq!(flight.tick().mode, Mode::Flying);
+}
+
+#[test]
+fn stopped_in_the_air_it_is_not_said_to_lie_on_the_ground_before_it_does() {
+    for kill in [false, true] {
+        let mut flight = Flight::armed();
+        flight.ground = flight.body.position.z - 20.0;
+        (flight.inputs.disarm, flight.inputs.killed) = (!kill, kill);
+        let stopped = flight.tick();
+        assert!(stopped.output == Output::Stop && !stopped.is_airborne && stopped.may_fall);
+        // Whoever disarms what was killed has not caught it.
+        flight.inputs.request = kill.then_some(Request::Disarm);
+        assert!(flight.tick().mode.may_arm());
+        while flight.body.position.z > flight.ground {
+            assert!(flight.tick().may_fall, "{}", flight.body.position.z);
+        }
+        assert!(flight.ticks(30).may_fall);
+        assert!(!flight.ticks(60).may_fall && !flight.ticks(100).may_fall);
+    }
+}
+
+#[test]
+fn what_was_never_in_the_air_or_landed_does_not_fall() {
+    let mut flight = Flight::idling();
+    flight.inputs.request = Some(Request::TakeOff(None));
+    flight.ticks(SPOOLING / 2);
+    flight.inputs.disarm = true;
+    assert!(!flight.tick().may_fall);
+    let mut flight = Flight::armed();
+    flight.ground = 0.5;
+    flight.inputs.request = Some(Request::Land);
+    while flight.tick().mode.is_armed() {}
+    assert!(!flight.tick().may_fall);
 }
 
 #[test]

@@ -319,7 +319,14 @@ fn what_cannot_be_done_in_the_air_is_refused_there() {
         assert_eq!(answer(&mut flight, request), Err(Refusal::MustLand));
     }
     flight.inputs.battery = Battery::Critical;
-    assert_eq!(answer(&mut flight, Request::FlySetpoints), Err(Refusal::NotInTheAir));
+    assert_eq!(answer(&mut flight, Request::FlySetpoints), Err(Refusal::Landing));
+    // Nor does a vehicle that goes down by the IMU hold: it is in the air, and knows not where.
+    let mut flight = Flight::armed();
+    flight.present.pose = false;
+    flight.until(controller_core::flight::Reason::PoseLost, 120);
+    for request in [Request::Hold, Request::GoTo(go_to(0.0, 0.0, 2.0)), Request::FlySetpoints] {
+        assert_eq!(answer(&mut flight, request), Err(Refusal::WithoutPose), "{request:?}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod flight;
 
 use controller_core::flight::rules::SETPOINTS_WANTED_MAX;
-use controller_core::flight::{Mode, Outcome, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
+use controller_core::flight::{Battery, Mode, Outcome, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, go_to};
@@ -47,6 +47,17 @@ fn idling_with_setpoints_wanted() -> Flight {
 #[test]
 fn setpoints_asked_for_before_arming_are_flown_from_arming_on() {
     let mut flight = idling_with_setpoints_wanted();
+    assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
+}
+
+#[test]
+fn a_flight_that_was_granted_and_may_not_begin_is_told_why() {
+    let mut flight = idling_with_setpoints_wanted();
+    for _ in 0..10 {
+        flight.inputs.battery = Battery::Missing;
+        let outcome = stream(&mut flight, go_to(0.0, 0.0, 2.0), 1);
+        assert_eq!((outcome.mode, outcome.setpoint), (Mode::Idling, Some(Err(Refusal::BatteryMissing))));
+    }
     assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
 }
 

@@ -108,7 +108,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
-            self.shared.commander.put(asked.and_then(|asked| asked.sender), now);
+            let sender = asked.and_then(|asked| asked.sender);
+            self.shared.commander.put(sender.map(|(system, _)| system), now);
         }
         self.tell(&outcome, asked);
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
@@ -167,8 +168,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
 
     /// Answers, transitions and refusals.
     fn tell(&mut self, outcome: &Outcome, asked: Option<Asked>) {
-        if let (Some(Asked { command, .. }), Some(result)) = (asked, outcome.answer) {
-            self.shared.answer(command, result);
+        if let (Some(asked), Some(result)) = (asked, outcome.answer) {
+            self.shared.answer(&asked, result);
         }
         // That it is ready, or not, the heartbeat says: on the bench that may change many times.
         if let Some(Transition { reason, .. }) = outcome.transition
@@ -231,6 +232,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             mode: outcome.mode,
             ready: outcome.ready == Some(Ok(())),
             is_airborne: outcome.is_airborne,
+            may_fall: outcome.may_fall,
             state: outcome.estimated.map(|estimated| estimated.state),
             health: outcome.health,
             imu_fault: inputs.imu_fault,

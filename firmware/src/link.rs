@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`frame`] | frames in a stream of bytes |
 //! | [`receive`] | what comes in, message by message |
-//! | [`pose`], [`setpoint`], [`command`] | what the messages that matter for flight mean |
+//! | [`pose`], [`setpoint`], [`command`], [`set_mode`] | what the messages that matter for flight mean |
 //! | [`sender_clock`], [`time_sync`] | when a pose was true, on the vehicle's clock |
 //! | [`transmit`] | what goes out, and when |
 //! | [`streams`] | which messages go out by the clock, and how often |
@@ -13,14 +13,16 @@
 //! | [`download`] | the list of logs, and a log, part by part |
 //! | [`port`] | which of two lines it is on |
 //! | [`plans`], [`files`] | answers to clients that ask for missions and files |
+//! | [`acknowledgement`] | answers to commands |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames of
-//! both protocol versions are understood, version 2 is sent, without extension fields but one ([`plans`]). Nothing is signed: whoever is on the line
+//! both protocol versions are understood, version 2 is sent, without extension fields but those of [`plans`] and [`acknowledgement`]. Nothing is signed: whoever is on the line
 //! commands. What a message's fields are is the `mavlink` crate's to say: only the types that matter here are decoded, each by
 //! itself, because matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the
 //! dialect does not know (a frame, a command, a type) is none.
 
+pub mod acknowledgement;
 pub mod command;
 mod commander;
 pub mod download;
@@ -32,12 +34,12 @@ pub mod port;
 pub mod pose;
 pub mod receive;
 pub mod sender_clock;
+pub mod set_mode;
 pub mod setpoint;
 pub mod streams;
 pub mod telemetry;
 pub mod time_sync;
 pub mod transmit;
-mod unknown;
 pub mod writer;
 
 /// MAV_COMP_ID_AUTOPILOT1: this component.

@@ -52,7 +52,7 @@ pub use flag::Flag;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
-pub use reply::{Asked, MissionList, Ping, Procedure, Reply};
+pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
 use crate::link::origin::Origin;
@@ -65,7 +65,7 @@ use controller_core::imu::ImuFault;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
-use mavlink::dialects::common::{MavCmd, MavResult};
+use mavlink::dialects::common::MavResult;
 
 /// Requests that wait for control, which takes one a tick.
 pub const REQUESTS: usize = 4;
@@ -93,8 +93,8 @@ pub struct Shared<M: RawMutex> {
     pub imu_fault: Latest<M, ImuFault>,
     /// What the inertial samples add up to, in order. Put them in with [`Self::increment`].
     pub increments: Queue<M, Increment, INCREMENTS>,
-    /// Calibrations that somebody asked for; none ends what is under way.
-    pub calibrations: Queue<M, Option<Procedure>, CALIBRATIONS>,
+    /// Calibrations that somebody asked for.
+    pub calibrations: Queue<M, Calibration, CALIBRATIONS>,
     /// Poses in the order in which they came, with the times at which they were true. Without room a pose is dropped: the next will do.
     pub poses: Queue<M, Stamped<PoseMeasurement>, POSES>,
     /// Its time says when a ground station was last heard.
@@ -229,21 +229,22 @@ impl<M: RawMutex> Shared<M> {
 
     /// Disarms within one tick, in the air as well. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
     pub fn request_disarm(&self) {
-        while let Some(Asked { command, .. }) = self.requests.take() {
-            self.answer(command, Err(Refusal::DisarmCommanded));
+        while let Some(asked) = self.requests.take() {
+            self.answer(&asked, Err(Refusal::DisarmCommanded));
         }
         self.disarm.raise();
     }
 
     /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its sender asks again for want of
     /// one.
-    pub fn answer(&self, command: Option<MavCmd>, result: Result<(), Refusal>) {
+    pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
         if let Err(refusal) = result {
             self.announce(Event::Refused(refusal));
         }
-        let Some(command) = command else { return };
+        let Some(command) = asked.command else { return };
         let result = if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED };
-        let _ = self.answers.put(Reply::Command { command, result });
+        let sender = asked.sender.unwrap_or_default();
+        let _ = self.answers.put(Reply::Command { command, result, sender });
         self.outgoing.signal(());
     }
 

@@ -107,6 +107,8 @@ pub struct Outcome {
     pub home: Option<Vector3<f32>>,
     /// Whether the vehicle has left the ground where it was armed, and has not landed.
     pub is_airborne: bool,
+    /// Whether its motors were stopped in the air, and nothing says yet that it lies still.
+    pub may_fall: bool,
     /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited for.
     pub setpoint: Option<Result<(), Refusal>>,
     /// The state at this tick, while there is one.

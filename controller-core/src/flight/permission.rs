@@ -42,7 +42,17 @@ pub(super) fn to_turn_motors(mode: Mode) -> Result<(), Refusal> {
 pub(super) fn to_hold(mode: Mode, must_land: bool) -> Result<(), Refusal> {
     match mode {
         Mode::Landing if must_land => Err(Refusal::MustLand),
+        Mode::Descending => Err(Refusal::WithoutPose),
         _ => require(mode.is_guided(), Refusal::NotInTheAir),
+    }
+}
+
+/// Flying setpoints: from now on, or from arming on; not in place of a landing, which somebody has to end first.
+pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Landing => Err(Refusal::Landing),
+        Mode::Descending => Err(Refusal::WithoutPose),
+        _ => require(mode.may_arm() || mode == Mode::Idling || mode.is_guided(), Refusal::NotInTheAir),
     }
 }
 

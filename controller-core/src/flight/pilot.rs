@@ -8,6 +8,7 @@ use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Outcome, Output, PERIOD};
+use super::fall::Fall;
 use super::fence::Fence;
 use super::reason::Reason;
 use super::refusal::Grounded;
@@ -32,6 +33,7 @@ pub struct Pilot<'m> {
     since: u64,
     estimation: Estimation<'m>,
     watch: Watch,
+    fall: Fall,
     fence: Fence,
     /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle without a pose has
     /// levelled.
@@ -70,6 +72,7 @@ impl<'m> Pilot<'m> {
             since: 0,
             estimation: Estimation::new(estimator),
             watch: Watch::default(),
+            fall: Fall::default(),
             fence: Fence::new(&settings),
             lies: None,
             bench: Bench::NONE,
@@ -123,13 +126,20 @@ impl<'m> Pilot<'m> {
             .with(Condition::ChecksPass, ready == Some(Ok(())))
             .with(Condition::ChecksFail, ready != Some(Ok(())));
         let transition = rules::transition(self.mode, conditions);
+        let was_airborne = self.is_airborne();
         if let Some(transition) = transition {
             self.enter(&transition, inputs, estimate);
         }
+        let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
+        let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
+        let may_fall = self.fall.tick(is_stopped, estimate.state.as_ref(), inputs.now);
         let setpoint = inputs.setpoint.and_then(|setpoint| match self.mode {
             Mode::Flying => Some(self.accept(&setpoint)),
             // Somebody waits for a flight that it does not begin.
-            Mode::Idling if self.wanted_since.is_some() => self.check(&setpoint).err().map(Err),
+            Mode::Idling if self.wanted_since.is_some() => {
+                let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
+                may_begin.err().map(Err)
+            }
             _ => None,
         });
         let (output, flown) = self.output(estimate, inputs.now);
@@ -142,6 +152,7 @@ impl<'m> Pilot<'m> {
             ready,
             home: self.home(estimate),
             is_airborne: self.is_airborne(),
+            may_fall,
             setpoint,
             estimated: estimate.state,
             health: estimate.health,
@@ -197,7 +208,11 @@ impl<'m> Pilot<'m> {
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {
-            (Mode::Idling, _) => self.fence.place(&chain.reference().position),
+            (Mode::Idling, _) => {
+                self.fence.place(&chain.reference().position);
+                // What is armed was at rest.
+                self.fall = Fall::default();
+            }
             (Mode::Flying, _) => {
                 if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
                     // It was checked when it came.

@@ -86,9 +86,13 @@ pub enum Refusal {
     NotIdling,
     /// Only in the air there is somewhere to hold or land.
     NotInTheAir,
+    /// A landing goes on until somebody has the vehicle hold.
+    Landing,
+    /// It goes down by the IMU alone, and knows of no place to hold or fly to.
+    WithoutPose,
     /// What made it land is still so.
     MustLand,
-    /// No setpoint came in the last second.
+    /// No setpoint that may be flown came in the last second.
     NoSetpoints,
     /// A height of no take-off: not in 0.5 m to 50 m.
     TakeOffHeight,
@@ -143,8 +147,10 @@ impl fmt::Display for Refusal {
             Self::InTheAir => "Refused: in the air; land, or disarm by force",
             Self::NotIdling => "Refused: arm on the ground first",
             Self::NotInTheAir => "Refused: not in the air",
+            Self::Landing => "Refused: it lands; let it hold first",
+            Self::WithoutPose => "Refused: without a pose it can only go down",
             Self::MustLand => "Refused: what made it land is still so",
-            Self::NoSetpoints => "Refused: no setpoint in the last second",
+            Self::NoSetpoints => "Refused: no usable setpoint in the last second",
             Self::TakeOffHeight => "Refused: take-off height not in 0.5 to 50 m",
             Self::OutsideFence => "Refused: outside the fence",
             Self::MotorTestRunning => "Refused: a motor test was running",

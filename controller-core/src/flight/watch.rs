@@ -211,7 +211,8 @@ impl Watch {
     }
 }
 
-fn is_still(state: &EstimatedState) -> bool {
+/// Whether it neither moves nor turns, at this moment.
+pub(super) fn is_still(state: &EstimatedState) -> bool {
     let (speed, rate) = STILL;
     within(&state.state.velocity, speed) && within(&state.state.angular_velocity, rate)
 }

@@ -57,8 +57,8 @@ impl Findings {
 /// A calibration under way.
 struct Job {
     procedure: Procedure,
-    /// Somebody waits for the result.
-    is_asked: bool,
+    /// Who waits for the result, if anybody does: system and component.
+    asker: Option<(u8, u8)>,
     /// When it has taken too long, us.
     until: u64,
     /// Of the first and of the second sensor.
@@ -71,10 +71,10 @@ struct Job {
 }
 
 impl Job {
-    fn new(procedure: Procedure, is_asked: bool, now: u64) -> Self {
+    fn new(procedure: Procedure, asker: Option<(u8, u8)>, now: u64) -> Self {
         let within = if procedure == Procedure::SixSides { SIDE_WITHIN } else { STANDSTILL_WITHIN };
         let findings = Default::default();
-        Self { procedure, is_asked, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
+        Self { procedure, asker, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
     }
 }
 
@@ -98,7 +98,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
     /// Begins with what was kept, and with the gyro's bias of today.
     pub fn new(shared: &'a Shared<M>, now: u64) -> Self {
         let calibrations = [Unit::First, Unit::Second].map(|unit| calibration::load(&shared.parameters, unit));
-        Self { shared, calibrations, job: Some(Job::new(Procedure::Gyro, false, now)) }
+        Self { shared, calibrations, job: Some(Job::new(Procedure::Gyro, None, now)) }
     }
 
     /// What corrects a sensor's samples.
@@ -117,27 +117,28 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Takes up what was asked for, and gives up what may not go on.
     pub fn listen(&mut self, now: u64) {
-        while let Some(asked) = self.shared.calibrations.take() {
-            match asked {
+        while let Some((asked, sender)) = self.shared.calibrations.take() {
+            let result = match asked {
                 None => {
                     self.fail("Calibration: ended by command");
-                    self.answer(MavResult::MAV_RESULT_ACCEPTED);
+                    MavResult::MAV_RESULT_ACCEPTED
                 }
-                Some(_) if self.job.as_ref().is_some_and(|job| job.is_asked) => {
-                    self.answer(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+                Some(_) if self.job.as_ref().is_some_and(|job| job.asker.is_some()) => {
+                    MavResult::MAV_RESULT_TEMPORARILY_REJECTED
                 }
                 Some(procedure) => {
-                    self.job = Some(Job::new(procedure, true, now));
-                    self.answer(MavResult::MAV_RESULT_IN_PROGRESS);
+                    self.job = Some(Job::new(procedure, Some(sender), now));
+                    MavResult::MAV_RESULT_IN_PROGRESS
                 }
-            }
+            };
+            self.answer(sender, result);
         }
         let Some(job) = &self.job else { return };
         if self.shared.is_armed() {
             self.fail("Calibration: ended by arming");
         } else if self.shared.hil.is_raised() {
             self.fail("Calibration: a simulator has the sensors");
-        } else if job.is_asked && now >= job.until {
+        } else if job.asker.is_some() && now >= job.until {
             self.fail("Calibration: took too long");
         }
     }
@@ -169,7 +170,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         match rest {
             Ok(_) => self.conclude(unit, &rests, sample.time),
             Err(moved) => {
-                if job.is_asked && job.procedure != Procedure::SixSides {
+                if job.asker.is_some() && job.procedure != Procedure::SixSides {
                     self.fail(moved);
                 }
                 false
@@ -207,7 +208,9 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 self.shared.announce(Event::new(Severity::Warning, refused));
             }
         }
-        if let Some(job) = self.job.take().filter(|job| job.is_asked) {
+        if let Some(job) = self.job.take()
+            && let Some(asker) = job.asker
+        {
             if job.standby.is_some() && found.contains(&None) {
                 self.shared.announce(Event::new(Severity::Warning, "Calibration: not of the IMU that stands by"));
             }
@@ -217,7 +220,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 Procedure::Level => "Level calibrated",
             };
             self.shared.announce(Event::new(Severity::Information, words));
-            self.answer(MavResult::MAV_RESULT_ACCEPTED);
+            self.answer(asker, MavResult::MAV_RESULT_ACCEPTED);
         }
         true
     }
@@ -254,13 +257,13 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Ends what is under way, and says why to whoever asked for it.
     fn fail(&mut self, words: impl Display) {
-        if self.job.take().is_some_and(|job| job.is_asked) {
+        if let Some(asker) = self.job.take().and_then(|job| job.asker) {
             self.shared.announce(Event::new(Severity::Warning, words));
-            self.answer(MavResult::MAV_RESULT_FAILED);
+            self.answer(asker, MavResult::MAV_RESULT_FAILED);
         }
     }
 
-    fn answer(&self, result: MavResult) {
-        self.shared.reply(Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result });
+    fn answer(&self, sender: (u8, u8), result: MavResult) {
+        self.shared.reply(Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result, sender });
     }
 }

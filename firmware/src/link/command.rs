@@ -1,4 +1,4 @@
-//! Commands: COMMAND_LONG and COMMAND_INT, and what this vehicle makes of them.
+//! Commands: COMMAND_LONG and COMMAND_INT, and SET_MODE, which means 176; and what this vehicle makes of them.
 //!
 //! | command | does |
 //! |---|---|
@@ -18,6 +18,7 @@
 
 use super::frame::{Frame, Header};
 use super::origin::{Origin, Place};
+use super::set_mode::SetMode;
 use super::streams;
 use super::telemetry::kind::Kind;
 use super::telemetry::vehicle;
@@ -65,8 +66,8 @@ pub enum Action {
     Restart,
     /// Restart it into a bootloader.
     StartBootloader,
-    /// Say this, and that the command is not supported.
-    Unsupported(&'static str),
+    /// Say this, and answer so.
+    Refuse(MavResult, &'static str),
     /// Calibrate, or end a calibration; the IMU task answers.
     Calibrate(Option<Procedure>),
     /// Only answer.
@@ -92,6 +93,14 @@ impl From<&COMMAND_LONG_DATA> for Call {
     fn from(message: &COMMAND_LONG_DATA) -> Self {
         let &COMMAND_LONG_DATA { command, param1, param2, param3, param4, param5, param6, param7, .. } = message;
         Self { command, parameters: [param1, param2, param3, param4, param5, param6, param7], place: None }
+    }
+}
+
+impl From<&SetMode> for Call {
+    fn from(message: &SetMode) -> Self {
+        let [base, main, sub] = [message.base, message.main, message.sub].map(f32::from);
+        let command = MavCmd::MAV_CMD_DO_SET_MODE;
+        Self { command, parameters: [base, main, sub, 0.0, 0.0, 0.0, 0.0], place: None }
     }
 }
 
@@ -176,7 +185,7 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     // Of a yaw that counts from where the vehicle points only none is understood: no turn.
     let is_relative = flags as u32 & RELATIVE_YAW != 0;
     if is_relative && yaw.is_finite() && yaw != 0.0 {
-        return Action::Unsupported("Reposition: yaw from north only");
+        return unsupported("Reposition: yaw from north only");
     }
     let turn = if yaw.is_finite() && !is_relative {
         Turn::Angle { angle: frames::heading(yaw), rate: 0.0 }
@@ -187,6 +196,10 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
 }
 
 const DENIED: Action = Action::Answer(MavResult::MAV_RESULT_DENIED);
+
+const fn unsupported(words: &'static str) -> Action {
+    Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
+}
 
 /// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative times
 /// become zero, which is refused as well.
@@ -227,11 +240,11 @@ fn motor(number: f32) -> Option<usize> {
 fn restart(call: &Call) -> Action {
     let [autopilot, companion, component, ..] = call.parameters;
     match autopilot {
-        _ if companion != 0.0 || component != 0.0 => Action::Unsupported("Restart: there is only the autopilot"),
+        _ if companion != 0.0 || component != 0.0 => unsupported("Restart: there is only the autopilot"),
         0.0 => Action::Answer(MavResult::MAV_RESULT_ACCEPTED),
         1.0 => Action::Restart,
         3.0 => Action::StartBootloader,
-        _ => Action::Unsupported("Restart: parameter 1 is 1 or 3, nothing else"),
+        _ => unsupported("Restart: parameter 1 is 1 or 3, nothing else"),
     }
 }
 
@@ -252,12 +265,15 @@ fn calibration(call: &Call) -> Action {
     Action::Calibrate(procedure)
 }
 
+/// What clients hear that have other numbers, ArduPilot's say.
+const NO_MODE: Action = Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only");
+
 /// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a simulator and the
 /// guided flag for flight by setpoints.
 fn set_mode(call: &Call, armed: bool) -> Action {
     let [base, main, sub, ..] = call.parameters;
     if !(0.0..=255.0).contains(&base) {
-        return DENIED;
+        return NO_MODE;
     }
     let base = MavModeFlag::from_bits_retain(base as u8);
     if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
@@ -266,14 +282,14 @@ fn set_mode(call: &Call, armed: bool) -> Action {
             (AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
             (AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
             (AUTO, AUTO_LAND) => Action::Ask(Request::Land),
-            _ => DENIED,
+            _ => NO_MODE,
         };
     }
     if base.contains(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED) {
         return if armed { DENIED } else { Action::EnterHil };
     }
     let guided = base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED);
-    if guided { Action::Ask(Request::FlySetpoints) } else { DENIED }
+    if guided { Action::Ask(Request::FlySetpoints) } else { NO_MODE }
 }
 
 /// Knows a command that was delivered twice.

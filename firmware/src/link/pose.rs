@@ -45,6 +45,8 @@ pub enum PoseRefusal {
     Repeated,
     /// It was under way for more than [`LATE_MAX`], says TIMESYNC.
     Late,
+    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC nobody knows.
+    LateOrSet,
     /// Another source is being listened to.
     SecondSource,
 }
@@ -56,6 +58,7 @@ impl fmt::Display for PoseRefusal {
             Self::Frame => f.write_str("use LOCAL_NED and BODY_FRD"),
             Self::Repeated => f.write_str("its time does not advance"),
             Self::Late => f.write_str("more than 0.5 s late"),
+            Self::LateOrSet => f.write_str("0.5 s late; let it answer TIMESYNC"),
             Self::SecondSource => f.write_str("another source is in use"),
         }
     }
@@ -141,6 +144,7 @@ impl Poses {
             return Err(PoseRefusal::Late);
         }
         let begun = source.clock.as_ref().map(SenderClock::begun);
+        let advances = source.clock.as_ref().is_some_and(|clock| clock.advances(time));
         let stamp = match &mut source.clock {
             _ if time == 0 => Some(frame.time),
             Some(clock) => clock.stamp(time, frame.time),
@@ -154,7 +158,8 @@ impl Poses {
         }
         let synchronised = source.delay(time);
         let delay = synchronised.unwrap_or(delay);
-        let stamp = stamp.map(|stamp| stamp.saturating_sub(delay)).ok_or(PoseRefusal::Repeated)?;
+        let refusal = if advances { PoseRefusal::LateOrSet } else { PoseRefusal::Repeated };
+        let stamp = stamp.map(|stamp| stamp.saturating_sub(delay)).ok_or(refusal)?;
         // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
         if source.stamped.is_some_and(|last| stamp <= last) {
             // Better knowledge of the delay sets stamps back: nothing that its sender could help.

@@ -9,6 +9,7 @@ use super::command::Repetitions;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
 use super::pose::Poses;
+use super::set_mode::SetMode;
 use super::setpoint::{Here, setpoint};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
@@ -18,6 +19,7 @@ use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
 use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
+use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use mavlink::MessageData;
@@ -61,6 +63,8 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
                 let now = clock.now();
                 parser.feed(chunk.get(..count).unwrap_or(&chunk), now, &mut |frame| receiver.take(frame));
                 receiver.count(parser.discarded(), now);
+                // A burst has more questions than answers can wait: the other half sends them in between.
+                yield_now().await;
             }
             // A line that ended or failed may come back, but must not take all the time there is.
             Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
@@ -136,6 +140,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
             COMMAND_LONG_DATA::ID => self.command(frame, frame.decode::<COMMAND_LONG_DATA>().as_ref()),
             COMMAND_INT_DATA::ID => self.command(frame, frame.decode::<COMMAND_INT_DATA>().as_ref()),
+            SetMode::ID => self.command(frame, Some(&SetMode::of(frame))),
             SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.decoded(frame, Self::set_origin),
             MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
             MISSION_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::mission_list),

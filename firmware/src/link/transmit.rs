@@ -2,6 +2,7 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
+use super::acknowledgement::Acknowledgement;
 use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::origin::Origin;
@@ -10,7 +11,6 @@ use super::streams::{Schedule, interval_of_rate};
 use super::telemetry::kind::Kind;
 use super::telemetry::{View, vehicle};
 use super::time_sync;
-use super::unknown::UnknownCommand;
 use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
@@ -21,7 +21,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_ACK_DATA, LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA,
+    LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavResult,
 };
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
@@ -166,8 +166,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
-            Reply::Command { command, result } => self.say(&COMMAND_ACK_DATA { command, result }),
-            Reply::UnknownCommand(number) => self.say(&UnknownCommand(number)),
+            Reply::Command { command, result, sender } => {
+                self.say(&Acknowledgement { command: command as u16, result, target: sender });
+            }
+            Reply::UnknownCommand { command, sender } => {
+                let result = MavResult::MAV_RESULT_UNSUPPORTED;
+                self.say(&Acknowledgement { command, result, target: sender });
+            }
             Reply::Ping(ping) => self.say(&ping),
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),

@@ -17,9 +17,12 @@ pub struct Asked {
     pub request: Request,
     /// The command it came by, if it was one.
     pub command: Option<MavCmd>,
-    /// The system that sent it, if it came over the link.
-    pub sender: Option<u8>,
+    /// The system and the component that sent it, if it came over the link.
+    pub sender: Option<(u8, u8)>,
 }
+
+/// A calibration to be begun, or the end of the one under way; and who asked, to be answered: system and component.
+pub type Calibration = (Option<Procedure>, (u8, u8));
 
 /// What is to be calibrated of the inertial sensors: see [`crate::imu`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,9 +55,16 @@ pub enum Reply {
         command: MavCmd,
         /// With what.
         result: MavResult,
+        /// Who sent it: system and component.
+        sender: (u8, u8),
     },
     /// COMMAND_ACK: unsupported, of a number that the dialect does not have.
-    UnknownCommand(u16),
+    UnknownCommand {
+        /// The number.
+        command: u16,
+        /// Who sent it: system and component.
+        sender: (u8, u8),
+    },
     /// PING, sent back.
     Ping(Ping),
     /// TIMESYNC: the time of day.

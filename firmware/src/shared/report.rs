@@ -18,6 +18,8 @@ pub struct Report {
     pub ready: bool,
     /// Whether the vehicle has left the ground.
     pub is_airborne: bool,
+    /// Whether it was stopped in the air, and nothing says yet that it lies still.
+    pub may_fall: bool,
     /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
     /// What that is worth.
@@ -44,6 +46,7 @@ impl Report {
         mode: Mode::Boot,
         ready: false,
         is_airborne: false,
+        may_fall: false,
         state: None,
         health: Health::NONE,
         imu_fault: None,

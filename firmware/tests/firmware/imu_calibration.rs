@@ -14,6 +14,9 @@ use firmware::shared::{Procedure, Reply};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
 
+/// Whoever asks: system and component.
+const ASKER: (u8, u8) = (255, 190);
+
 /// Two sensors as wrong as data sheets allow.
 const FIRST: Wrong = Wrong {
     bias: Vector3::new(0.01, -0.02, 0.005),
@@ -36,7 +39,7 @@ fn sides() -> [Vector3<f32>; 6] {
 fn results(shared: &Local) -> Vec<MavResult> {
     let replies = std::iter::from_fn(|| shared.replies.take());
     let result = |reply| match reply {
-        Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result } => result,
+        Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result, sender: ASKER } => result,
         other => panic!("{other:?}"),
     };
     replies.map(result).collect()
@@ -105,7 +108,7 @@ fn a_gyro_calibration_that_was_asked_for_is_answered_twice() {
     let (body, shared) = (Body::new(), Local::new());
     run(&body, &shared, 4, |now| {
         if now == 100_000 {
-            shared.calibrations.put(Some(Procedure::Gyro)).unwrap();
+            shared.calibrations.put((Some(Procedure::Gyro), ASKER)).unwrap();
         }
         if now == 200_000 {
             assert_eq!(results(&shared), [MavResult::MAV_RESULT_IN_PROGRESS]);
@@ -139,13 +142,17 @@ fn what_goes_wrong_is_answered_in_words_and_changes_nothing() {
             |body, _, _| body.up.set(Vector3::new(0.1, 0.0, 1.0) * GRAVITY),
             "Calibration: tilted, or offset over 0.8 m/s^2",
         ),
-        (Procedure::SixSides, |_, shared, _| shared.calibrations.put(None).unwrap(), "Calibration: ended by command"),
+        (
+            Procedure::SixSides,
+            |_, shared, _| shared.calibrations.put((None, ASKER)).unwrap(),
+            "Calibration: ended by command",
+        ),
     ];
     for (procedure, disturb, words) in cases {
         let (body, shared) = (Body::new(), Local::new());
         run(&body, &shared, 9, |now| {
             if now == 1_500_000 {
-                shared.calibrations.put(Some(procedure)).unwrap();
+                shared.calibrations.put((Some(procedure), ASKER)).unwrap();
             }
             if now == 1_501_000 {
                 disturb(&body, &shared, now);
@@ -169,9 +176,9 @@ fn one_calibration_at_a_time() {
     let (body, shared) = (Body::new(), Local::new());
     run(&body, &shared, 4, |now| {
         if now == 1_500_000 {
-            shared.calibrations.put(Some(Procedure::Gyro)).unwrap();
-            shared.calibrations.put(Some(Procedure::Level)).unwrap();
-            assert!(shared.calibrations.put(None).is_err());
+            shared.calibrations.put((Some(Procedure::Gyro), ASKER)).unwrap();
+            shared.calibrations.put((Some(Procedure::Level), ASKER)).unwrap();
+            assert!(shared.calibrations.put((None, ASKER)).is_err());
         }
     });
     use MavResult::{MAV_RESULT_ACCEPTED, MAV_RESULT_IN_PROGRESS, MAV_RESULT_TEMPORARILY_REJECTED};
@@ -184,7 +191,7 @@ fn six_sides_and_a_level_calibrate_both_accelerometers() {
     // Sensors that sit 2 degrees askew in the vehicle.
     let askew = Vector3::new(0.035, 0.0, 0.999_39) * GRAVITY;
     run_both(&body, &shared, 60, |now| match now / 1_000 {
-        2_500 => shared.calibrations.put(Some(Procedure::SixSides)).unwrap(),
+        2_500 => shared.calibrations.put((Some(Procedure::SixSides), ASKER)).unwrap(),
         // Each side for 6 s; moved for the first of them.
         time @ 3_000..39_000 => {
             let (index, within) = ((time - 3_000) / 6_000, (time - 3_000) % 6_000);
@@ -192,7 +199,7 @@ fn six_sides_and_a_level_calibrate_both_accelerometers() {
             body.up.set(sides()[index as usize]);
         }
         40_000 => body.up.set(askew),
-        42_000 => shared.calibrations.put(Some(Procedure::Level)).unwrap(),
+        42_000 => shared.calibrations.put((Some(Procedure::Level), ASKER)).unwrap(),
         _ => {}
     });
     let mut expected: Vec<_> = (1..=6).map(|n| format!("Calibration: {n} of 6 sides")).collect();
@@ -220,7 +227,7 @@ fn one_side_finds_the_offsets_of_a_level_vehicle() {
     let (body, shared) = (Body::new(), Local::new());
     run(&body, &shared, 4, |now| {
         if now == 1_500_000 {
-            shared.calibrations.put(Some(Procedure::OneSide)).unwrap();
+            shared.calibrations.put((Some(Procedure::OneSide), ASKER)).unwrap();
         }
     });
     assert_eq!(texts(&shared), ["Accelerometer calibrated: now level"]);
@@ -233,7 +240,7 @@ fn a_second_sensor_that_fails_meanwhile_is_said_and_the_first_calibrated() {
     let (body, shared) = (Body::new(), Local::new());
     run_both(&body, &shared, 6, |now| {
         if now == 2_500_000 {
-            shared.calibrations.put(Some(Procedure::OneSide)).unwrap();
+            shared.calibrations.put((Some(Procedure::OneSide), ASKER)).unwrap();
         }
         if now == 2_900_000 {
             body.second.set(Does::Faults);
@@ -251,7 +258,7 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
     let (clock, mut storage) = (crate::support::Simulated::default(), Storage::load(Words::<32>(&chip), &shared));
     run(&body, &shared, 4, |now| {
         if now == 1_500_000 {
-            shared.calibrations.put(Some(Procedure::OneSide)).unwrap();
+            shared.calibrations.put((Some(Procedure::OneSide), ASKER)).unwrap();
         }
     });
     clock.run(50_000, storage.keep(&clock, &shared), |_| ());
@@ -310,7 +317,7 @@ fn the_command_says_what_is_calibrated() {
     for (command, procedure) in wanted {
         let shared = Local::new();
         Fed::new(&shared).message(&command, 0);
-        assert_eq!(shared.calibrations.take(), Some(procedure));
+        assert_eq!(shared.calibrations.take(), Some((procedure, ASKER)));
         assert!(results(&shared).is_empty(), "the task answers");
     }
     let magnetometer = COMMAND_LONG_DATA { param2: 1.0, ..preflight(0.0, 0.0) };

@@ -2,7 +2,7 @@
 
 use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, answer, command, replies, report, texts};
-use crate::support::{patched, v1, v2};
+use crate::support::{patched, v1, v2, v2_of_payload};
 use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, REQUESTS, Reply};
@@ -33,7 +33,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
         let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM), sender: Some(255) });
+        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM), sender: Some((255, 190)) });
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }
@@ -61,16 +61,20 @@ fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
     for _ in 0..REQUESTS + 3 {
         fed.message(&arm(), 0);
     }
-    let rejected = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+    let rejected =
+        Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_TEMPORARILY_REJECTED, sender: (255, 190) };
     assert_eq!(replies(&shared), [rejected.clone(), rejected.clone(), rejected]);
     fed.message(&disarm(), 0);
     assert!(shared.disarm.take());
     assert!(shared.requests.take().is_none());
-    let refused = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_DENIED };
+    let refused = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_DENIED, sender: (255, 190) };
     for _ in 0..REQUESTS {
         assert_eq!(shared.answers.take(), Some(refused.clone()));
     }
-    assert_eq!(replies(&shared), [Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_ACCEPTED }]);
+    assert_eq!(
+        replies(&shared),
+        [Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_ACCEPTED, sender: (255, 190) }]
+    );
 }
 
 #[test]
@@ -181,7 +185,11 @@ fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
             for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let shared = Local::new();
                 Fed::new(&shared).bytes(&patched(&message, 4 * parameter, value), 0);
-                let denied = Reply::Command { command: message.command, result: MavResult::MAV_RESULT_DENIED };
+                let denied = Reply::Command {
+                    command: message.command,
+                    result: MavResult::MAV_RESULT_DENIED,
+                    sender: (255, 190),
+                };
                 assert_eq!(replies(&shared).contains(&denied), parameter < used, "{message:?} {parameter} {value}");
                 assert!((requests(&shared) == 0) || parameter >= used);
             }
@@ -220,6 +228,36 @@ fn modes_are_px4s_or_guided() {
         set_mode(1.0, 1.0, 0.0),
     ] {
         assert_eq!(answer(&message, Mode::Flying), MavResult::MAV_RESULT_DENIED, "{message:?}");
+    }
+    // ArduPilot's numbers, as MAVProxy sends them to whom it does not know: LOITER, LAND.
+    for number in [5.0, 9.0] {
+        let shared = Local::new();
+        Fed::new(&shared).message(&set_mode(1.0, number, 0.0), 0);
+        assert_eq!(texts(&shared), ["Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only"]);
+    }
+}
+
+#[test]
+fn the_message_set_mode_means_the_command() {
+    const EXTRA_CRC: u8 = 89;
+    // Custom mode, lowest byte first; system; base mode.
+    for (payload, request) in [
+        ([0, 0, 6, 0, 1, 1], Some(Request::FlySetpoints)),
+        ([0, 0, 4, 3, 1, 217], Some(Request::Hold)),
+        ([0, 0, 4, 2, 0, 129], Some(Request::TakeOff(None))),
+        ([0, 0, 4, 6, 1, 1], Some(Request::Land)),
+        // For another vehicle.
+        ([0, 0, 4, 6, 2, 1], None),
+        // ArduPilot's RTL.
+        ([6, 0, 0, 0, 1, 1], None),
+    ] {
+        let shared = Local::new();
+        Fed::new(&shared).bytes(&v2_of_payload(1, 11, EXTRA_CRC, &payload), 0);
+        let command = Some(MavCmd::MAV_CMD_DO_SET_MODE);
+        let asked = request.map(|request| Asked { request, command, sender: Some((255, 190)) });
+        assert_eq!(shared.requests.take(), asked, "{payload:?}");
+        let is_refused = request.is_none() && payload[4] == 1;
+        assert_eq!((replies(&shared).len(), texts(&shared).len()), (is_refused.into(), is_refused.into()));
     }
 }
 

@@ -310,6 +310,23 @@ fn a_stream_that_timesync_knows_to_be_late_is_never_fresh() {
 }
 
 #[test]
+fn a_late_stream_without_timesync_is_refused_with_the_remedy() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.message(&odometry(1_000), 0);
+    // 0.6 s late from now on, and too unsteady to be a clock that was set.
+    for count in 1..200 {
+        fed.message(&odometry(1_000 + 10_000 * count), 600_000 + 10_000 * count + count % 3 * 25_000);
+    }
+    let texts = texts(&shared);
+    assert!(texts.iter().all(|text| text == "Pose refused: 0.5 s late; let it answer TIMESYNC"), "{texts:?}");
+    assert!(!texts.is_empty());
+    // A time that does not advance is another matter.
+    fed.message(&odometry(1_000), 9_000_000);
+    assert_eq!(self::texts(&shared), ["Pose refused: its time does not advance"]);
+}
+
+#[test]
 fn a_clock_that_stood_still_is_believed_once_timesync_has_said_so() {
     let shared = Local::new();
     let clock = |truth: u64| if truth < 5_000_000 { truth } else { truth.saturating_sub(900_000).max(5_000_000) };

@@ -30,7 +30,7 @@ fn commands_nobody_knows_are_answered_as_unsupported() {
             payload[30] = target;
             let shared = Local::new();
             Fed::new(&shared).bytes(&v2_of_payload(1, id, crc, &payload), 0);
-            assert_eq!(replies(&shared), vec![Reply::UnknownCommand(65_000); answers]);
+            assert_eq!(replies(&shared), vec![Reply::UnknownCommand { command: 65_000, sender: (255, 190) }; answers]);
         }
     }
 }

@@ -3,16 +3,18 @@
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::{Local, report};
 use crate::support::{Simulated, sent, v2};
-use controller_core::flight::{Mode, Refusal};
+use controller_core::flight::{Mode, Refusal, Request};
 use controller_core::state::State;
 use core::cell::RefCell;
+use embassy_futures::join::join;
 use embedded_io_async::{ErrorKind, ErrorType, Read};
+use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
+use firmware::shared::{Asked, Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA,
@@ -64,8 +66,25 @@ fn a_long_burst_is_received_whole() {
     let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
     let burst = (0..=255).flat_map(disarm).collect();
     line.borrow_mut().push_back(Delivery::Bytes(burst));
-    clock.run(10_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    clock.run(300_000, receive(Incoming(&line), &clock, &shared), |_| ());
     assert_eq!(shared.traffic.get().unwrap().value.frames, 256);
+}
+
+#[test]
+fn every_command_of_a_burst_is_answered() {
+    let (clock, shared, line, written) = (Simulated::default(), Local::new(), Line::default(), RefCell::default());
+    let asked = |number: u8| COMMAND_LONG_DATA {
+        param1: LOCAL_POSITION_NED_DATA::ID as f32,
+        param2: 1e6 - f32::from(number),
+        command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+        ..Default::default()
+    };
+    let burst = (0..40).flat_map(|number| v2(number, &asked(number))).collect();
+    line.borrow_mut().push_back(Delivery::Bytes(burst));
+    let outgoing = Outgoing { written: &written, at_once: 300 };
+    let link = join(receive(Incoming(&line), &clock, &shared), transmit(outgoing, &clock, &shared));
+    clock.run(200_000, link, |_| ());
+    assert_eq!(sent::<COMMAND_ACK_DATA>(&written).len(), 40);
 }
 
 /// Transmits for `duration` us.
@@ -175,29 +194,42 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    shared.answer(Some(command), Ok(()));
-    shared.answer(Some(command), Err(Refusal::PosesUnsettled));
+    let asked = |sender| Asked { request: Request::Arm, command: Some(command), sender };
+    shared.answer(&asked(Some((255, 190))), Ok(()));
+    shared.answer(&asked(Some((7, 1))), Err(Refusal::PosesUnsettled));
+    // Nobody on the link.
+    shared.answer(&asked(None), Ok(()));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
-    shared.replies.put(Reply::Command { command: other, result }).unwrap();
+    shared.replies.put(Reply::Command { command: other, result, sender: (254, 0) }).unwrap();
+    shared.replies.put(Reply::UnknownCommand { command: 65_000, sender: (1, 191) }).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
-    let answers: Vec<COMMAND_ACK_DATA> = sent(&written);
+    let (accepted, denied) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_DENIED);
     let expected = [
-        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_ACCEPTED },
-        COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_DENIED },
-        COMMAND_ACK_DATA { command: other, result },
+        (command as u16, accepted, (255, 190)),
+        (command as u16, denied, (7, 1)),
+        (command as u16, accepted, (0, 0)),
+        (other as u16, result, (254, 0)),
+        (65_000, result, (1, 191)),
     ];
-    assert_eq!(answers, expected);
+    let expected = expected.map(|(command, result, target)| Acknowledgement { command, result, target });
+    assert_eq!(sent::<Acknowledgement>(&written), expected);
+    // Who knows no extension fields reads the same.
+    let answers: Vec<COMMAND_ACK_DATA> = sent(&written);
+    assert_eq!(answers[1], COMMAND_ACK_DATA { command, result: denied });
     // The refusal also goes out in words.
     let texts: Vec<STATUSTEXT_DATA> = sent(&written);
     assert_eq!(texts[0].text.to_str().unwrap(), "Refused: poses not believed for a whole second");
     assert_eq!(texts[0].severity, MavSeverity::MAV_SEVERITY_WARNING);
 }
 
+const ARM: Asked =
+    Asked { request: Request::Arm, command: Some(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM), sender: Some((255, 190)) };
+
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {
     type Say = fn(&Local);
     let say: [(Say, u32); 3] = [
-        (|shared| shared.answer(Some(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM), Ok(())), COMMAND_ACK_DATA::ID),
+        (|shared| shared.answer(&ARM, Ok(())), COMMAND_ACK_DATA::ID),
         (|shared| shared.reply(Reply::Parameter(Name::SystemId)), PARAM_VALUE_DATA::ID),
         (|shared| shared.announce(Event::new(Severity::Information, "now")), STATUSTEXT_DATA::ID),
     ];

@@ -2,12 +2,16 @@
 
 use controller_core::estimator::{Estimator, EstimatorParameters, Health, Settings};
 use controller_core::flight::Mode;
+use controller_core::heading::Heading;
 use controller_core::imu::ImuFault;
+use controller_core::reference::Reference;
 use controller_core::state::State;
 use firmware::link::origin::Origin;
 use firmware::link::telemetry::{motion, vehicle};
 use firmware::shared::{Report, Traffic};
-use mavlink::dialects::common::{EstimatorStatusFlags, MavLandedState, MavSysStatusSensor as Sensor};
+use mavlink::dialects::common::{
+    EstimatorStatusFlags, MavLandedState, MavSysStatusSensor as Sensor, PositionTargetTypemask as Mask,
+};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Healthy, as far as an estimator that never began can be.
@@ -64,6 +68,23 @@ fn a_place_on_the_globe_is_told_with_its_height_above_home() {
     assert!(place.hdg < 100 || place.hdg > 35_900, "{}", place.hdg);
     let home = motion::home(&report(), &origin).unwrap();
     assert_eq!((home.latitude - 473_977_420, home.altitude, home.z), (89, 489_000, -1.0));
+}
+
+#[test]
+fn a_vehicle_that_goes_down_by_the_imu_names_no_place_as_its_target() {
+    let heading = Heading::FORWARD;
+    let rest = Vector3::zeros();
+    let reference = Reference { position: rest, velocity: rest, acceleration: rest, jerk: rest, snap: rest, heading };
+    for (mode, place) in [(Mode::Holding, true), (Mode::Landing, true), (Mode::Descending, false)] {
+        let report = Report { mode, reference: Some(reference), ..report() };
+        let mask = motion::position_target(0, &report).unwrap().type_mask;
+        assert_eq!(mask.is_empty(), place, "{mode:?}");
+        assert!(
+            place || mask.contains(Mask::POSITION_TARGET_TYPEMASK_X_IGNORE | Mask::POSITION_TARGET_TYPEMASK_Z_IGNORE)
+        );
+        // Level, and so fast down.
+        assert!(!mask.contains(Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE));
+    }
 }
 
 #[test]
@@ -154,6 +175,11 @@ fn ground_and_air_are_told_apart() {
     ] {
         let report = Report { mode, is_airborne, ..report() };
         assert_eq!(vehicle::extended_state(&report).landed_state, landed, "{mode:?}");
+    }
+    // It was disarmed by force in the air.
+    for mode in [Mode::Checks, Mode::Ready] {
+        let report = Report { mode, is_airborne: false, may_fall: true, ..report() };
+        assert_eq!(vehicle::extended_state(&report).landed_state, MavLandedState::MAV_LANDED_STATE_UNDEFINED);
     }
 }
 

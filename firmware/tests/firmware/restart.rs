@@ -14,7 +14,7 @@ const RESTART: MavCmd = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN;
 /// Asks with this first parameter; the answer, what was said, and whether a restart is under way.
 fn asked(shared: &Local, first: f32) -> (MavResult, Vec<String>, bool) {
     Fed::new(shared).message(&command(RESTART, [first, 0.0, 0.0, 0.0, 0.0]), 0);
-    let [Reply::Command { command: RESTART, result }] = replies(shared)[..] else { panic!("no answer") };
+    let [Reply::Command { command: RESTART, result, .. }] = replies(shared)[..] else { panic!("no answer") };
     (result, texts(shared), shared.restarting.is_raised())
 }
 

@@ -65,8 +65,7 @@ impl<'m> Pilot<'m> {
             Request::MotorSetting(setting) => self.begin_on_the_bench(Bench::Setting(setting), inputs),
             Request::TakeOff(height) => self.take_off(height, inputs, estimate),
             Request::FlySetpoints => {
-                let may = self.mode.may_arm() || self.mode == Mode::Idling || self.mode.is_guided();
-                require(may && self.mode != Mode::Landing, Refusal::NotInTheAir)?;
+                permission::to_fly_setpoints(self.mode)?;
                 require(!self.mode.is_guided() || self.has_setpoint(inputs.now), Refusal::NoSetpoints)?;
                 self.wanted_since = Some(inputs.now);
                 Ok(())

@@ -36,6 +36,8 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::InTheAir,
         Refusal::NotIdling,
         Refusal::NotInTheAir,
+        Refusal::Landing,
+        Refusal::WithoutPose,
         Refusal::MustLand,
         Refusal::NoSetpoints,
         Refusal::TakeOffHeight,

@@ -2,12 +2,13 @@
 
 use super::Receiver;
 use crate::frames;
+use crate::link::acknowledgement::command_of;
 use crate::link::command::{Action, Call, action};
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
+use crate::link::set_mode::SetMode;
 use crate::link::telemetry::vehicle;
-use crate::link::unknown::command_of;
-use crate::shared::{Asked, Event, Procedure, Reply, Severity};
+use crate::shared::{Asked, Calibration, Event, Reply, Severity};
 use controller_core::flight::Request;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
@@ -31,16 +32,23 @@ impl Addressed for COMMAND_INT_DATA {
     }
 }
 
+impl Addressed for SetMode {
+    fn target(&self) -> (u8, u8) {
+        (self.system, 0)
+    }
+}
+
 impl<M: RawMutex> Receiver<'_, M> {
     /// Acts on a command, if the message is one of the dialect's; another is answered by its number.
     pub(super) fn command<D: Addressed>(&mut self, frame: &Frame<'_>, message: Option<&D>)
     where
         for<'m> Call: From<&'m D>,
     {
+        let sender = (frame.header.system, frame.header.component);
         let Some(message) = message else {
             let unknown = command_of(frame.message, frame.payload);
             match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
-                Some((number, _)) => self.shared.reply(Reply::UnknownCommand(number)),
+                Some((command, _)) => self.shared.reply(Reply::UnknownCommand { command, sender }),
                 None => self.refused(),
             }
             return;
@@ -53,44 +61,43 @@ impl<M: RawMutex> Receiver<'_, M> {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             return;
         }
-        let (call, sender) = (Call::from(message), frame.header.system);
-        let command = call.command;
-        let result =
-            if !self.shared.is_armed() || self.commander.may(&call, sender, self.shared.commander.get(), frame.time) {
-                match self.act(&call, frame) {
-                    Some(result) => result,
-                    None => return,
-                }
-            } else {
-                self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
-                MavResult::MAV_RESULT_DENIED
-            };
-        self.shared.reply(Reply::Command { command, result });
+        let call = Call::from(message);
+        let (command, armed) = (call.command, self.shared.commander.get());
+        let result = if !self.shared.is_armed() || self.commander.may(&call, sender.0, armed, frame.time) {
+            match self.act(&call, sender, frame.time) {
+                Some(result) => result,
+                None => return,
+            }
+        } else {
+            self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
+            MavResult::MAV_RESULT_DENIED
+        };
+        self.shared.reply(Reply::Command { command, result, sender });
     }
 
-    /// Acts on a command; what to answer, unless somebody else does.
-    fn act(&mut self, call: &Call, frame: &Frame<'_>) -> Option<MavResult> {
+    /// Acts on a command of `sender`'s at `now`, us; what to answer, unless somebody else does.
+    fn act(&mut self, call: &Call, sender: (u8, u8), now: u64) -> Option<MavResult> {
         let report = self.shared.report.get();
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
         let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
                 if request == Request::FlySetpoints {
-                    self.take_over(frame.time);
+                    self.take_over(now);
                 }
-                let (command, sender) = (Some(call.command), Some(frame.header.system));
-                let asked = self.shared.request(Asked { request, command, sender });
+                let asked = Asked { request, command: Some(call.command), sender: Some(sender) };
+                let asked = self.shared.request(asked);
                 return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }
             Action::ForceDisarm => self.shared.request_disarm(),
             Action::EnterHil => self.shared.hil.raise(),
             Action::Restart => return Some(self.restart(false)),
             Action::StartBootloader => return Some(self.restart(true)),
-            Action::Unsupported(words) => {
+            Action::Refuse(result, words) => {
                 self.shared.announce(Event::new(Severity::Warning, words));
-                return Some(MavResult::MAV_RESULT_UNSUPPORTED);
+                return Some(result);
             }
-            Action::Calibrate(procedure) => return self.calibrate(procedure).err(),
+            Action::Calibrate(procedure) => return self.calibrate((procedure, sender)).err(),
             Action::Answer(result) => return Some(result),
             Action::Tell(reply) => self.shared.reply(reply),
             Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
@@ -131,13 +138,13 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Hands it to the IMU task, which answers.
-    pub(super) fn calibrate(&mut self, procedure: Option<Procedure>) -> Result<(), MavResult> {
+    pub(super) fn calibrate(&mut self, asked: Calibration) -> Result<(), MavResult> {
         let refused = if self.shared.is_armed() {
             "Calibration: only while disarmed"
         } else if self.shared.hil.is_raised() {
             "Calibration: a simulator has the sensors"
         } else {
-            return self.shared.calibrations.put(procedure).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            return self.shared.calibrations.put(asked).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
         };
         self.shared.announce(Event::new(Severity::Warning, refused));
         Err(MavResult::MAV_RESULT_DENIED)

@@ -6,6 +6,7 @@ use crate::shared::Report;
 use crate::status::euler;
 use controller_core::estimator::health::NIS_MEAN_MAX;
 use controller_core::estimator::{COASTING_AFTER, Fault, Health};
+use controller_core::flight::Mode;
 use controller_core::math;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, GLOBAL_POSITION_INT_DATA,
@@ -132,7 +133,7 @@ fn diagonal(first: f32, second: f32) -> [f32; 21] {
     triangle
 }
 
-/// The reference that is flown.
+/// The reference that is flown. By the IMU alone that is no place: the vehicle is held level and goes down so fast.
 #[must_use]
 pub fn position_target(time: u64, report: &Report) -> Option<POSITION_TARGET_LOCAL_NED_DATA> {
     let reference = report.reference.as_ref()?;
@@ -152,10 +153,16 @@ pub fn position_target(time: u64, report: &Report) -> Option<POSITION_TARGET_LOC
         afz: a.z,
         yaw,
         yaw_rate: frames::heading_rate(reference.heading.rate()),
-        type_mask: PositionTargetTypemask::empty(),
+        type_mask: if report.mode == Mode::Descending { NO_PLACE } else { PositionTargetTypemask::empty() },
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
     })
 }
+
+/// The bits that set aside where to be and where to point.
+const NO_PLACE: PositionTargetTypemask = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
+    .union(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE)
+    .union(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Z_IGNORE)
+    .union(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
 
 /// Where the vehicle was armed; before that, where it stands.
 #[must_use]

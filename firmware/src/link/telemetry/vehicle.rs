@@ -69,11 +69,13 @@ pub fn current_mode(mode: Mode) -> CURRENT_MODE_DATA {
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
 }
 
-/// Whether it is on the ground; nobody knows of what was stopped in the air, nor before there is anything to tell by.
+/// Whether it is on the ground; nobody knows of what was stopped in the air or may still fall, nor before there is anything to
+/// tell by.
 #[must_use]
 pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     let landed_state = match report.mode {
         Mode::Boot | Mode::Stopped => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
+        _ if report.may_fall => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
         _ if !report.is_airborne => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
         Mode::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
         Mode::Landing | Mode::Descending => MavLandedState::MAV_LANDED_STATE_LANDING,

@@ -77,7 +77,7 @@ pub fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
     Fed::new(&shared).message(message, 0);
     assert!(shared.requests.take().is_none());
     match replies(&shared)[..] {
-        [Reply::Command { command, result }] if command == message.command => result,
+        [Reply::Command { command, result, .. }] if command == message.command => result,
         ref other => panic!("{other:?}"),
     }
 }
