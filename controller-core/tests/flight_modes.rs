@@ -5,9 +5,7 @@ mod flight;
 use controller_core::flight::rules::{
     BATTERY_LASTING, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_LASTING,
 };
-use controller_core::flight::{
-    Battery, Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word,
-};
+use controller_core::flight::{Battery, Mode, MotorTest, Output, PERIOD, Reason, Refusal, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, GROUND, SPOOLING, go_to};
@@ -53,7 +51,7 @@ fn without_a_pose_it_flies_on_for_a_second_levels_for_another_and_comes_down_by_
     flight.ground = height - 3.0;
     for tick in 1..LEVELLING_MAX / PERIOD {
         let flown = flight.tick().flown.unwrap().unwrap();
-        assert_eq!(flown.reference.acceleration, Vector3::zeros());
+        assert_eq!((flown.reference.velocity, flown.reference.acceleration), (Vector3::zeros(), Vector3::zeros()));
         assert!(tick < 40 || flight.tilt() < 0.07, "tick {tick}: {} rad", flight.tilt());
         assert!((flight.yaw() - yaw).abs() < 0.1, "tick {tick}: {} rad", flight.yaw() - yaw);
     }
@@ -292,6 +290,17 @@ fn a_plain_disarm_command_stops_motors_on_the_ground_and_none_in_the_air() {
 }
 
 #[test]
+fn a_plain_disarm_command_stops_a_vehicle_that_takes_off_and_still_stands() {
+    let mut flight = Flight::idling();
+    flight.inputs.request = Some(Request::TakeOff(None));
+    let rising = flight.ticks(20);
+    assert_eq!((rising.mode, rising.is_airborne), (Mode::TakingOff, false));
+    flight.inputs.request = Some(Request::Disarm);
+    let outcome = flight.tick();
+    assert_eq!((outcome.answer, outcome.output), (Some(Ok(())), Output::Stop));
+}
+
+#[test]
 fn a_new_flight_starts_as_the_first_did() {
     let arm = |flight: &mut Flight| {
         flight.inputs.request = Some(Request::Arm);
@@ -371,57 +380,6 @@ fn a_vehicle_that_does_not_get_off_the_ground_lands_a_while_after_its_reference_
     assert_eq!(reason, Reason::TrackingLost);
     let then = heights.len() - (TRACKING_LASTING / PERIOD) as usize;
     assert!(heights[then - 2] < 0.5 && heights[then + 1] > 0.5, "{:?}", &heights[then - 2..]);
-}
-
-#[test]
-fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
-    let test = MotorTest { rotor: 2, level: 0.15, duration: 500_000 };
-    let mut flight = Flight::settled();
-    flight.inputs.request = Some(Request::MotorTest(test));
-    let begin = flight.tick();
-    assert_eq!((begin.answer, begin.mode), (Some(Ok(())), Mode::MotorTest));
-    assert_eq!(begin.output, Output::Test { rotor: 2, level: 0.15 });
-    for _ in 1..50 {
-        assert_eq!(flight.tick().output, Output::Test { rotor: 2, level: 0.15 });
-    }
-    let end = flight.tick();
-    assert_eq!(end.transition.map(|transition| transition.reason), Some(Reason::MotorTestOver));
-    assert_eq!(end.output, Output::Stop);
-    for request in [Request::Arm, Request::MotorTest(test)] {
-        flight.inputs.request = Some(Request::MotorTest(test));
-        flight.tick();
-        flight.inputs.request = Some(request);
-        let interrupted = flight.tick();
-        assert_eq!(interrupted.answer, Some(Err(Refusal::MotorTestRunning)));
-        assert_eq!((interrupted.output, interrupted.mode), (Output::Stop, Mode::Checks));
-        flight.tick();
-    }
-}
-
-/// What the motors are told, tick by tick, when a controller's setting is changed; the stop command where it is left out.
-fn words(setting: Setting) -> Vec<(usize, Word)> {
-    let mut flight = Flight::settled();
-    flight.inputs.request = Some(Request::MotorSetting(MotorSetting { rotor: 2, setting }));
-    let begin = flight.tick();
-    assert_eq!((begin.answer, begin.mode), (Some(Ok(())), Mode::MotorTest));
-    let mut outcomes = vec![begin];
-    while outcomes.last().unwrap().mode == Mode::MotorTest {
-        outcomes.push(flight.tick());
-    }
-    assert_eq!(outcomes.len(), 31, "300 ms, and the tick after them");
-    assert_eq!(outcomes[30].transition.map(|transition| transition.reason), Some(Reason::MotorTestOver));
-    let told = outcomes.iter().enumerate().filter_map(|(tick, outcome)| match outcome.output {
-        Output::Tell { rotor: 2, word } => Some((tick, word)),
-        ref other => (*other != Output::Stop).then(|| panic!("{other:?}")),
-    });
-    told.collect()
-}
-
-#[test]
-fn a_motors_controller_beeps_and_keeps_its_direction_and_turns_nothing_meanwhile() {
-    assert_eq!(words(Setting::Beep), [(0, Word::Beep)]);
-    assert_eq!(words(Setting::Normal), [(0, Word::Normal), (5, Word::Save)]);
-    assert_eq!(words(Setting::Reversed), [(0, Word::Reversed), (5, Word::Save)]);
 }
 
 #[test]

@@ -176,3 +176,12 @@ fn sets_that_are_none_are_refused() {
     assert_eq!(TorqueTerm::new("a term", Shape::Ball { radius: -1.0 }).unwrap_err().field, "a term");
     assert!(Commands::new(2.0, 1.0, &[]).is_err() && Commands::new(0.0, f64::INFINITY, &[]).is_err());
 }
+
+#[test]
+fn demands_are_rounded_outwards_by_what_single_precision_may_lose() {
+    for demand in demands(&hummingbird(0.0), &Commands::new(4.0, 4.0, &[]).unwrap()) {
+        // A quarter of 4 N each, without torque.
+        assert!((demand.greatest - 1.0 - 1e-6).abs() < 1e-9, "{demand:?}");
+        assert!((1.0 - demand.least - 1e-6).abs() < 1e-9, "{demand:?}");
+    }
+}

@@ -242,6 +242,16 @@ mod tests {
     }
 
     #[test]
+    fn a_floor_is_at_most_what_the_law_itself_asks_for_at_least() {
+        let least = paper().least_thrust();
+        assert_eq!(paper().with_thrust_floor(least).unwrap().thrust_floor(), Some(least));
+        let refused = |floor: f32| paper().with_thrust_floor(floor).unwrap_err();
+        let field = "control.thrust_floor";
+        assert_eq!(refused(least.next_up()), ParameterError { field, reason: Reason::NotBelow(least) });
+        assert_eq!(refused(0.0), ParameterError { field, reason: Reason::NotPositive });
+    }
+
+    #[test]
     fn the_extended_law_refuses_a_rotor_that_thrust_does_not_lift() {
         let vehicle = example::vehicle();
         let law = ExtendedLaw {

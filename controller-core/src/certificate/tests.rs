@@ -75,3 +75,22 @@ fn a_reference_that_leaves_no_upward_thrust_is_no_configuration() {
     let falling = ReferenceBounds { vertical_acceleration: 7.9, ..*paper.bounds() };
     assert_eq!(paper.with_bounds(falling).unwrap_err().field, "gains.m_p");
 }
+
+#[test]
+fn with_a_floor_the_least_thrust_is_the_floors() {
+    let configuration = paper().with_thrust_floor(2.0).unwrap();
+    for form in printed_and_sharp(&configuration) {
+        assert!((form.thrust.least - 2.0).abs() < 1e-3, "{:?}", form.thrust);
+    }
+}
+
+#[test]
+fn nothing_flies_whose_certificate_does_not_hold() {
+    let certified = certified::Certified::new(paper()).unwrap();
+    assert!(certified.certificate().holds());
+    let weak = LimitParameters { thrust_max: 7.0, torque_max: Vector3::new(0.5, 0.5, 0.2) };
+    let weak = Limits::new(weak, paper().vehicle()).unwrap();
+    let weak = Configuration::new(*paper().vehicle(), weak, *paper().gains().unwrap(), *paper().bounds()).unwrap();
+    let certified::Refused::Fails(certificate) = certified::Certified::new(weak).unwrap_err() else { panic!() };
+    assert_eq!(certificate.tightest().unwrap().name, "T2 yaw torque");
+}

@@ -223,3 +223,6 @@ impl Filter {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

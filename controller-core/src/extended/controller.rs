@@ -346,3 +346,6 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
         1.0 - double * (q.i * q.i + q.j * q.j),
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -69,3 +69,19 @@ impl Bench {
         Output::Tell { rotor, word }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tick_that_comes_a_little_late_tells_what_it_should() {
+        let bench = Bench::Setting(MotorSetting { rotor: 1, setting: Setting::Reversed });
+        for (tick, word) in [(0, Word::Reversed), (5, Word::Save)] {
+            for late in [0, 1, PERIOD - 1] {
+                assert_eq!(bench.output(tick * PERIOD + late), Output::Tell { rotor: 1, word }, "{late} us late");
+            }
+            assert_eq!(bench.output((tick + 1) * PERIOD), Output::Stop);
+        }
+    }
+}

@@ -362,3 +362,6 @@ impl<'m> Chain<'m> {
         self.thrusts.as_ref()
     }
 }
+
+#[cfg(test)]
+mod tests;

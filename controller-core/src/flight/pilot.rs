@@ -195,7 +195,7 @@ impl<'m> Pilot<'m> {
     /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found possible.
     fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate) {
         (self.mode, self.since) = (transition.to, inputs.now);
-        if transition.from.is_armed() && transition.to != Mode::Flying {
+        if transition.from.is_armed() {
             self.wanted_since = None;
         }
         self.must_still_land &= matches!(transition.reason, Reason::PoseRegained | Reason::PoseLost);

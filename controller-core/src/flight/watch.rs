@@ -221,3 +221,6 @@ pub(super) fn is_still(state: &EstimatedState) -> bool {
 fn within(vector: &Vector3<f32>, most: f32) -> bool {
     vector.norm_squared() <= most * most
 }
+
+#[cfg(test)]
+mod tests;

@@ -81,3 +81,6 @@ impl Governor {
         Some(Sought { point: Point { snap: point.snap * gain, ..point }, error })
     }
 }
+
+#[cfg(test)]
+mod tests;

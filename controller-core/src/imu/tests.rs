@@ -55,6 +55,10 @@ fn samples_that_run_back_or_are_no_numbers_are_left_out() {
     let mut conditioner = conditioner();
     let (_, faults) = run(&mut conditioner, [1_000, 2_000, 2_000, 1_500, 3_000].into_iter());
     assert_eq!(faults, [ImuFault::Clock, ImuFault::Clock]);
+    // What is worse than a clock is told first.
+    let (rate, force) = at(3);
+    (0..20).for_each(|_| _ = conditioner.sample(3_000, &rate, Some(&force)));
+    assert_eq!(conditioner.sample(3_000, &rate, Some(&force)).fault, Some(ImuFault::GyroStuck));
     let before = conditioner.clone();
     let broken = conditioner.sample(4_000, &Vector3::repeat(f32::NAN), None);
     assert_eq!(broken, Conditioned { increment: None, fault: Some(ImuFault::NotFinite) });

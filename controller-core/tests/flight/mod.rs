@@ -14,7 +14,8 @@ use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::flight::{
-    Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Request, Stamped, Velocity,
+    Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Refusal, Request, Stamped,
+    Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::imu::ImuFault;
@@ -339,6 +340,12 @@ impl Flight {
             let place = Vector3::new(before.position.x, before.position.y, self.ground);
             self.body = Body::resting(place, before.attitude);
         }
+    }
+
+    /// The answer to a request, a tick later.
+    pub fn answer(&mut self, request: Request) -> Result<(), Refusal> {
+        self.inputs.request = Some(request);
+        self.tick().answer.unwrap()
     }
 
     /// As many ticks; the last one's outcome.

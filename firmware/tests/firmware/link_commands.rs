@@ -1,26 +1,18 @@
-//! Commands, parameters, heartbeats and pings in: what they do, and what is answered.
+//! Commands and heartbeats in: what they do, and what is answered.
 
 use crate::support::desk::Desk;
-use crate::support::receiver::{Fed, Local, answer, command, replies, report, texts};
+use crate::support::receiver::{Fed, Local, answer, command, disarm, replies, report, texts};
 use crate::support::{patched, v1, v2, v2_of_payload};
 use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
-use firmware::parameters::table::{Name, PARAMETERS};
+use firmware::parameters::table::Name;
 use firmware::shared::{Asked, REQUESTS, Reply};
-use mavlink::dialects::common::{
-    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavParamType, MavResult, MavType, PARAM_REQUEST_LIST_DATA,
-    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-};
+use mavlink::dialects::common::{COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavResult, MavType};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
 const ARM_DISARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
 
 fn arm() -> COMMAND_LONG_DATA {
     command(ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0])
-}
-
-/// With force.
-fn disarm() -> COMMAND_LONG_DATA {
-    command(ARM_DISARM, [0.0, 21196.0, 0.0, 0.0, 0.0])
 }
 
 fn requests(shared: &Local) -> usize {
@@ -323,79 +315,6 @@ fn a_ground_station_or_a_companion_is_heard_by_its_heartbeat_and_nobody_else() {
         Fed::new(&shared).message(&HEARTBEAT_DATA { mavtype, autopilot, ..Default::default() }, 1234);
         assert_eq!(shared.ground_station.get().map(|heard| heard.time), heard.then_some(1234));
     }
-}
-
-fn set(name: &str, param_value: f32) -> PARAM_SET_DATA {
-    let param_type = MavParamType::MAV_PARAM_TYPE_REAL32;
-    PARAM_SET_DATA { param_value, target_system: 1, target_component: 1, param_id: name.into(), param_type }
-}
-
-#[test]
-fn a_parameter_is_set_and_its_value_told() {
-    let shared = Local::new();
-    Fed::new(&shared).message(&set("TLM_RATE", 50.0), 0);
-    assert_eq!(shared.parameters.get(Name::TelemetryRate), 50.0);
-    assert_eq!(replies(&shared), [Reply::Parameter(Name::TelemetryRate)]);
-}
-
-#[test]
-fn a_value_that_is_not_allowed_changes_nothing_and_is_told_in_words() {
-    for value in [51.0, 9.0, 20.5, f32::NAN, f32::INFINITY, -25.0] {
-        let shared = Local::new();
-        Fed::new(&shared).message(&set("TLM_RATE", value), 0);
-        assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0, "{value}");
-        assert_eq!(texts(&shared), ["TLM_RATE: allowed are 10.00 to 50.00 Hz"]);
-        assert_eq!(replies(&shared), [Reply::Parameter(Name::TelemetryRate)]);
-    }
-    let shared = Local::new();
-    let param_type = MavParamType::MAV_PARAM_TYPE_INT32;
-    Fed::new(&shared).message(&PARAM_SET_DATA { param_type, ..set("TLM_RATE", 50.0) }, 0);
-    assert_eq!(shared.parameters.get(Name::TelemetryRate), 25.0);
-}
-
-#[test]
-fn parameters_do_not_change_in_flight() {
-    for mode in Mode::ALL {
-        let shared = Local::new();
-        report(&shared, mode, 0);
-        Fed::new(&shared).message(&set("TLM_RATE", 50.0), 0);
-        assert_eq!(shared.parameters.get(Name::TelemetryRate) == 50.0, !mode.is_armed(), "{mode:?}");
-    }
-}
-
-#[test]
-fn parameters_are_read_by_name_by_index_and_all_together() {
-    let read = |param_index: i16, name: &str| PARAM_REQUEST_READ_DATA {
-        param_index,
-        target_system: 1,
-        target_component: 0,
-        param_id: name.into(),
-    };
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    for (index, row) in PARAMETERS.iter().enumerate() {
-        fed.message(&read(-1, row.name), 0);
-        fed.message(&read(index as i16, ""), 0);
-        assert_eq!(replies(&shared), [Reply::Parameter(row.parameter), Reply::Parameter(row.parameter)]);
-    }
-    for nobody in [read(-1, "K_P"), read(PARAMETERS.len() as i16, ""), read(i16::MIN, "")] {
-        fed.message(&nobody, 0);
-    }
-    fed.message(&set("K_P", 1.0), 0);
-    assert!(replies(&shared).is_empty());
-    fed.message(&PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
-    assert_eq!(replies(&shared), [Reply::AllParameters]);
-}
-
-#[test]
-fn the_vehicle_answers_to_its_new_number_at_once() {
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&set("SYS_ID", 9.0), 0);
-    fed.message(&disarm(), 0);
-    assert!(!shared.disarm.is_raised());
-    fed.message(&COMMAND_LONG_DATA { target_system: 9, ..disarm() }, 0);
-    assert!(shared.disarm.is_raised());
 }
 
 /// A ground station's, of this system.

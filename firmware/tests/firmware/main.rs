@@ -19,6 +19,7 @@ mod journal;
 mod link_commands;
 mod link_frames;
 mod link_messages;
+mod link_parameters;
 mod link_poses;
 mod link_questions;
 mod link_setpoints;

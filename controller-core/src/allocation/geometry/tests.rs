@@ -87,3 +87,11 @@ fn fewer_than_four_or_more_than_eight_rotors_are_refused() {
     assert_eq!(Rotors::new(&quad[..3]).unwrap_err().reason, Reason::TooFew(4));
     assert_eq!(Rotors::new(&nine).unwrap_err().reason, Reason::TooMany(8));
 }
+
+#[test]
+fn a_rotor_too_far_away_on_either_side_is_refused_by_its_number() {
+    for far in [100.0, -100.0] {
+        let error = refused(|rotors| rotors[2].position.y = far);
+        assert_eq!(error, ParameterError { field: "rotors.position, rotor 3", reason: Reason::NotBelow(100.0) });
+    }
+}

@@ -122,6 +122,33 @@ fn arc(k_f: f64, k_s: f64, span: f64) -> [(f64, f64); ARC_POINTS + 1] {
 mod tests {
     extern crate std;
     use super::*;
+    use crate::extended::example;
+
+    /// Where all parts are at their worst at once, out of the middle of the vertical box and at its ends.
+    #[test]
+    fn every_part_of_the_table_is_in_what_is_reachable() {
+        let parameters = Extended::new(example::PARAMETERS, &example::vehicle()).unwrap();
+        let reach = Reach::new(&parameters, &example::REFERENCES, 9.81);
+        let is = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-6, "{found}, not {expected}");
+        // Both bandwidths across are 6, both vertical ones 4: U_l is 1/e.
+        let (u, drag) = ((-1.0_f64).exp(), 0.47);
+        is(reach.across, 2.0 + 2.4675 + drag * 3.0 + SQRT_2 * 2.6);
+        is(reach.across_rate, 2.0 * 6.0 * u * 2.0 + 3.876 + drag * 2.4675 + SQRT_2 * 28.0 / 10.0);
+        is(reach.across_acceleration, 2.0 * 6.0 * 2.0 * (6.0 + 6.0 * u * u) + 6.089 + drag * 3.876 + SQRT_2 * 28.0);
+        is(reach.vertical_least, 9.81 - 1.5 - 0.1755 - 0.5);
+        is(reach.vertical_greatest, 9.81 + 6.0 + 0.1755 + 0.5);
+        is(reach.vertical_acceleration, 4.0 * 7.5 * (4.0 + 4.0 * u * u) + 6.089 + 20.0);
+        let slowest = 3.876 + 20.0 / 15.0;
+        let (least, greatest) = (reach.vertical_least, reach.vertical_greatest);
+        is(reach.vertical_rate(least, greatest), 4.0 * u * 7.5 + slowest);
+        // At an end of u_z all are at theirs, the feedback too, and it stands still there; a metre a second squared on, it may be as far.
+        let (_, there) = *reach.arc.iter().find(|(x, _)| *x >= 1.0 - 1e-9).unwrap();
+        for (end, inwards) in [(least, 1.0), (greatest, -1.0)] {
+            is(reach.vertical_rate(end, end), slowest);
+            let on = end + inwards;
+            is(reach.vertical_rate(on.min(end), on.max(end)), there + slowest);
+        }
+    }
 
     /// The cascade flown with inputs of one switch, which make the boundary of what it reaches.
     #[test]

@@ -92,3 +92,59 @@ fn a_reference_is_feasible_with_its_drag_or_not_at_all() {
     let fast = ReferenceBounds { horizontal_acceleration: 75.0, ..example::REFERENCES };
     assert!(!feasible(fast, 0.0)[1].holds());
 }
+
+#[test]
+fn the_only_equilibrium_is_the_target_by_the_documents_rows() {
+    let attitude = AttitudeParameters { delta: 0.5, ..example::PARAMETERS.attitude };
+    let [switch, tilt] = equilibrium(&attitude);
+    let is = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-6, "{found}, not {expected}");
+    // qbar = (1.5^2 - 1) / (1.5^2 + 1).
+    let qbar = 1.25 / 3.25_f64;
+    is(switch.required, qbar);
+    is(switch.available, 0.1);
+    is(tilt.required, 2.0 * qbar * 0.1);
+    is(tilt.available, 0.6 * 0.5 * (1.0 - qbar * qbar).sqrt());
+}
+
+#[test]
+fn a_reference_that_sinks_leaves_less_to_fall_with_and_more_to_carry() {
+    let sinking = ReferenceBounds { vertical_acceleration: 5.0, ..example::REFERENCES };
+    let [vertical, thrust, .., fall] = feasible(sinking, 0.0);
+    assert!(vertical.required == 5.0 && fall.required == 2.0 && (fall.available - 4.81).abs() < 1e-5, "{fall}");
+    let expected = 0.5 * (9.81 + math::hypot(2.4675, 5.0));
+    assert!((thrust.required / expected - 1.0).abs() < 1e-3, "{thrust}");
+}
+
+/// What the rotors are asked for under a law that counts on these scales, each of them turning at least at 300 rad/s.
+fn asked(scale_least: f32, scale_greatest: f32) -> bounds::ExtendedBounds {
+    let vehicle = example::vehicle();
+    let estimates = EstimateParameters { scale_least, scale_greatest, ..example::PARAMETERS.estimates };
+    let parameters = Extended::new(ExtendedParameters { estimates, ..example::PARAMETERS }, &vehicle).unwrap();
+    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
+    let limits = Limits::new(limits, &vehicle).unwrap();
+    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+    let quad = QuadX {
+        arm: 0.17,
+        thrust_coefficient: 5.57e-6,
+        drag_coefficient: 1.36e-7,
+        speed_min: 300.0,
+        speed_max: 1500.0,
+    };
+    let configuration = Configuration::extended(vehicle, limits, law, example::REFERENCES).unwrap();
+    let configuration = configuration.with_rotors(Rotors::quad_x(quad).unwrap()).unwrap();
+    ExtendedCertificate::new(&configuration, &law).unwrap().bounds
+}
+
+#[test]
+fn rotors_that_may_give_less_are_asked_for_more_and_never_for_less_than_they_give() {
+    let (exact, weak, strong) = (asked(1.0, 1.0), asked(0.8, 1.0), asked(1.0, 1.3));
+    let least = 5.57e-6 * 300.0 * 300.0;
+    for (rotor, (weak, strong)) in exact.rotors.iter().zip(weak.rotors.iter().zip(&strong.rotors)) {
+        assert!((weak.greatest / rotor.greatest - 1.25).abs() < 1e-6, "{weak:?} and {rotor:?}");
+        for of in [rotor, weak, strong] {
+            assert!(of.least <= least && of.least > 0.999 * least, "{of:?}");
+        }
+    }
+    // The floor lifts each rotor's least thrust by the scale at its most.
+    assert!(strong.floor[0] - exact.floor[0] > 4.0 * 0.29 * least, "{:?} and {:?}", strong.floor, exact.floor);
+}

@@ -243,6 +243,32 @@ mod tests {
         }
     }
 
+    fn torques() -> Torques {
+        let parameters = Extended::new(example::PARAMETERS, &example::vehicle()).unwrap();
+        Torques::new(&parameters, &Vector3::new(3e-3, 5e-3, 9e-3))
+    }
+
+    #[test]
+    fn each_component_of_a_bias_may_be_at_its_level_at_once() {
+        let (torques, levels) = (torques(), Vector3::new(0.03, 0.03, 0.005));
+        for b in [Vector3::new(1.0, 1.0, 1.0), Vector3::new(-1.0, 2.0, 0.0), Vector3::new(0.0, 0.0, -3.0)] {
+            assert!((torques.bias(&b) - levels.dot(&b.abs())).abs() < 1e-8, "{b}");
+        }
+    }
+
+    #[test]
+    fn no_motion_of_the_frame_has_a_greater_gyroscopic_torque_and_one_has_nearly_it() {
+        let (torques, mut random) = (torques(), Random(9));
+        for _ in 0..50 {
+            let (b, rate, turn) = (random.vector(), 2.0 * random.signed().abs(), 1.5);
+            let bound = torques.gyroscopic(&b, rate).unwrap();
+            let most = (0..20_000).map(|_| random.vector().normalize() * math::hypot(rate, turn));
+            let most = most.map(|omega| b.dot(&omega.cross(&torques.inertia.component_mul(&omega))));
+            let most = most.fold(0.0, f64::max);
+            assert!(most <= bound * (1.0 + 1e-9) && most > 0.97 * bound, "{most} of {bound} along {b}");
+        }
+    }
+
     /// The law's own torques, each cell of the tilt by itself: with a narrow hysteresis, with one so wide that the greatest
     /// yaw of a nearly inverted vehicle is no longer at the switch, and with one that no certificate allows.
     #[test]

@@ -71,6 +71,27 @@ fn flips_are_told() {
 }
 
 #[test]
+fn a_turn_that_the_gyro_has_not_felt_is_told_from_a_few_degrees_on() {
+    for angle in [0.15, 0.5, -1.0] {
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * angle);
+        let lie = |rig: &Rig, _, time| motion::pose(&rig.truth(time), &Vector3::zeros(), &turn);
+        assert_eq!(told(&mut Rig::new(rest), 0.7, lie), Rejected::Turned, "{angle} rad");
+    }
+}
+
+#[test]
+fn a_frozen_stream_is_told_by_what_the_accelerometer_feels_alone() {
+    for sign in [1.0, -1.0] {
+        let mut rig = Rig::new(rest);
+        rig.fly(3_000_000, 20_000);
+        // Heavier, or lighter.
+        rig.biases.1 = Vector3::new(0.0, 0.0, sign);
+        let last = rig.fly_with(200_000, 20_000, |rig, _| motion::pose(&rig.truth(0), &Vector3::zeros(), &STRAIGHT));
+        assert_eq!(last, Some(Err(Rejected::Frozen)), "{sign} m/s^2");
+    }
+}
+
+#[test]
 fn a_drift_is_told_and_not_followed() {
     for path in [rest as motion::Path, tumble] {
         let mut rig = Rig::new(path);

@@ -1,6 +1,7 @@
 //! How an estimate begins, and when it does not.
 
 use super::motion::{self, Rig, rest, spin, tumble};
+use crate::estimator::candidate::POSES_MIN;
 use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
 use crate::flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -130,4 +131,16 @@ fn poses_before_the_imu_and_after_it_are_refused() {
     assert_eq!(rig.estimator.pose(&old, rig.now), Err(Rejected::TooOld));
     let ahead = Stamped { value: pose(&rig), time: rig.now + 20_001 };
     assert_eq!(rig.estimator.pose(&ahead, rig.now + 30_000), Err(Rejected::NoImu));
+}
+
+#[test]
+fn few_poses_prove_nothing_however_long_they_take() {
+    let mut rig = Rig::new(rest);
+    for count in 1..=POSES_MIN {
+        assert_eq!(rig.estimator.state(rig.now), None, "{count} poses");
+        (0..40).for_each(|_| rig.step());
+        let pose = motion::pose(&rig.truth(rig.now), &Vector3::zeros(), &UnitQuaternion::identity());
+        rig.estimator.pose(&Stamped { value: pose, time: rig.now }, rig.now).unwrap();
+    }
+    assert!(rig.estimator.state(rig.now).is_some());
 }

@@ -172,3 +172,26 @@ fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
     assert_eq!(pilot.mode(), Mode::Holding);
     assert!((height - FlightSettings::DEFAULT.take_off_height).abs() < 0.02, "{height} m");
 }
+
+#[test]
+fn a_landing_asked_for_without_a_pose_is_still_wanted_when_the_pose_is_lost_again() {
+    let (mut pilot, last, broken) = armed();
+    let mut found = Estimate { state: sound(&broken), ..broken };
+    found.state.as_mut().unwrap().state.position.z = 0.2;
+    let lost = Estimate { health: crate::estimator::Health::NONE, ..found };
+    let mut tick = last;
+    let mut next = |pilot: &mut Pilot, estimate: &Estimate, request| {
+        tick += 1;
+        let outcome = pilot.decide(&Inputs { request, ..quiet(tick * PERIOD) }, estimate);
+        outcome.transition.map(|transition| (transition.to, transition.reason))
+    };
+    assert_eq!(next(&mut pilot, &found, None), None);
+    assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
+    assert_eq!(next(&mut pilot, &lost, Some(Request::Land)), None);
+    for _ in 0..2 {
+        assert_eq!(next(&mut pilot, &found, None), Some((Mode::Holding, Reason::PoseRegained)));
+        assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
+    }
+    assert_eq!(next(&mut pilot, &found, None), Some((Mode::Holding, Reason::PoseRegained)));
+    assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandCommanded)));
+}

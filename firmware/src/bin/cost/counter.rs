@@ -5,7 +5,7 @@
 //! any shift. A difference of two readings is off by less than a tick, 0.6 instructions.
 //!
 //! The register holds 24 bits, 10 million instructions. [`Counter::long`] reads the board's timer 1 instead, which counts at
-//! the same rate and holds 32 bits, 2.7 thousand million.
+//! the same rate, holds 32 bits, 2.7 thousand million, and stands still when it has run down.
 
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -16,7 +16,7 @@ const RELOAD: u32 = 0x00FF_FFFF;
 /// Iterations of the calibration loop, of two instructions each.
 const CALIBRATION: u32 = 100_000;
 
-/// Timer 1 (CMSDK APB timer), counting down from the top of its range.
+/// Timer 1 (CMSDK APB timer), counting down from the top of its range, once: with nothing to reload it stops at zero.
 mod timer {
     const CONTROL: *mut u32 = 0x4000_1000 as *mut u32;
     const VALUE: *mut u32 = 0x4000_1004 as *mut u32;
@@ -28,16 +28,17 @@ mod timer {
         // SAFETY: these are the timer's registers, and only this module touches them.
         unsafe {
             CONTROL.write_volatile(0);
-            RELOAD.write_volatile(u32::MAX);
+            RELOAD.write_volatile(0);
             VALUE.write_volatile(u32::MAX);
             CONTROL.write_volatile(ENABLE);
         }
     }
 
-    /// Ticks since it was started.
-    pub fn elapsed() -> u32 {
+    /// Ticks since it was started; none if it has run down.
+    pub fn elapsed() -> Option<u32> {
         // SAFETY: as above; reading changes nothing.
-        u32::MAX - unsafe { VALUE.read_volatile() }
+        let left = unsafe { VALUE.read_volatile() };
+        (left > 0).then_some(u32::MAX - left)
     }
 }
 
@@ -74,11 +75,11 @@ impl Counter {
         (f64::from(ticks.saturating_sub(self.overhead)) / self.ticks_per_instruction, result)
     }
 
-    /// Instructions of `work`, up to 2.7 thousand million, and what it returned.
-    pub fn long<R>(&self, work: impl FnOnce() -> R) -> (f64, R) {
+    /// Instructions of `work`, none if they are more than 2.7 thousand million, and what it returned.
+    pub fn long<R>(&self, work: impl FnOnce() -> R) -> (Option<f64>, R) {
         timer::start();
         let result = work();
-        (f64::from(timer::elapsed()) / self.ticks_per_instruction, result)
+        (timer::elapsed().map(|ticks| f64::from(ticks) / self.ticks_per_instruction), result)
     }
 
     #[inline(always)]

@@ -65,6 +65,11 @@ pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
     COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
 }
 
+/// A disarm command with force.
+pub fn disarm() -> COMMAND_LONG_DATA {
+    command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [0.0, 21196.0, 0.0, 0.0, 0.0])
+}
+
 /// The replies that wait, taken away.
 pub fn replies(shared: &Local) -> Vec<Reply> {
     std::iter::from_fn(|| shared.replies.take()).collect()

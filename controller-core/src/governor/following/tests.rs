@@ -1,0 +1,135 @@
+//! Streams of moving points, flown as they are sent where the bounds allow it.
+
+use super::*;
+use crate::governor::tests::{PERIOD, Random, TYPICAL, go_to, governor, run};
+use crate::governor::{Motion, Setpoint, Turn};
+use nalgebra::Vector3;
+
+/// Where a point is at a time, s, with its velocity and acceleration.
+type At<'a> = &'a dyn Fn(f64) -> [Vector3<f64>; 3];
+
+/// Round a circle about (0, 0, 1).
+fn circle(rate: f64, radius: f64) -> impl Fn(f64) -> [Vector3<f64>; 3] {
+    move |time| {
+        let (sin, cos) = (rate * time).sin_cos();
+        let (out, along) = (Vector3::new(cos, sin, 0.0) * radius, Vector3::new(-sin, cos, 0.0) * radius);
+        [out + Vector3::z(), along * rate, -out * (rate * rate)]
+    }
+}
+
+/// Along (1, 0, 0) once while along `across` twice.
+fn eight(rate: f64, size: f64, across: Vector3<f64>) -> impl Fn(f64) -> [Vector3<f64>; 3] {
+    move |time| {
+        let ((sin, cos), (sin2, cos2)) = ((rate * time).sin_cos(), (2.0 * rate * time).sin_cos());
+        let (along, across) = (Vector3::x() * size, across * (0.5 * size));
+        let bend = along * sin + across * (4.0 * sin2);
+        [along * sin + across * sin2, (along * cos + across * (2.0 * cos2)) * rate, -bend * (rate * rate)]
+    }
+}
+
+/// As setpoints have it.
+fn sent(at: At<'_>, time: f64) -> Setpoint {
+    let [position, velocity, acceleration] = at(time).map(|vector| vector.map(|component| component as f32));
+    Setpoint { motion: Motion::PositionVelocityAcceleration { position, velocity, acceleration }, turn: Turn::Keep }
+}
+
+/// Sends it every so many ticks for `duration`, s; how far off it is at worst after `settled`, s.
+fn follow(governor: &mut Governor, at: At<'_>, every: u32, settled: f64, duration: f64) -> f64 {
+    let mut worst: f64 = 0.0;
+    for tick in 0..(duration / f64::from(PERIOD)) as u32 {
+        let time = f64::from(tick) * f64::from(PERIOD);
+        if tick.is_multiple_of(every) {
+            governor.accept(&sent(at, time)).unwrap();
+        }
+        let reference = governor.tick();
+        assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+        if time > settled {
+            let [there, ..] = at(time + f64::from(PERIOD));
+            worst = worst.max((reference.position.map(f64::from) - there).norm());
+        }
+    }
+    worst
+}
+
+#[test]
+fn a_circle_that_takes_nearly_all_of_the_bounds_is_flown_as_it_is_sent() {
+    // 0.987 of the acceleration, 0.969 of the jerk; 100, 20 and 10 times a second, in single precision.
+    for every in [1, 5, 10] {
+        let worst = follow(governor(), &circle(core::f64::consts::FRAC_PI_2, 1.0), every, 25.0, 60.0);
+        assert!(worst < 1e-4, "every {every}: {worst} m off");
+    }
+}
+
+#[test]
+fn eights_and_lines_to_and_fro_are_flown_as_they_are_sent() {
+    let (level, none) = (Vector3::new(0.0, 1.0, 0.0), Vector3::zeros());
+    for (rate, size, across, every) in
+        [(0.6, 1.0, level, 1), (0.6, 1.0, level, 5), (0.4, 2.0, none, 5), (0.8, 2.0, none, 1)]
+    {
+        let worst = follow(governor(), &eight(rate, size, across), every, 30.0, 90.0);
+        assert!(worst < 0.01, "{size} m at {rate} rad/s, every {every}: {worst} m off");
+    }
+}
+
+#[test]
+fn a_circle_beyond_the_bounds_comes_out_smaller_and_round() {
+    let governor = governor();
+    // 1.09 of the acceleration.
+    let at = circle(core::f64::consts::FRAC_PI_2, 1.1);
+    follow(governor, &at, 2, 0.0, 30.0);
+    let (mut least, mut most) = (f32::MAX, 0.0_f32);
+    for tick in 3_000..4_000 {
+        governor.accept(&sent(&at, f64::from(tick) * f64::from(PERIOD))).unwrap();
+        let radius = governor.tick().position.xy().norm();
+        (least, most) = (least.min(radius), most.max(radius));
+    }
+    assert!(least > 0.6 && most < 1.0 && most - least < 0.005, "{least} to {most} m");
+}
+
+#[test]
+fn a_circle_too_fast_for_the_speed_bound_never_takes_the_reference_beyond_it() {
+    // 8 m/s, with little acceleration; `follow` looks at the speed.
+    follow(governor(), &circle(0.25, 32.0), 5, 0.0, 90.0);
+}
+
+#[test]
+fn a_circle_that_ceases_or_gives_way_to_another_setpoint_ends_exactly_where_it_should() {
+    let at = circle(core::f64::consts::FRAC_PI_2, 1.0);
+    let direct = || {
+        let governor = governor();
+        follow(governor, &at, 5, 0.0, 20.0);
+        assert!(!governor.direct.is_averaged());
+        governor
+    };
+    let [last, ..] = at(1_995.0 * f64::from(PERIOD));
+    let governor = direct();
+    assert_eq!(run(governor).1.position, last.map(|component| component as f32));
+    assert!(governor.direct.is_averaged());
+    let governor = direct();
+    governor.accept(&go_to(-2.0, 3.0, 1.5)).unwrap();
+    assert_eq!(run(governor).1.position, Vector3::new(-2.0, 3.0, 1.5));
+    let governor = direct();
+    governor.stop();
+    assert_eq!(run(governor).1.velocity, Vector3::zeros());
+}
+
+#[test]
+fn a_circle_with_jitter_and_lost_setpoints_is_flown_within_centimetres() {
+    let (governor, mut random) = (governor(), Random::new(11));
+    let at = circle(1.2, 1.2);
+    let mut worst: f64 = 0.0;
+    for tick in 0..8_000 {
+        // What is sent is up to 3 ms old, and one in three is lost.
+        let time = f64::from(tick) * f64::from(PERIOD);
+        if tick % 5 == 0 && random.unit() > 0.3 {
+            governor.accept(&sent(&at, time - 0.003 * f64::from(random.unit()))).unwrap();
+        }
+        let reference = governor.tick();
+        assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+        if tick > 4_000 {
+            let [there, ..] = at(time + f64::from(PERIOD));
+            worst = worst.max((reference.position.map(f64::from) - there).norm());
+        }
+    }
+    assert!(worst < 0.02, "{worst} m off");
+}
