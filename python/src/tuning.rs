@@ -1,8 +1,10 @@
 //! The search for gains.
 
+use crate::cores::alone;
 use crate::refused::{failed, refused, refused_field};
 use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
+use crate::whole::Whole;
 use host_sim::tune::effort::Effort;
 use host_sim::tune::requirements::Requirements;
 use host_sim::tune::trials::Shown;
@@ -78,16 +80,18 @@ impl Tuned {
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=150, population=48, seed=1, margin=0.05, gain_margin=2.0,
-    delay_margin=0.003, position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=true))]
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(150), population=Whole::of(48), seed=Whole::of(1), margin=0.05, gain_margin=2.0,
+    delay_margin=0.003, position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=true),
+    text_signature = "(scenario, *, name=None, generations=150, population=48, seed=1, margin=0.05, gain_margin=2.0, delay_margin=0.003, \
+position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=True)")]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn tune(
     py: Python<'_>,
     scenario: &Scenario,
     name: Option<String>,
-    generations: u32,
-    population: usize,
-    seed: u64,
+    generations: Whole,
+    population: Whole,
+    seed: Whole,
     margin: f64,
     gain_margin: f64,
     delay_margin: f64,
@@ -110,15 +114,17 @@ pub fn tune(
         "must be 0.002 s or more",
         delay_margin,
     )?;
-    check((4..=1000).contains(&population), "population", "must be from 4 to 1000", population)?;
+    let generations = generations.within("generations", 0..=u64::from(u32::MAX))? as u32;
+    let population = population.within("population", 4..=1000)? as usize;
+    let seed = seed.within("seed", 0..=u64::MAX)?;
     let mut read = scenario.read.clone();
     read.name = name.unwrap_or_else(|| format!("{}-tuned", scenario.read.name));
     check_name(&read.name).map_err(refused)?;
     let loops = LoopMargin { gain: gain_margin, delay: delay_margin };
     let requirements = Requirements { margin, loops, position_error, mrp_error, recovery, projection };
     let effort = Effort { generations, population, seed };
-    let found = interruptible(py, |interrupt| search(&read, requirements, effort, interrupt))?;
-    let tuned = found.map_err(|closest| {
+    let found = interruptible(py, |interrupt| alone(|| search(&read, requirements, effort, interrupt)))?;
+    let tuned = found?.map_err(|closest| {
         let what = closest.failed.clone().unwrap_or_default();
         failed(format!("{}: no gains meet the requirements; the closest fail in: {what}", scenario.read.name))
     })?;

@@ -101,7 +101,7 @@ GOOD = sh.reference([0, 0, 1])
         (lambda: sh.VehicleRows(PAPER, 1).step([[np.nan, 0, 0, 0]]), "row 0: wrench: must be finite"),
         (lambda: sh.VehicleRows(PAPER, 1).place([sh.state(angular_velocity=[1e6, 0, 0])]), "row 0: state.angular_velocity"),
         (lambda: sh.tune(PAPER, margin=1.0), "margin: must be from 0 to below 1, found 1"),
-        (lambda: sh.tune(PAPER, population=3), "population: must be from 4 to 1000, found 3"),
+        (lambda: sh.tune(PAPER, population=3), "population: must be a whole number from 4 to 1000, found 3"),
         (lambda: sh.tune(PAPER, name="a/b"), "name: must be 1 to 64 letters"),
     ],
 )

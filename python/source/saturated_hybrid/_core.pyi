@@ -302,7 +302,8 @@ class Governor:
         timeout: float = 0.5,
     ) -> Self: ...
     def start(self, position: ArrayLike, velocity: ArrayLike | None = None, yaw: float = 0.0) -> None:
-        """Starts anew at a steady motion: (3,) m, (3,) m/s, world; rad."""
+        """Starts anew at a steady motion: (3,) m, (3,) m/s, world, across at most the scenario's
+        `reference_bounds.horizontal_speed`; rad."""
     def accept(
         self,
         position: ArrayLike | Sequence[float | None] | None = None,
