@@ -117,7 +117,7 @@ pub fn campaign(
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
     let flown = interruptible(py, |interrupt| {
-        alone(|| fly::campaign(&stepped, &scenario.text, &law, &orders, &directory, interrupt))
+        alone(|| fly::campaign(&stepped, &scenario.text, &scenario.file, &law, &orders, &directory, interrupt))
     })?;
     Ok(Campaign { summary: flown?.map_err(raised)? })
 }
@@ -131,7 +131,7 @@ pub fn merge(py: Python<'_>, shards: Vec<PathBuf>, directory: PathBuf) -> PyResu
 
 fn raised(error: CampaignError) -> PyErr {
     match &error {
-        CampaignError::Input(_) | CampaignError::Parameter(_) => refused(error),
+        CampaignError::Input(_) => refused(error),
         CampaignError::Output(_) => unwritable(error),
         CampaignError::Rows(_) | CampaignError::Interrupted(_) => failed(error),
     }

@@ -61,6 +61,7 @@ MILLION = "must be a whole number from 0 to 1000000, found"
         (lambda: sh.campaign(PAPER, "nowhere", seed=-1), "seed: must be a whole number"),
         (lambda: sh.campaign(PAPER, "nowhere", shard=(3, 2)), r"shard: must be \(I, N\) with I from 1 to N, found \(3, 2\)"),
         (lambda: sh.campaign(PAPER, "nowhere", shard=(-1, 2)), r"shard: must be \(I, N\) with I from 1 to N, found \(-1, 2\)"),
+        (lambda: sh.campaign(PAPER.edited({"ground.height": 0.0}), "nowhere"), r"paper \(built in\): ground: a campaign throws"),
         (lambda: sh.Law(PAPER).for_rotors([np.nan, 0, 0, 0]), "wrench: must be finite"),
         (lambda: sh.LawRows(PAPER, 1).for_rotors([[1e39, 0, 0, 0]]), "row 0: wrench: must be finite"),
         (lambda: sh.VehicleRows(PAPER, 2).step([[1, 0, 0, 0], [1e39, 0, 0, 0]]), "row 1: wrench: must be finite"),
