@@ -6,7 +6,7 @@ use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
 use crate::whole::Whole;
 use host_sim::tune::effort::Effort;
-use host_sim::tune::requirements::Requirements;
+use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use host_sim::tune::trials::Shown;
 use host_sim::tune::{output, tune as search};
 use pyo3::prelude::*;
@@ -74,7 +74,7 @@ impl Tuned {
 ///     gain_margin: least gain margin of every sampled loop, 1.5 or more.
 ///     delay_margin: least delay margin of every sampled loop, s, 0.002 or more.
 ///     position_error, mrp_error: greatest of the scenario's own flight in its last quarter, m and 1.
-///     recovery: how long a recovery from upside down may take, s.
+///     recovery: how long a recovery from upside down may take, s, 2 or more; its last quarter must be still.
 ///     projection: whether the paper's law may use the thrust projection.
 ///
 /// Raises:
@@ -100,12 +100,13 @@ pub fn tune(
     recovery: f64,
     projection: bool,
 ) -> PyResult<Tuned> {
-    let positive = [("position_error", position_error), ("mrp_error", mrp_error), ("recovery", recovery)];
+    let positive = [("position_error", position_error), ("mrp_error", mrp_error)];
     for (field, value) in positive {
         check(value > 0.0 && value.is_finite(), field, "must be greater than zero and finite", value)?;
     }
     let least = LoopMargin::LEAST;
-    check(recovery <= GREATEST_RECOVERY, "recovery", "must be at most 3600 s", recovery)?;
+    let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
+    check((LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&recovery), "recovery", &allowed, recovery)?;
     check((0.0..1.0).contains(&margin), "margin", "must be from 0 to below 1", margin)?;
     check(gain_margin >= least.gain && gain_margin.is_finite(), "gain_margin", "must be 1.5 or more", gain_margin)?;
     check(
@@ -114,7 +115,7 @@ pub fn tune(
         "must be 0.002 s or more",
         delay_margin,
     )?;
-    let generations = generations.within("generations", 0..=u64::from(u32::MAX))? as u32;
+    let generations = generations.within("generations", 1..=u64::from(u32::MAX))? as u32;
     let population = population.within("population", 4..=1000)? as usize;
     let seed = seed.within("seed", 0..=u64::MAX)?;
     let mut read = scenario.read.clone();
@@ -132,9 +133,6 @@ pub fn tune(
     let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
     Ok(Tuned { scenario, shown: tuned.verdict.shown, cost: tuned.verdict.cost, judged: tuned.judged })
 }
-
-/// Longest recovery that a search may fly thousands of times, s.
-const GREATEST_RECOVERY: f64 = 3600.0;
 
 fn check(holds: bool, field: &str, allowed: &str, found: impl std::fmt::Display) -> PyResult<()> {
     if holds { Ok(()) } else { Err(refused_field(field, format!("{allowed}, found {found}"))) }
