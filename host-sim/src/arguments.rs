@@ -8,17 +8,12 @@ mod sessions;
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
 pub use compare::CompareArguments;
-use host_sim::tune::requirements::Requirements;
+use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
 use std::path::PathBuf;
-
-/// Longest recovery that a search may fly thousands of times, s.
-const GREATEST_RECOVERY: f64 = 3600.0;
-/// Shortest recovery, s: in less a vehicle that is upside down has hardly begun to fall, and has not been brought back by anything.
-const LEAST_RECOVERY: f64 = 2.0;
 
 /// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
 #[derive(Parser)]

@@ -44,8 +44,6 @@ pub enum CampaignError {
     Input(String),
     /// Output that cannot be written.
     Output(String),
-    /// The law or the certificate refused the scenario.
-    Parameter(ParameterError),
     /// The flights do not fit their columns.
     Rows(ArrowError),
     /// Somebody sent this signal. What was finished is kept.
@@ -56,7 +54,6 @@ impl fmt::Display for CampaignError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input(what) | Self::Output(what) => f.write_str(what),
-            Self::Parameter(error) => write!(f, "{error}"),
             Self::Rows(error) => write!(f, "{error}"),
             Self::Interrupted(signal) => {
                 write!(

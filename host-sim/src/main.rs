@@ -122,7 +122,7 @@ fn fly_into(
 }
 
 fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
-    let (scenario, text) = arguments.scenario()?;
+    let (scenario, text, file) = arguments.scenario()?;
     let (orders, law) = (arguments.orders(&scenario)?, arguments.law(&scenario)?);
     let name = match &law {
         LawChoice::Ours => scenario.name.clone(),
@@ -131,12 +131,12 @@ fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
     if let Some(number) = arguments.replay {
         let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{name}-{number}");
-        permit(&thrown, &format!("{}: ", arguments.file.display()), "campaign.duration", arguments.large_log)?;
+        permit(&thrown, &format!("{file}: "), "campaign.duration", arguments.large_log)?;
         let text = written::above(&text, &thrown, orders.seed, number);
         return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
     let (directory, interrupt) = (arguments.directory(&name), watch()?);
-    show_campaign(campaign::fly::campaign(&scenario, &text, &law, &orders, &directory, &interrupt), &directory)
+    show_campaign(campaign::fly::campaign(&scenario, &text, &file, &law, &orders, &directory, &interrupt), &directory)
 }
 
 fn run_merge(arguments: &MergeArguments) -> Result<ExitCode, String> {

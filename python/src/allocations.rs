@@ -30,7 +30,7 @@ impl Allocation {
     /// Thrusts (n,), N, each within its rotor's range, for a wrench (4,); and whether anything of it was given up.
     #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
     fn thrusts<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyArray1<f32>>, bool)> {
-        let asked = wrench(&row::<WRENCH>(asked, "wrench")?);
+        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
         let allocation = self.mixer.allocate(&asked).map_err(refused)?;
         Ok((PyArray1::from_slice(py, &allocation.thrusts), !allocation.is_exact()))
     }
@@ -41,6 +41,9 @@ impl Allocation {
         if thrusts.len() != self.rotors.len() {
             let count = self.rotors.len();
             return Err(refused_field("thrusts", format!("must have shape ({count},), found ({},)", thrusts.len())));
+        }
+        if let Some(thrust) = thrusts.iter().find(|thrust| !(**thrust >= 0.0 && (**thrust as f32).is_finite())) {
+            return Err(refused_field("thrusts", format!("must be finite and not below zero, found {thrust}")));
         }
         let speeds = self.rotors.iter().zip(&thrusts).map(|(rotor, thrust)| rotor.speed_at(*thrust as f32));
         Ok(PyArray1::from_vec(py, speeds.collect()))

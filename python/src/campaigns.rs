@@ -1,8 +1,10 @@
 //! Campaigns of randomised flights, their shards, and merging them: the directories that `host-sim campaign` writes.
 
+use crate::cores::alone;
 use crate::refused::{failed, refused, refused_field, unwritable};
 use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
+use crate::whole::Whole;
 use host_sim::campaign::CampaignError;
 use host_sim::campaign::fly::{self, Orders};
 use host_sim::campaign::step;
@@ -85,28 +87,28 @@ impl Campaign {
 ///     ValueError: names the argument, or says that the directory holds another campaign.
 ///     OSError: it cannot be written.
 #[pyfunction]
-#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(1, 1), plant_step=None, law=OURS, gains=None))]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::of(1), Whole::of(1)), plant_step=None, law=OURS, gains=None))]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn campaign(
     py: Python<'_>,
     scenario: &Scenario,
     directory: PathBuf,
-    flights: Option<u64>,
-    seed: Option<u64>,
-    shard: (u64, u64),
+    flights: Option<Whole>,
+    seed: Option<Whole>,
+    shard: (Whole, Whole),
     plant_step: Option<f64>,
     law: &str,
     gains: Option<PathBuf>,
 ) -> PyResult<Campaign> {
     let own = &scenario.read.campaign;
-    let (flights, seed) = (flights.unwrap_or(own.flights), seed.unwrap_or(own.seed));
-    if !(1.0..=MOST_FLIGHTS).contains(&(flights as f64)) {
-        return Err(refused_field("flights", format!("must be from 1 to {MOST_FLIGHTS}, found {flights}")));
-    }
-    if !(1..=shard.1).contains(&shard.0) {
+    let (flights, seed) = (flights.unwrap_or(Whole::of(own.flights)), seed.unwrap_or(Whole::of(own.seed)));
+    let flights = flights.within("flights", 1..=MOST_FLIGHTS as u64)?;
+    let seed = seed.within("seed", 0..=u64::MAX)?;
+    let wanted = shard.0.value().zip(shard.1.value()).filter(|(part, parts)| (1..=*parts).contains(part));
+    let shard = wanted.ok_or_else(|| {
         let allowed = "must be (I, N) with I from 1 to N";
-        return Err(refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1)));
-    }
+        refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1))
+    })?;
     let stepped = match plant_step {
         None => step::longest(&scenario.read),
         Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
@@ -114,9 +116,10 @@ pub fn campaign(
     let law = of_rivals::chosen(law, &stepped, gains.as_deref());
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
-    let flown =
-        interruptible(py, |interrupt| fly::campaign(&stepped, &scenario.text, &law, &orders, &directory, interrupt))?;
-    Ok(Campaign { summary: flown.map_err(raised)? })
+    let flown = interruptible(py, |interrupt| {
+        alone(|| fly::campaign(&stepped, &scenario.text, &scenario.file, &law, &orders, &directory, interrupt))
+    })?;
+    Ok(Campaign { summary: flown?.map_err(raised)? })
 }
 
 /// Puts all shards of a campaign together, in any order: the same bytes as the campaign that was never split.
@@ -128,7 +131,7 @@ pub fn merge(py: Python<'_>, shards: Vec<PathBuf>, directory: PathBuf) -> PyResu
 
 fn raised(error: CampaignError) -> PyErr {
     match &error {
-        CampaignError::Input(_) | CampaignError::Parameter(_) => refused(error),
+        CampaignError::Input(_) => refused(error),
         CampaignError::Output(_) => unwritable(error),
         CampaignError::Rows(_) | CampaignError::Interrupted(_) => failed(error),
     }

@@ -3,6 +3,7 @@
 use crate::refused::{refused, refused_field};
 use crate::rows::{array, of_asked, row};
 use crate::scenarios::Scenario;
+use crate::whole::Whole;
 use controller_core::governor::{self, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use nalgebra::{Vector2, Vector3};
@@ -19,6 +20,8 @@ use pyo3::prelude::*;
 #[pyclass(module = "saturated_hybrid")]
 pub struct Governor {
     governor: Box<governor::Governor>,
+    /// K_v12 of the scenario, m/s.
+    greatest_speed: f32,
 }
 
 #[pymethods]
@@ -38,13 +41,20 @@ impl Governor {
         let mut memory = Box::new(Memory::EMPTY);
         let bounds = scenario.read.configuration.bounds();
         let made = governor::Governor::new(bounds, &limits, period, &mut memory).map_err(refused)?;
-        Ok(Self { governor: Box::new(made.clone()) })
+        Ok(Self { governor: Box::new(made.clone()), greatest_speed: bounds.horizontal_speed })
     }
 
-    /// Starts anew at a steady motion: (3,) m, (3,) m/s, world; rad.
+    /// Starts anew at a steady motion: (3,) m, (3,) m/s, world, across at most the scenario's
+    /// `reference_bounds.horizontal_speed`; rad.
     #[pyo3(signature = (position, velocity=None, yaw=0.0))]
     fn start(&mut self, position: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>, yaw: f64) -> PyResult<()> {
         let velocity = velocity.map_or(Ok(Vector3::zeros()), |velocity| single(velocity, "velocity"))?;
+        let (across, greatest) = (velocity.xy().norm(), self.greatest_speed);
+        // Rounding is none of the caller's business.
+        if across > greatest * (1.0 + 2.0 * f32::EPSILON) {
+            let allowed = "must be at most the scenario's reference_bounds.horizontal_speed across";
+            return Err(refused_field("velocity", format!("{allowed}, {greatest} m/s, found {across}")));
+        }
         let heading = Heading::new(Vector2::new(yaw.cos() as f32, yaw.sin() as f32), 0.0, 0.0);
         let heading = heading.map_err(|error| refused_field("yaw", error.reason))?;
         self.governor.start(&single(position, "position")?, &velocity, &heading).map_err(refused)
@@ -89,17 +99,15 @@ impl Governor {
     }
 
     /// The references (ticks, 19) of as many periods.
-    fn run<'py>(&mut self, py: Python<'py>, ticks: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        if ticks > MOST_TICKS {
-            return Err(refused_field("ticks", format!("must be at most {MOST_TICKS}, found {ticks}")));
-        }
+    fn run<'py>(&mut self, py: Python<'py>, ticks: Whole) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let ticks = ticks.within("ticks", 0..=MOST_TICKS)?;
         let governor = &mut self.governor;
         array(py, py.detach(|| (0..ticks).map(|_| of_asked(&governor.tick())).collect()))
     }
 }
 
 /// Of one call: about half a gigabyte of references.
-const MOST_TICKS: usize = 10_000_000;
+const MOST_TICKS: u64 = 10_000_000;
 
 fn single(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector3<f32>> {
     Ok(Vector3::from(row::<3>(array, field)?).map(|value| value as f32))
@@ -123,6 +131,9 @@ fn motion(
     if let Ok(mixed) = position.extract::<[Option<f32>; 3]>()
         && mixed.contains(&None)
     {
+        if acceleration.is_some() {
+            return Err(refused_field("acceleration", "needs a position on every axis, without None"));
+        }
         return Ok(Motion::Mixed { position: mixed, velocity: or_still(velocity, "velocity")? });
     }
     let position = single(position, "position")?;

@@ -2,9 +2,11 @@
 //!
 //! A step that is refused changes nothing, of rows none of them.
 
+use crate::cores::shared;
 use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, STATE, WRENCH, array, asked, of_wrench, row, rows, told, wrench};
+use crate::rows::{REFERENCE, STATE, WRENCH, array, asked, of_wrench, row, rows, told, wrench, wrench_rows};
 use crate::scenarios::Scenario;
+use crate::whole::Whole;
 use controller_core::certificate::certified::Certified;
 use controller_core::controller::Diagnostics;
 use controller_core::law;
@@ -18,6 +20,8 @@ use std::fmt::Display;
 
 /// Rows that one core takes at a time: fewer are not worth waking another for.
 const ROWS_AT_ONCE: usize = 256;
+/// Rows of laws, or of vehicles: of these some 10 GB.
+pub const MOST_ROWS: u64 = 1_000_000;
 
 /// The control law of a scenario, as after a reset: the bits that boards fly.
 ///
@@ -83,7 +87,7 @@ impl Law {
 
     /// What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`.
     fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let asked = wrench(&row::<WRENCH>(asked, "wrench")?);
+        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
         Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.law, &asked))))
     }
 
@@ -146,6 +150,9 @@ impl Law {
     }
 }
 
+/// A law after a step, and its wrench.
+type Stepped = (law::Law, [f32; WRENCH]);
+
 /// The law of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 #[pyclass(module = "saturated_hybrid")]
 pub struct LawRows {
@@ -156,7 +163,8 @@ pub struct LawRows {
 #[pymethods]
 impl LawRows {
     #[new]
-    fn new(scenario: &Scenario, rows: usize) -> PyResult<Self> {
+    fn new(scenario: &Scenario, rows: Whole) -> PyResult<Self> {
+        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
         let reset = flight::law(&scenario.read).map_err(refused)?;
         Ok(Self { laws: vec![reset.clone(); rows], reset })
     }
@@ -187,16 +195,18 @@ impl LawRows {
         let states = rows::<STATE>(states, count, "states")?;
         let references = rows::<REFERENCE>(references, count, "references")?;
         let laws = &self.laws;
-        let stepped: Result<Vec<(law::Law, [f32; 4])>, String> = py.detach(|| {
+        let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
             let given = laws.par_iter().zip(&states).zip(&references).enumerate().with_min_len(ROWS_AT_ONCE);
             let one = |(number, ((law, state), reference)): (usize, ((&law::Law, _), _))| {
                 let mut law = law.clone();
                 let (wrench, _) = step(&mut law, state, reference).map_err(|error| format!("row {number}: {error}"))?;
                 Ok((law, of_wrench(&wrench)))
             };
-            given.map(one).collect()
+            let all = || given.map(one).collect();
+            // What one core does, none of the others is asked about.
+            if count > ROWS_AT_ONCE { shared(all) } else { Ok(all()) }
         });
-        let (laws, wrenches) = stepped.map_err(refused)?.into_iter().unzip();
+        let (laws, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
         self.laws = laws;
         array(py, wrenches)
     }
@@ -212,8 +222,8 @@ impl LawRows {
 
     /// As `Law.for_rotors`, of every row: (rows, 4).
     fn for_rotors<'py>(&self, py: Python<'py>, wrenches: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let wrenches = rows::<WRENCH>(wrenches, self.laws.len(), "wrenches")?;
-        let asked = self.laws.iter().zip(&wrenches).map(|(law, row)| of_wrench(&for_rotors(law, &wrench(row))));
+        let wrenches = wrench_rows(wrenches, self.laws.len())?;
+        let asked = self.laws.iter().zip(&wrenches).map(|(law, wrench)| of_wrench(&for_rotors(law, wrench)));
         array(py, asked.collect())
     }
 

@@ -9,7 +9,8 @@
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
 //! | [`vehicles`] | rows of simulated vehicles, for environments |
 //! | [`rows`] | numpy arrays as states, references and wrenches, and back |
-//! | [`refused`], [`waiting`] | errors; long work that lets other threads run and Ctrl-C through |
+//! | [`whole`] | whole numbers as arguments |
+//! | [`refused`], [`waiting`], [`cores`] | errors; long work that lets other threads run and Ctrl-C through; on which threads |
 //!
 //! Arrays that come in may have any numeric type and are rounded once, where the law's single precision begins; those that go
 //! out have the precision of what they hold. What documents the items here is their docstring in Python, which
@@ -18,6 +19,7 @@
 mod allocations;
 mod campaigns;
 mod certificates;
+mod cores;
 mod flights;
 mod governors;
 mod laws;
@@ -27,6 +29,7 @@ mod scenarios;
 mod tuning;
 mod vehicles;
 mod waiting;
+mod whole;
 
 use pyo3::prelude::*;
 

@@ -13,7 +13,10 @@ use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{
+    AllowTypeChange, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLikeDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods, get_array_module,
+};
 use pyo3::prelude::*;
 use scenario::body::{BodyState, attitude_from_euler};
 
@@ -29,8 +32,20 @@ pub type Rows<const N: usize> = Vec<[f64; N]>;
 
 /// The numbers of `array` and its shape.
 fn numbers(array: &Bound<'_, PyAny>, field: &str) -> PyResult<(Vec<f64>, Vec<usize>)> {
-    let read: PyArrayLikeDyn<'_, f64, AllowTypeChange> =
-        array.extract().map_err(|_| refused_field(field, "must be an array of numbers"))?;
+    let other = |_| refused_field(field, "must be an array of numbers");
+    let given = match array.cast::<PyUntypedArray>() {
+        Ok(given) => given.clone(),
+        Err(_) => {
+            let made = get_array_module(array.py())?.call_method1("asarray", (array,)).map_err(other)?;
+            made.cast_into::<PyUntypedArray>().map_err(|error| other(error.into()))?
+        }
+    };
+    // numpy would make numbers of more: of dates, of texts, of None, of the real part of complex ones.
+    let kind = given.dtype();
+    if !matches!(kind.kind(), b'b' | b'i' | b'u' | b'f') {
+        return Err(refused_field(field, format!("must be an array of numbers, found one of {kind}")));
+    }
+    let read: PyArrayLikeDyn<'_, f64, AllowTypeChange> = given.as_any().extract().map_err(other)?;
     Ok((read.as_array().iter().copied().collect(), read.shape().to_vec()))
 }
 
@@ -143,8 +158,26 @@ pub fn of_asked(reference: &Reference) -> [f32; REFERENCE] {
 }
 
 /// The wrench of a row.
-pub fn wrench(row: &[f64; WRENCH]) -> Wrench {
-    Wrench { thrust: row[0] as f32, torque: three(row, 1).map(|value| value as f32) }
+///
+/// # Errors
+/// If a number is none in single precision.
+pub fn wrench(row: &[f64; WRENCH]) -> Result<Wrench, &'static str> {
+    let single = row.map(|value| value as f32);
+    if single.iter().all(|value| value.is_finite()) {
+        Ok(Wrench { thrust: single[0], torque: Vector3::new(single[1], single[2], single[3]) })
+    } else {
+        Err("wrench: must be finite")
+    }
+}
+
+/// The wrenches of so many rows.
+///
+/// # Errors
+/// Names the row, or the field if it has another shape.
+pub fn wrench_rows(array: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Wrench>> {
+    let given = rows::<WRENCH>(array, count, "wrenches")?;
+    let each = given.iter().enumerate().map(|(number, row)| wrench(row).map_err(|problem| (number, problem)));
+    each.collect::<Result<_, _>>().map_err(|(number, problem)| refused(format!("row {number}: {problem}")))
 }
 
 /// A wrench as a row.

@@ -5,7 +5,7 @@ use crate::rows::{REFERENCE, array, of_asked, of_body, vector};
 use controller_core::allocation::Rotor;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyList, PyString, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use scenario::Scenario as Read;
 use std::path::PathBuf;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
@@ -232,39 +232,50 @@ fn change(document: &mut DocumentMut, path: &str, value: &Bound<'_, PyAny>) -> P
 /// A Python value as a TOML item: a dictionary becomes a section.
 fn item(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Item> {
     let Ok(section) = value.cast::<PyDict>() else {
-        return Ok(Item::Value(toml(value, path)?));
+        return Ok(Item::Value(toml(value, path, DEEPEST)?));
     };
     let mut table = Table::new();
     for (key, value) in section.iter() {
-        let key: String = key.extract()?;
-        table.insert(&key, Item::Value(toml(&value, &format!("{path}.{key}"))?));
+        let key = named(&key, path)?;
+        table.insert(&key, Item::Value(toml(&value, &format!("{path}.{key}"), DEEPEST)?));
     }
     Ok(Item::Table(table))
 }
 
-/// A Python value as a TOML value.
-fn toml(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+/// How deep lists and dictionaries may lie in each other: no key of a scenario takes more, and one that holds itself has no end.
+const DEEPEST: usize = 16;
+
+/// A key of a dictionary at `path`.
+fn named(key: &Bound<'_, PyAny>, path: &str) -> PyResult<String> {
+    key.extract().map_err(|_| refused_field("changes", format!("{path:?}: its keys must be text, found {key}")))
+}
+
+/// A Python value as a TOML value, with at most so many `levels` in it.
+fn toml(value: &Bound<'_, PyAny>, path: &str, levels: usize) -> PyResult<Value> {
+    let refused = |problem: &str| refused_field("changes", format!("{path:?}: {problem}"));
+    let deeper = levels.checked_sub(1).ok_or_else(|| refused("lies too deep in lists and dictionaries"));
     // What numpy has: its scalars and arrays say what they are in Python.
     let plain = if value.hasattr("tolist")? { value.call_method0("tolist")? } else { value.clone() };
     if plain.is_instance_of::<PyBool>() {
         Ok(plain.extract::<bool>()?.into())
     } else if plain.is_instance_of::<PyString>() {
-        Ok(plain.extract::<String>()?.into())
+        Ok(plain.extract::<String>().map_err(|_| refused("must be text that UTF-8 has"))?.into())
     } else if plain.is_instance_of::<PyFloat>() {
         Ok(plain.extract::<f64>()?.into())
     } else if let Ok(whole) = plain.extract::<i64>() {
         Ok(whole.into())
+    } else if plain.is_instance_of::<PyInt>() {
+        Err(refused("must be a whole number of at most 64 bits"))
     } else if plain.is_instance_of::<PyList>() || plain.is_instance_of::<PyTuple>() {
-        let elements = plain.try_iter()?.map(|element| toml(&element?, path));
+        let deeper = deeper?;
+        let elements = plain.try_iter()?.map(|element| toml(&element?, path, deeper));
         Ok(Value::Array(elements.collect::<PyResult<Array>>()?))
     } else if let Ok(section) = plain.cast::<PyDict>() {
-        let pairs = section.iter().map(|(key, value)| Ok((key.extract::<String>()?, toml(&value, path)?)));
+        let deeper = deeper?;
+        let pairs = section.iter().map(|(key, value)| Ok((named(&key, path)?, toml(&value, path, deeper)?)));
         Ok(Value::InlineTable(pairs.collect::<PyResult<InlineTable>>()?))
     } else {
         let what = plain.get_type().name()?;
-        Err(refused_field(
-            "changes",
-            format!("{path:?}: cannot be {what}; give a number, text, True, a list or a dict"),
-        ))
+        Err(refused(&format!("cannot be {what}; give a number, text, True, a list or a dict")))
     }
 }

@@ -1,10 +1,12 @@
 //! The search for gains.
 
+use crate::cores::alone;
 use crate::refused::{failed, refused, refused_field};
 use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
+use crate::whole::Whole;
 use host_sim::tune::effort::Effort;
-use host_sim::tune::requirements::Requirements;
+use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use host_sim::tune::trials::Shown;
 use host_sim::tune::{output, tune as search};
 use pyo3::prelude::*;
@@ -72,22 +74,24 @@ impl Tuned {
 ///     gain_margin: least gain margin of every sampled loop, 1.5 or more.
 ///     delay_margin: least delay margin of every sampled loop, s, 0.002 or more.
 ///     position_error, mrp_error: greatest of the scenario's own flight in its last quarter, m and 1.
-///     recovery: how long a recovery from upside down may take, s.
+///     recovery: how long a recovery from upside down may take, s, 2 or more; its last quarter must be still.
 ///     projection: whether the paper's law may use the thrust projection.
 ///
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=150, population=48, seed=1, margin=0.05, gain_margin=2.0,
-    delay_margin=0.003, position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=true))]
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(150), population=Whole::of(48), seed=Whole::of(1), margin=0.05, gain_margin=2.0,
+    delay_margin=0.003, position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=true),
+    text_signature = "(scenario, *, name=None, generations=150, population=48, seed=1, margin=0.05, gain_margin=2.0, delay_margin=0.003, \
+position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=True)")]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn tune(
     py: Python<'_>,
     scenario: &Scenario,
     name: Option<String>,
-    generations: u32,
-    population: usize,
-    seed: u64,
+    generations: Whole,
+    population: Whole,
+    seed: Whole,
     margin: f64,
     gain_margin: f64,
     delay_margin: f64,
@@ -96,12 +100,13 @@ pub fn tune(
     recovery: f64,
     projection: bool,
 ) -> PyResult<Tuned> {
-    let positive = [("position_error", position_error), ("mrp_error", mrp_error), ("recovery", recovery)];
+    let positive = [("position_error", position_error), ("mrp_error", mrp_error)];
     for (field, value) in positive {
         check(value > 0.0 && value.is_finite(), field, "must be greater than zero and finite", value)?;
     }
     let least = LoopMargin::LEAST;
-    check(recovery <= GREATEST_RECOVERY, "recovery", "must be at most 3600 s", recovery)?;
+    let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
+    check((LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&recovery), "recovery", &allowed, recovery)?;
     check((0.0..1.0).contains(&margin), "margin", "must be from 0 to below 1", margin)?;
     check(gain_margin >= least.gain && gain_margin.is_finite(), "gain_margin", "must be 1.5 or more", gain_margin)?;
     check(
@@ -110,15 +115,17 @@ pub fn tune(
         "must be 0.002 s or more",
         delay_margin,
     )?;
-    check((4..=1000).contains(&population), "population", "must be from 4 to 1000", population)?;
+    let generations = generations.within("generations", 1..=u64::from(u32::MAX))? as u32;
+    let population = population.within("population", 4..=1000)? as usize;
+    let seed = seed.within("seed", 0..=u64::MAX)?;
     let mut read = scenario.read.clone();
     read.name = name.unwrap_or_else(|| format!("{}-tuned", scenario.read.name));
     check_name(&read.name).map_err(refused)?;
     let loops = LoopMargin { gain: gain_margin, delay: delay_margin };
     let requirements = Requirements { margin, loops, position_error, mrp_error, recovery, projection };
     let effort = Effort { generations, population, seed };
-    let found = interruptible(py, |interrupt| search(&read, requirements, effort, interrupt))?;
-    let tuned = found.map_err(|closest| {
+    let found = interruptible(py, |interrupt| alone(|| search(&read, requirements, effort, interrupt)))?;
+    let tuned = found?.map_err(|closest| {
         let what = closest.failed.clone().unwrap_or_default();
         failed(format!("{}: no gains meet the requirements; the closest fail in: {what}", scenario.read.name))
     })?;
@@ -126,9 +133,6 @@ pub fn tune(
     let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
     Ok(Tuned { scenario, shown: tuned.verdict.shown, cost: tuned.verdict.cost, judged: tuned.judged })
 }
-
-/// Longest recovery that a search may fly thousands of times, s.
-const GREATEST_RECOVERY: f64 = 3600.0;
 
 fn check(holds: bool, field: &str, allowed: &str, found: impl std::fmt::Display) -> PyResult<()> {
     if holds { Ok(()) } else { Err(refused_field(field, format!("{allowed}, found {found}"))) }

@@ -6,10 +6,13 @@
 //! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's vector registers
 //! ([`host_sim::plant::rows`]), to the bits that each has alone.
 
-use crate::laws::numbers;
+use crate::cores::shared;
+use crate::laws::{MOST_ROWS, numbers};
 use crate::refused::{refused, refused_field};
-use crate::rows::{STATE, WRENCH, array, body, of_asked, of_body, of_told, rows, wrench};
+use crate::rows::{STATE, array, body, of_asked, of_body, of_told, rows, wrench_rows};
 use crate::scenarios::Scenario;
+use crate::whole::Whole;
+use controller_core::state::Wrench;
 use host_sim::plant::body::Body;
 use host_sim::plant::rows::Rows;
 use host_sim::sensors::Sensors;
@@ -50,11 +53,11 @@ impl Row {
     }
 
     /// Whether anything was clipped.
-    fn hold(&mut self, asked: &[f64; WRENCH], steps: u32) -> bool {
+    fn hold(&mut self, asked: &Wrench, steps: u32) -> bool {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(&wrench(asked), steps);
+        let held = self.vehicle.hold(asked, steps);
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 
@@ -104,12 +107,12 @@ impl Stretch {
     }
 
     /// Which of them had anything clipped.
-    fn hold(&mut self, asked: &[[f64; WRENCH]], steps: u32) -> Vec<bool> {
+    fn hold(&mut self, asked: &[Wrench], steps: u32) -> Vec<bool> {
         let Some((body, bodies)) = &mut self.bodies else {
             return self.rows.iter_mut().zip(asked).map(|(row, asked)| row.hold(asked, steps)).collect();
         };
-        let command = |(number, asked): (usize, &[f64; WRENCH])| {
-            let (thrust, torque, clipped) = body.clipped(&wrench(asked));
+        let command = |(number, asked): (usize, &Wrench)| {
+            let (thrust, torque, clipped) = body.clipped(asked);
             bodies.command(number, thrust, &torque);
             clipped
         };
@@ -137,7 +140,8 @@ impl VehicleRows {
 #[pymethods]
 impl VehicleRows {
     #[new]
-    fn new(scenario: &Scenario, rows: usize) -> PyResult<Self> {
+    fn new(scenario: &Scenario, rows: Whole) -> PyResult<Self> {
+        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
         if scenario.read.reality.estimator.is_some() {
             let problem = "estimator: rows of vehicles have none; leave that section out, [sensors] may stay";
             return Err(refused_field(&scenario.file, problem));
@@ -155,9 +159,17 @@ impl VehicleRows {
     /// Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
     /// turbulence's. If one is refused, the error names the row and no row has changed.
     #[pyo3(signature = (states, chosen=None, seeds=None))]
-    fn place(&mut self, states: &Bound<'_, PyAny>, chosen: Option<Vec<bool>>, seeds: Option<Vec<u64>>) -> PyResult<()> {
+    fn place(
+        &mut self,
+        states: &Bound<'_, PyAny>,
+        chosen: Option<Vec<bool>>,
+        seeds: Option<Vec<Whole>>,
+    ) -> PyResult<()> {
         let states = rows::<STATE>(states, self.count, "states")?;
-        let seeds = seeds.unwrap_or_else(|| (0..self.count as u64).collect());
+        let seeds: Vec<u64> = match seeds {
+            Some(seeds) => seeds.iter().map(|seed| seed.within("seeds", 0..=u64::MAX)).collect::<PyResult<_>>()?,
+            None => (0..self.count as u64).collect(),
+        };
         if seeds.len() != self.count {
             let count = self.count;
             return Err(refused_field("seeds", format!("must have shape ({count},), found ({},)", seeds.len())));
@@ -190,16 +202,16 @@ impl VehicleRows {
         py: Python<'py>,
         wrenches: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<bool>>)> {
-        let wrenches = rows::<WRENCH>(wrenches, self.count, "wrenches")?;
-        if let Some(number) = wrenches.iter().position(|row| row.iter().any(|value| !value.is_finite())) {
-            return Err(refused(format!("row {number}: wrench: must be finite")));
-        }
+        let wrenches = wrench_rows(wrenches, self.count)?;
         let (stretches, steps) = (&mut self.stretches, self.scenario.timing.steps_per_tick);
-        let clipped: Vec<Vec<bool>> = py.detach(|| {
+        let clipped: PyResult<Vec<Vec<bool>>> = py.detach(|| {
+            let brief = stretches.len() < 2;
             let given = stretches.par_iter_mut().zip(wrenches.par_chunks(STRETCH));
-            given.map(|(stretch, asked)| stretch.hold(asked, steps)).collect()
+            let all = || given.map(|(stretch, asked)| stretch.hold(asked, steps)).collect();
+            // What one core does, none of the others is asked about.
+            if brief { Ok(all()) } else { shared(all) }
         });
-        let (clipped, lost) = (clipped.concat(), self.rows().map(|row| row.lost).collect());
+        let (clipped, lost) = (clipped?.concat(), self.rows().map(|row| row.lost).collect());
         Ok((PyArray1::from_vec(py, clipped), PyArray1::from_vec(py, lost)))
     }
 

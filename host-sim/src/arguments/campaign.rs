@@ -90,11 +90,11 @@ fn shard(text: &str) -> Result<(u64, u64), String> {
 }
 
 impl CampaignArguments {
-    /// The scenario with the plant step that is flown, and the text it was read from.
+    /// The scenario with the plant step that is flown, the text it was read from, and what errors call that.
     ///
     /// # Errors
     /// Names the file or the argument that is refused.
-    pub fn scenario(&self) -> Result<(Scenario, String), String> {
+    pub fn scenario(&self) -> Result<(Scenario, String, String), String> {
         let read = |file: &Path| {
             std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
         };
@@ -117,7 +117,7 @@ impl CampaignArguments {
             None => step::longest(&scenario),
             Some(wanted) => step::of(&scenario, wanted).map_err(|problem| format!("--plant-step: {problem}"))?,
         };
-        Ok((stepped, text))
+        Ok((stepped, text, name))
     }
 
     /// How many flights, and which.

@@ -18,6 +18,7 @@ use controller_core::certificate::Certificate;
 use rayon::prelude::*;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -33,39 +34,45 @@ pub struct Orders {
     pub shard: (u64, u64),
 }
 
-/// Flies `scenario` under `law`, with the plant step that it has, read from `text`, into `directory`, or what is missing there.
+/// Flies `scenario` under `law`, with the plant step that it has, read from `text`, which errors call `file`, into `directory`, or what is
+/// missing there.
 ///
 /// # Errors
 /// [`CampaignError`]; chunks that were finished stay.
 pub fn campaign(
     scenario: &Scenario,
     text: &str,
+    file: &str,
     law: &LawChoice,
     orders: &Orders,
     directory: &Path,
     interrupt: &Interrupt,
 ) -> Result<Summary, CampaignError> {
     if let Some(problem) = grounded(scenario) {
-        return Err(CampaignError::Input(format!("{}: {problem}", scenario.name)));
+        return Err(of_file(file, problem));
     }
     let Orders { flights, seed, shard } = *orders;
     if let Some(problem) = idle(orders) {
         return Err(CampaignError::Input(problem));
     }
-    let verdict = Verdict::of(scenario).map_err(CampaignError::Parameter)?;
-    let flier = Flier::new(law, scenario, verdict.certified()).ok_or_else(|| {
-        CampaignError::Input(format!("{}: the law {} is undefined for its gains", scenario.name, law.name()))
-    })?;
+    let verdict = Verdict::of(scenario).map_err(|error| of_file(file, error))?;
+    let flier = Flier::new(law, scenario, verdict.certified())
+        .ok_or_else(|| of_file(file, format_args!("the law {} is undefined for its gains", law.name())))?;
     let manifest = Manifest::new(scenario, text, flights, seed, shard).under(law.clone());
     let store = Store::open(directory, &manifest, text)?;
     let flown = match store.result() {
         Some(flown) => flown,
         None => {
-            let chunks = Chunks::new(scenario, &flier, verdict.certificate(), &store, interrupt);
+            let chunks = Chunks::new(scenario, file, &flier, verdict.certificate(), &store, interrupt);
             chunks.fly()?
         }
     };
     finish(scenario, text, &verdict, &store, &flown)
+}
+
+/// Of a scenario that was read from `file`.
+fn of_file(file: &str, problem: impl Display) -> CampaignError {
+    CampaignError::Input(format!("{file}: {problem}"))
 }
 
 /// Why nothing of `scenario` is thrown into the air, if so.
@@ -98,13 +105,14 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
     let Some((first, _)) = stores.first() else {
         return Err(CampaignError::Input("merge: expects the directories of all shards".to_owned()));
     };
-    let (manifest, text) = (first.manifest().clone(), first.scenario()?);
+    let (manifest, text, file) = (first.manifest().clone(), first.scenario()?, first.scenario_file());
     let parts = manifest.shard.1;
     for (part, (store, _)) in (1..).zip(&stores) {
         let expected = Manifest { shard: (part, parts), ..manifest.clone() };
         if let Some(difference) = expected.difference(store.manifest()) {
+            let odd = store.directory().display();
             return Err(CampaignError::Input(format!(
-                "merge: expects each of the {parts} shards of one campaign once: not the same {difference}"
+                "{odd}: merge: expects each of the shards of one campaign once, {parts} in all: not the same {difference}"
             )));
         }
     }
@@ -114,8 +122,9 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
     }
     // Each has the text that its flights were flown from, or what is merged is not what it says.
     stores.iter().try_for_each(|(store, _)| store.scenario().map(drop))?;
-    let scenario = Scenario::parse(&text, "scenario.toml").map_err(|error| CampaignError::Input(error.to_string()))?;
-    let verdict = Verdict::of(&scenario).map_err(CampaignError::Parameter)?;
+    let file = file.display().to_string();
+    let scenario = Scenario::parse(&text, &file).map_err(|error| CampaignError::Input(error.to_string()))?;
+    let verdict = Verdict::of(&scenario).map_err(|error| of_file(&file, error))?;
     let whole = Manifest { shard: (1, 1), result: None, ..manifest };
     let mut numbered: Vec<(u64, RecordBatch)> = stores
         .into_iter()
@@ -145,6 +154,7 @@ fn finish(
 /// Chunks to fly.
 struct Chunks<'a> {
     scenario: &'a Scenario,
+    file: &'a str,
     flier: &'a Flier,
     certificate: &'a Certificate,
     store: &'a Store,
@@ -156,6 +166,7 @@ struct Chunks<'a> {
 impl<'a> Chunks<'a> {
     fn new(
         scenario: &'a Scenario,
+        file: &'a str,
         flier: &'a Flier,
         certificate: &'a Certificate,
         store: &'a Store,
@@ -163,6 +174,7 @@ impl<'a> Chunks<'a> {
     ) -> Self {
         Self {
             scenario,
+            file,
             flier,
             certificate,
             store,
@@ -197,7 +209,7 @@ impl<'a> Chunks<'a> {
         }
         let flown = throw(self.flier, self.scenario, self.certificate, self.store.manifest().seed, number);
         self.show(1);
-        flown.map_err(CampaignError::Parameter)
+        flown.map_err(|error| of_file(self.file, error))
     }
 
     /// So many more are done.

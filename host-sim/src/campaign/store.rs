@@ -104,12 +104,24 @@ impl Store {
         &self.manifest
     }
 
+    /// Where it is.
+    #[must_use]
+    pub fn directory(&self) -> &Path {
+        &self.directory
+    }
+
+    /// Where the scenario's text is.
+    #[must_use]
+    pub fn scenario_file(&self) -> PathBuf {
+        self.directory.join(SCENARIO)
+    }
+
     /// The scenario's text.
     ///
     /// # Errors
     /// If it cannot be read, or is not what was flown.
     pub fn scenario(&self) -> Result<String, CampaignError> {
-        let path = self.directory.join(SCENARIO);
+        let path = self.scenario_file();
         let text = fs::read_to_string(&path)
             .map_err(|error| CampaignError::Input(format!("{}: cannot be read: {error}", path.display())))?;
         if batches::sha256(text.as_bytes()) == self.manifest.scenario {

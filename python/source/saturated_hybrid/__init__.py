@@ -13,7 +13,8 @@ quaternions scalar first. Arrays of rows are
     reference  19   p_d(3) v(3) a(3) j(3) s(3) world | heading nu_x nu_y, a unit vector | psi' psi''
     wrench      4   thrust along body z, N | torque(3) body, N m
 
-An input that cannot be used is a `ValueError` that names the field and the reason. Well-posed work that comes to nothing (a
+An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind altogether is a
+`TypeError`, whose note names it. Well-posed work that comes to nothing (a
 flight that diverges, a search that finds no gains) is a `RuntimeError`. Long work lets other threads run, and Ctrl-C ends it.
 
 `saturated_hybrid.environment` has Gymnasium's environments, `saturated_hybrid.rotorpy` a controller for RotorPy.

@@ -302,7 +302,8 @@ class Governor:
         timeout: float = 0.5,
     ) -> Self: ...
     def start(self, position: ArrayLike, velocity: ArrayLike | None = None, yaw: float = 0.0) -> None:
-        """Starts anew at a steady motion: (3,) m, (3,) m/s, world; rad."""
+        """Starts anew at a steady motion: (3,) m, (3,) m/s, world, across at most the scenario's
+        `reference_bounds.horizontal_speed`; rad."""
     def accept(
         self,
         position: ArrayLike | Sequence[float | None] | None = None,
@@ -480,7 +481,7 @@ def tune(
         gain_margin: least gain margin of every sampled loop, 1.5 or more.
         delay_margin: least delay margin of every sampled loop, s, 0.002 or more.
         position_error, mrp_error: greatest of the scenario's own flight in its last quarter, m and 1.
-        recovery: how long a recovery from upside down may take, s.
+        recovery: how long a recovery from upside down may take, s, 2 or more; its last quarter must be still.
         projection: whether the paper's law may use the thrust projection.
 
     Raises:

@@ -14,6 +14,8 @@ The law itself is a policy: with `law = LawRows(scenario, rows)`, `law.for_rotor
 are its actions, after which it is told of those that were `clipped`: `law.hold_estimates(info["clipped"].tolist())`.
 """
 
+import operator
+
 import numpy as np
 
 from . import _core
@@ -82,7 +84,7 @@ class VectorEnvironment(_Many):
             raise ValueError(f'start: must be "random" or "scenario", found {start!r}')
         if not lost > 0.0:
             raise ValueError(f"lost: must be greater than zero, found {lost}")
-        self.scenario, self.num_envs, self.start, self.lost = scenario, int(num_envs), start, float(lost)
+        self.scenario, self.num_envs, self.start, self.lost = scenario, operator.index(num_envs), start, float(lost)
         self.vehicles = _core.VehicleRows(scenario, self.num_envs)
         infinite = np.full(STATE + REFERENCE, np.inf, np.float32)
         self.single_observation_space = _Box(-infinite, infinite, dtype=np.float32)

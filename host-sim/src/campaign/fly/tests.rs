@@ -32,7 +32,8 @@ fn orders(part: u64, parts: u64) -> Orders {
 
 fn fly_on(threads: usize, orders: &Orders, directory: &Path) -> Summary {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| campaign(&scenario(), &text(), &LawChoice::Ours, orders, directory, &Interrupt::default())).unwrap()
+    pool.install(|| campaign(&scenario(), &text(), "f", &LawChoice::Ours, orders, directory, &Interrupt::default()))
+        .unwrap()
 }
 
 /// Every file, by name.
@@ -105,7 +106,7 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     let verdict = Verdict::of(&scenario()).unwrap();
     let (same, none) = (scenario(), Interrupt::default());
     let ours = Flier::new(&LawChoice::Ours, &same, verdict.certified()).unwrap();
-    assert_eq!(Chunks::new(&same, &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
+    assert_eq!(Chunks::new(&same, "f", &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
     // One writes into a directory at a time.
     drop(store);
     assert_eq!(fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap(), there);
@@ -122,8 +123,9 @@ fn a_directory_is_of_one_campaign() {
     let before = files(&first);
     let refuse = |orders: &Orders, text: &str, expected: &str| {
         let scenario = longest(&Scenario::parse(text, "f").unwrap());
-        let error =
-            campaign(&scenario, text, &LawChoice::Ours, orders, &first, &Interrupt::default()).unwrap_err().to_string();
+        let error = campaign(&scenario, text, "f", &LawChoice::Ours, orders, &first, &Interrupt::default())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(expected) && error.contains("choose another --out"), "{error}");
     };
     refuse(&Orders { seed: 2, ..few }, &text(), "not the same seed (1 and 2)");
@@ -131,12 +133,23 @@ fn a_directory_is_of_one_campaign() {
     refuse(&Orders { shard: (1, 2), ..few }, &text(), "not the same shard ([1,1] and [1,2])");
     refuse(&few, &format!("{}# Another.\n", text()), "not the same scenario;");
     fs::write(first.join(MANIFEST), "{}").unwrap();
-    let error =
-        campaign(&scenario(), &text(), &LawChoice::Ours, &few, &first, &Interrupt::default()).unwrap_err().to_string();
+    let error = campaign(&scenario(), &text(), "f", &LawChoice::Ours, &few, &first, &Interrupt::default())
+        .unwrap_err()
+        .to_string();
     assert!(error.ends_with("campaign.json: is no campaign's of this program"), "{error}");
     fs::write(first.join(MANIFEST), &before[1].1).unwrap();
     assert_eq!(files(&first), before);
     fs::remove_dir_all(&first).unwrap();
+}
+
+#[test]
+fn a_scenario_that_nothing_is_thrown_from_is_named_by_its_file() {
+    let (text, out) = (format!("{HUMMINGBIRD}\n[ground]\nheight = 0.0\n"), directory("grounded"));
+    let grounded = Scenario::parse(&text, "mine.toml").unwrap();
+    let flown = campaign(&grounded, &text, "mine.toml", &LawChoice::Ours, &orders(1, 1), &out, &Interrupt::default());
+    let error = flown.unwrap_err().to_string();
+    assert!(error.starts_with("mine.toml: ground: a campaign throws"), "{error}");
+    assert!(!out.exists());
 }
 
 #[test]
@@ -156,6 +169,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     refuse(&[one, one], "not the same shard ([2,2] and [1,2])");
     refuse(&[one, two, two], "not the same shard ([3,2] and [2,2])");
     refuse(&[one, other], "not the same seed (1 and 9)");
+    refuse(&[one, other], &format!("{}: merge: expects each of the shards of one campaign once", other.display()));
     refuse(&[one, &out], "holds no campaign: there is no campaign.json");
     fs::remove_file(two.join(RESULT)).unwrap();
     refuse(&[one, two], "is not complete: campaign.arrow is missing or damaged");
