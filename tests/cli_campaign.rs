@@ -182,6 +182,7 @@ fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
     let directory = directory("refusals", "duration = 1e5\n");
     fs::write(directory.join("ground.toml"), format!("{PAPER}\n[ground]\nheight = 0\n")).unwrap();
     fs::write(directory.join("more.toml"), "[campaign]\nwind = 1\n[truth]\nmass = 1\n").unwrap();
+    fs::write(directory.join("windy.toml"), "[campaign]\nwind = 1\n").unwrap();
     fs::write(directory.join("paper.toml"), PAPER).unwrap();
     for (arguments, expected) in [
         (&["h.toml", "--shard", "0/2"][..], "must be I/N with I from 1 to N"),
@@ -209,6 +210,7 @@ fn what_cannot_be_flown_is_refused_in_one_line_and_leaves_nothing() {
         ),
         (&["paper.toml", "--draws", "more.toml"], "more.toml: must hold a [campaign] section and nothing else"),
         (&["h.toml", "--draws", "none.toml"], "none.toml: cannot be read: "),
+        (&["h.toml", "--draws", "windy.toml"], "h.toml: campaign: must be left out where --draws has it"),
     ] {
         let output = host_sim(&directory, &[&["campaign"], arguments, &["--out", "out"]].concat());
         let message = stderr(&output);

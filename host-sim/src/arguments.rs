@@ -163,7 +163,7 @@ The height lost is the start less the lowest point of a flight from the paper's 
 the file says and as it may really be. Printed at the end: the frontier of height lost against the excursion in a gust, with the
 inequality that limits each, and the answer: the least cost.
 
-Interrupted, a search writes the best it has found so far and says so; the exit status is then 130 or 143. If it has found
+Interrupted, a search writes the best it has found so far and says so; the exit status is then 129, 130 or 143. If it has found
 nothing yet, it writes nothing.";
 
 const COMPARE_HELP: &str = "\
@@ -204,7 +204,7 @@ The two stay in lock-step however slow they are. For clients that live in the de
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
 Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too many for a period of 10 ms.
 
-Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is then 130 or 143.";
+Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is then 129, 130 or 143.";
 
 const SITL_HELP: &str = "\
 The vehicle stands on the ground below the file's initial position. Its poses come from a camera inside, as ODOMETRY: a client need send
@@ -224,8 +224,8 @@ Faults, in seconds of the vehicle's time:
   --fault ground-station@10..40  what clients send is lost, and what is sent to them
   --fault battery=9.8@30       the battery shows 9.8 V (set BAT_LOW or BAT_CRIT above it)
 
-A line of status each second, and every text of the vehicle's, go to standard output. The exit status is 0 after --duration, 130 or 143
-when interrupted, 2 for what cannot be used.";
+A line of status each second, and every text of the vehicle's, go to standard output. The exit status is 0 after --duration, 129, 130
+or 143 when interrupted, 2 for what cannot be used.";
 
 impl TuneArguments {
     /// What gains must meet.

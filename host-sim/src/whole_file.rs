@@ -9,6 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The longest chain of symbolic links, as Linux has it.
 const LINKS: usize = 40;
 
+/// How the name ends under which a file grows.
+const UNFINISHED: &str = ".part";
+
 /// How many files this program has started: no two grow under one name.
 static STARTED: AtomicU64 = AtomicU64::new(0);
 
@@ -34,11 +37,9 @@ impl WholeFile {
             return Ok(Self { writer: BufWriter::new(File::options().write(true).open(path)?), names: None });
         }
         let path = followed(path)?;
-        // Not the file's own name, which may be as long as names can be; but one of its own also among programs that share a number, as in containers.
-        let mut name = DefaultHasher::new();
-        path.file_name().ok_or(io::ErrorKind::InvalidInput)?.hash(&mut name);
+        let beginning = hidden(&path).ok_or(io::ErrorKind::InvalidInput)?;
         let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
-        let temporary = path.with_file_name(format!(".{:016x}.{process}.{number}.part", name.finish()));
+        let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED}"));
         let writer = BufWriter::new(File::create(&temporary)?);
         Ok(Self { writer, names: Some((temporary, path)) })
     }
@@ -99,6 +100,22 @@ impl Drop for WholeFile {
             remove(temporary);
         }
     }
+}
+
+/// How the name begins under which the file called `path` grows. Not its own name, which may be as long as names can be; but one of its own
+/// also among programs that share a number, as in containers.
+fn hidden(path: &Path) -> Option<String> {
+    let mut name = DefaultHasher::new();
+    path.file_name()?.hash(&mut name);
+    Some(format!(".{:016x}.", name.finish()))
+}
+
+/// Whether `found` is what a program that was killed left of a file that was to be called `path`.
+#[must_use]
+pub fn is_unfinished(found: &Path, path: &Path) -> bool {
+    let name = found.file_name().map(|name| name.to_string_lossy());
+    let beginning = hidden(path);
+    name.zip(beginning).is_some_and(|(name, beginning)| name.starts_with(&beginning) && name.ends_with(UNFINISHED))
 }
 
 /// What a name stands for that is a symbolic link, whether that exists or not: the link stays one.

@@ -106,6 +106,9 @@ impl CampaignArguments {
             only_campaign(section).map_err(|problem| format!("{}: {problem}", draws.display()))?;
             // The scenario has to be one by itself, so that errors in it are found where they are.
             Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+            if has_campaign(&text) {
+                return Err(format!("{name}: campaign: must be left out where --draws has it"));
+            }
             text = format!("{}\n\n{section}", text.trim_end());
             name = format!("{name} with {}", draws.display());
         }
@@ -148,6 +151,12 @@ impl CampaignArguments {
         let parent = if self.replay.is_some() { "flights" } else { "campaigns" };
         self.out.clone().unwrap_or_else(|| Path::new(parent).join(name))
     }
+}
+
+/// Whether a scenario has circumstances of its own.
+fn has_campaign(text: &str) -> bool {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    text.parse::<toml_edit::DocumentMut>().is_ok_and(|document| document.contains_key("campaign"))
 }
 
 /// Refuses a text that says anything else than what circumstances there are.

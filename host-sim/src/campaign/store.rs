@@ -18,7 +18,7 @@ use super::CampaignError;
 use super::batches;
 use super::manifest::{MANIFEST, Manifest};
 use super::rows::schema;
-use crate::whole_file::WholeFile;
+use crate::whole_file::{WholeFile, is_unfinished};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use arrow_array::types::UInt64Type;
@@ -173,7 +173,7 @@ impl Store {
         self.remove_parts(&parts).map_err(unwritable(&parts))
     }
 
-    /// Removes the files of its chunks, and their directory if nothing else is in it.
+    /// Removes the files of its chunks, what a killed campaign left of one, and their directory if nothing else is in it.
     fn remove_parts(&self, parts: &Path) -> io::Result<()> {
         let chunks = self.manifest.chunks();
         let entries = match fs::read_dir(parts) {
@@ -182,9 +182,10 @@ impl Store {
         };
         for entry in entries {
             let entry = entry?;
-            if chunk_of(&entry.file_name().to_string_lossy()).is_some_and(|chunk| chunks.binary_search(&chunk).is_ok())
-            {
-                fs::remove_file(entry.path())?;
+            let (name, path) = (entry.file_name(), entry.path());
+            let is_own = chunk_of(&name.to_string_lossy()).is_some_and(|chunk| chunks.binary_search(&chunk).is_ok());
+            if is_own || chunks.iter().any(|&chunk| is_unfinished(&path, &self.path_of(chunk))) {
+                fs::remove_file(path)?;
             }
         }
         match fs::remove_dir(parts) {

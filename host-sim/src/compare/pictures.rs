@@ -74,7 +74,7 @@ pub fn scenes(names: &[&str], all: &[(&'static str, Vec<Option<Shown>>)]) -> Res
     ])
 }
 
-/// The random flights: how many are there by when, and how many lose how much height.
+/// The random flights: how many have settled by when; and the file's own flight, noise and weak rotors.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses.

@@ -236,10 +236,9 @@ impl Panel {
                 let seen = values.filter(|value| *value > LEAST_ON_LOG);
                 let (low, high) = seen.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value)));
                 let (low, high) = if low > high { (LEAST_ON_LOG, 1.0) } else { (low, high) };
-                return (
-                    10f64.powf(low.log10().floor()),
-                    10f64.powf(high.log10().ceil().max(low.log10().floor() + 1.0)),
-                );
+                let (least, most) = (low.log10().floor(), high.log10().ceil().max(low.log10().floor() + 1.0));
+                // A hair more, as at the end.
+                return (10f64.powf(least) * (1.0 - 1e-9), 10f64.powf(most) * (1.0 + 1e-9));
             }
         };
         let room = if high - low > 1e-9 { 0.1 * (high - low) } else { 1.0 };
@@ -320,6 +319,7 @@ fn format_decade(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::draw;
     use super::*;
 
     #[test]
@@ -337,5 +337,15 @@ mod tests {
     fn labels_read_well() {
         assert_eq!((format_decade(1e-5), format_decade(10.0)), ("10⁻⁵".into(), "10¹".into()));
         assert_eq!((format_linear(-0.0, 20.0), format_linear(0.25, 0.5)), ("0".into(), "0.25".into()));
+    }
+    #[test]
+    fn both_ends_of_a_logarithmic_axis_have_labels() {
+        let points = vec![(0.0, 1e-4), (1.0, 1e2)];
+        let curve = Curve { label: String::new(), color: BLUE, line: Line::Solid, width: 2, points };
+        let panel = Panel { title: "", quantity: "m", scale: Scale::Log, curves: vec![curve], bounds: Vec::new() };
+        let drawn = draw((700, 450), |root| panel.draw(root)).unwrap();
+        for end in ["10⁻⁴", "10²"] {
+            assert!(drawn.contains(end), "{end}");
+        }
     }
 }

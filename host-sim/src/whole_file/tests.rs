@@ -85,3 +85,20 @@ fn a_name_may_be_as_long_as_names_can_be_and_two_files_grow_side_by_side() {
     assert_eq!(count(&directory), 1);
     std::fs::remove_dir_all(&directory).unwrap();
 }
+
+#[test]
+fn what_a_killed_program_left_of_a_file_is_known_by_the_name_it_was_to_get() {
+    let directory = directory("killed");
+    let path = directory.join("000001.arrow");
+    // As a kill does: nothing is dropped.
+    std::mem::forget(WholeFile::create(&path).unwrap());
+    let left = std::fs::read_dir(&directory).unwrap().next().unwrap().unwrap().path();
+    assert!(is_unfinished(&left, &path), "{}", left.display());
+    for other in ["000002.arrow", "000001.arrow.part"] {
+        assert!(
+            !is_unfinished(&left, &directory.join(other)) && !is_unfinished(&directory.join(other), &path),
+            "{other}"
+        );
+    }
+    std::fs::remove_dir_all(&directory).unwrap();
+}
