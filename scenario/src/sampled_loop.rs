@@ -161,7 +161,7 @@ impl LoopModel {
         let chain = SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples);
         let spectral_radius = chain.spectral_radius();
         let margins = (spectral_radius < 1.0).then(|| {
-            let margins = margins::margins(&chain, delay_samples);
+            let margins = margins::margins(&chain, delay_samples, period);
             Margins {
                 gain_up: margins.gain_up,
                 gain_down: margins.gain_down,

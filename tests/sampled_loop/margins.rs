@@ -85,6 +85,34 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
     assert!(conditional > 50, "only {conditional} loops had a lower gain limit");
 }
 
+/// A lateral loop whose command changes its sign from tick to tick: slow ticks, and a position law so stiff that what it feeds forward
+/// jumps. Part of a sample more turns it over, at the Nyquist frequency and nowhere else.
+#[test]
+fn delay_that_makes_commands_alternate_ends_the_margin() {
+    let gains = GainParameters {
+        k_p: 868.0,
+        k_v: 99.7,
+        k_f: 2.6,
+        k_s: 2.74,
+        k_theta: 9.2,
+        k_omega: 0.0376,
+        ..GainParameters::TABLE_1
+    };
+    for delay_samples in [0.0, 0.55, 0.6] {
+        let timing = Timing { period: 0.02, delay_samples, ..IDEAL };
+        let margins = model(gains, timing).report(Axis::LateralY).margins.unwrap();
+        let with_delay = |extra: f64| {
+            let delay_samples = timing.delay_samples + extra / timing.period;
+            oracle::spectral_radius(Axis::LateralY, &gains, Timing { delay_samples, ..timing }, 1.0)
+        };
+        assert!((with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
+        for part in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99] {
+            assert!(with_delay(part * margins.delay) < 1.0, "{part} of {margins:?}");
+        }
+        assert!(with_delay(margins.delay * 1.01) > 1.0, "{margins:?}");
+    }
+}
+
 #[test]
 fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     // J s^2 + k_omega s + k_theta / 16: |L| = 1 at w, phase left atan(k_omega w / (k_theta / 16)), half a sample held.
@@ -98,6 +126,23 @@ fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     let delay = (k_omega * crossover / spring).atan() / crossover - 0.5 * timing.period;
     assert!((margins.delay - delay).abs() < 1e-4 * delay, "{margins:?} {delay}");
     assert_eq!(margins.gain_down, 0.0);
+}
+
+/// Ticks so fast that the position loops are slow beside them.
+#[test]
+fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
+    // An attitude loop that hardly carries the position loop in front of it.
+    let gains = GainParameters { k_theta: 1.2, k_omega: 0.02, ..GainParameters::TABLE_1 };
+    let at = |period: f64, axis: Axis| model(gains, Timing { period, ..IDEAL }).report(axis).margins.unwrap();
+    for axis in [Axis::LateralX, Axis::LateralY, Axis::Vertical] {
+        let (slow, fast) = (at(1e-3, axis), at(1e-5, axis));
+        for (slow, fast) in
+            [(slow.gain_down, fast.gain_down), (slow.delay, fast.delay), (slow.crossover, fast.crossover)]
+        {
+            assert!((fast - slow).abs() <= 0.05 * slow, "{axis:?}: {slow} and {fast}");
+        }
+    }
+    assert!(at(1e-3, Axis::LateralX).gain_down > 0.1, "no lower limit to hide");
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! y are the integrals of the actuator's command that an axis has (see [`super::lag`]), w the command, x whatever the law
 //! remembers. What it remembers of its own commands is closed inside: w = C x + D y is inserted before A and B are formed.
 //!
-//! A is kept in upper Hessenberg form, to which an orthogonal change of x takes it: z - A is then solved by one elimination per
+//! For responses A is kept in upper Hessenberg form as well, to which an orthogonal change of x takes it: z - A is then solved by one elimination per
 //! column, for every frequency that is looked at.
 
 use super::lag::INTEGRATORS;
@@ -28,6 +28,26 @@ pub(super) struct Compensator {
     pub output: RowDVector<f64>,
     /// D.
     pub direct: RowSVector<f64, INTEGRATORS>,
+    reduced: Reduced,
+}
+
+/// A in upper Hessenberg form, with the B and C that belong to it. The turn rounds relative to A's largest entries, so the closed loop is
+/// not made of it.
+#[derive(Debug, Clone)]
+struct Reduced {
+    transition: DMatrix<f64>,
+    input: DMatrix<f64>,
+    output: RowDVector<f64>,
+}
+
+impl Reduced {
+    fn of(transition: &DMatrix<f64>, input: &DMatrix<f64>, output: &RowDVector<f64>) -> Self {
+        if transition.nrows() < 3 {
+            return Self { transition: transition.clone(), input: input.clone(), output: output.clone() };
+        }
+        let (turn, transition) = Hessenberg::new(transition.clone()).unpack();
+        Self { transition, input: turn.tr_mul(input), output: output * &turn }
+    }
 }
 
 impl Compensator {
@@ -50,7 +70,8 @@ impl Compensator {
             direct[m] = tick(&mut x, &core::array::from_fn(|i| f64::from(u8::from(i == m))));
             input.column_mut(m).copy_from_slice(&x);
         }
-        Self { transition, input, output, direct }.in_hessenberg_form()
+        let reduced = Reduced::of(&transition, &input, &output);
+        Self { transition, input, output, direct, reduced }
     }
 
     /// The number of states.
@@ -58,24 +79,17 @@ impl Compensator {
         self.transition.nrows()
     }
 
-    fn in_hessenberg_form(self) -> Self {
-        if self.size() < 3 {
-            return self;
-        }
-        let (turn, transition) = Hessenberg::new(self.transition).unpack();
-        Self { transition, input: turn.tr_mul(&self.input), output: self.output * &turn, direct: self.direct }
-    }
-
     /// w per y_m at z: C (z - A)^-1 B + D.
     pub fn response(&self, z: Complex<f64>) -> Response {
+        let Reduced { transition, input, output } = &self.reduced;
         let size = self.size();
         let complex = |value: f64| Complex::new(value, 0.0);
         // r (z - A) = C: combining columns from the right makes z - A triangular, r is then found from the left.
-        let mut columns: Vec<Complex<f64>> = self.transition.iter().map(|entry| complex(-entry)).collect();
+        let mut columns: Vec<Complex<f64>> = transition.iter().map(|entry| complex(-entry)).collect();
         for i in 0..size {
             columns[i * size + i] += z;
         }
-        let mut row: Vec<Complex<f64>> = self.output.iter().copied().map(complex).collect();
+        let mut row: Vec<Complex<f64>> = output.iter().copied().map(complex).collect();
         for j in (1..size).rev() {
             let (left, right) = columns.split_at_mut(j * size);
             let (left, right) = (&mut left[(j - 1) * size..], &mut right[..size]);
@@ -95,7 +109,7 @@ impl Compensator {
             row[i] = (row[i] - known) / column[i];
         }
         core::array::from_fn(|m| {
-            row.iter().zip(&self.input.column(m)).fold(complex(self.direct[m]), |sum, (r, entry)| sum + r * entry)
+            row.iter().zip(&input.column(m)).fold(complex(self.direct[m]), |sum, (r, entry)| sum + r * entry)
         })
     }
 }

@@ -3,24 +3,31 @@
 //! An eigenvalue e^(i angle) appears where the loop's response passes through -1. Scaling the loop's gain by kappa moves
 //! every point of the response along its ray, so the critical kappa are -1 / L at the crossings of the negative real
 //! axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held command
-//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left.
+//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left. At the Nyquist
+//! frequency there is no phase to take: the response is real, and further delay carries it along the axis.
 //!
-//! The response is followed along a grid of frequencies; where it crosses an axis twice between neighbours, a near-tangency
-//! within 10 % of frequency, that is not seen.
+//! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at more closely: it may
+//! cross twice between neighbours.
 
 use super::chain::SampledLoop;
 use super::compensator::Response;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
-/// The lowest frequency looked at, radians per sample: below the slowest position loop one would fly.
-const LOWEST: f64 = 3e-5;
+/// The lowest frequency looked at, rad/s: below the slowest position loop one would fly.
+const LOWEST: f64 = 3e-3;
+
+/// The same for slow ticks, radians per sample.
+const LOWEST_PER_SAMPLE: f64 = 3e-5;
 
 /// The highest one. At pi itself the response is real, so the sign of its imaginary part there would be rounding's.
 const HIGHEST: f64 = PI * (1.0 - 1e-4);
 
 /// Greatest ratio of neighbouring frequencies less one.
 const SPACING: f64 = 0.1;
+
+/// How near to zero a measure of the response has to turn back to be looked at more closely.
+const NEAR: f64 = 0.5;
 
 /// The margins of a stable loop, in samples and radians per sample.
 #[derive(Debug, Clone, Copy)]
@@ -35,21 +42,28 @@ pub(super) struct SampleMargins {
     pub crossover: f64,
 }
 
-/// The margins of `chain`, which is stable with its commands `delay` samples late.
-pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64) -> SampleMargins {
-    let grid = Grid::of(chain, delay);
+/// The margins of `chain`, which is stable with its commands `delay` samples late, at ticks `period` seconds apart.
+pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64, period: f64) -> SampleMargins {
+    let grid = Grid::of(chain, delay, LOWEST_PER_SAMPLE.min(LOWEST * period));
     let sweep = Sweep::along(&grid.points, *chain);
     let (gain_down, gain_up) = sweep.critical_gains();
     let unit_gain = sweep.crossings(gain);
     let (Some(lowest), Some(crossover)) = (unit_gain.first(), unit_gain.last()) else {
         return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
     };
-    SampleMargins { gain_up, gain_down, delay: delay_margin(chain, &grid, delay, *lowest), crossover: *crossover }
+    let turned = delay_margin(chain, &grid, delay, *lowest);
+    let delay = nyquist_margin(chain, delay, turned).unwrap_or(turned);
+    SampleMargins { gain_up, gain_down, delay, crossover: *crossover }
 }
 
 /// Positive where the loop amplifies.
 fn gain(response: Complex<f64>) -> f64 {
     response.norm_sqr().ln()
+}
+
+/// The sine of the response's angle to the positive real axis.
+fn phase(response: Complex<f64>) -> f64 {
+    response.im / response.norm_sqr().sqrt()
 }
 
 /// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
@@ -90,17 +104,34 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
     if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
+/// The least further delay, in samples and below `longest`, at which the response at the Nyquist frequency passes through -1, if
+/// there is one.
+fn nyquist_margin(chain: &SampledLoop<'_>, delay: f64, longest: f64) -> Option<f64> {
+    /// In a sample of delay, along which the response is nearly a straight line.
+    const POINTS: u32 = 16;
+    let law = chain.law_response(PI);
+    let beyond = |extra: f64| 1.0 + chain.with_delay(delay + extra).response_with(PI, &law).re;
+    // A whole sample turns the response's sign, a second one turns it back.
+    let points = (0..=2 * POINTS).map(|point| f64::from(point) / f64::from(POINTS)).map(|extra| extra.min(longest));
+    let values: Vec<(f64, f64)> = points.map(|extra| (extra, beyond(extra))).collect();
+    let passes = |pair: &&[(f64, f64)]| (pair[0].1 < 0.0) != (pair[1].1 < 0.0);
+    values.windows(2).find(passes).map(|pair| root(beyond, pair[0], pair[1]))
+}
+
 /// Frequencies, rising, with the law's part of the response: the same for every delay.
 struct Grid {
     points: Vec<(f64, Response)>,
 }
 
 impl Grid {
-    /// Fine enough to follow a response that `delay` samples turn.
-    fn of(chain: &SampledLoop<'_>, delay: f64) -> Self {
+    /// From `lowest` on, fine enough to follow a response that `delay` samples turn.
+    fn of(chain: &SampledLoop<'_>, delay: f64, lowest: f64) -> Self {
         let step = PI / (8.0 * (delay + 1.0));
-        let mut angles = Vec::new();
-        let mut angle = LOWEST;
+        let below =
+            core::iter::successors(Some(LOWEST_PER_SAMPLE / (1.0 + SPACING)), |angle| Some(angle / (1.0 + SPACING)));
+        let mut angles: Vec<f64> = below.take_while(|angle| *angle >= lowest).collect();
+        angles.reverse();
+        let mut angle = LOWEST_PER_SAMPLE;
         while angle < HIGHEST {
             angles.push(angle);
             angle += step.min(SPACING * angle);
@@ -130,22 +161,35 @@ impl<'a> Sweep<'a> {
 
     /// The frequencies, rising, at which `measure` of the response changes sign.
     fn crossings(&self, measure: impl Fn(Complex<f64>) -> f64) -> Vec<f64> {
-        self.points
+        let values: Vec<(f64, f64)> =
+            self.points.iter().map(|(angle, response)| (*angle, measure(*response))).collect();
+        let at = |angle: f64| measure(self.chain.response(angle));
+        let changes = |left: f64, right: f64| (left < 0.0) != (right < 0.0);
+        let mut crossings: Vec<f64> = values
             .windows(2)
-            .filter_map(|pair| {
-                let [(left, at_left), (right, at_right)] = [pair[0], pair[1]];
-                let (at_left, at_right) = (measure(at_left), measure(at_right));
-                let changes = (at_left < 0.0) != (at_right < 0.0);
-                changes.then(|| root(|angle| measure(self.chain.response(angle)), (left, at_left), (right, at_right)))
-            })
-            .collect()
+            .filter(|pair| changes(pair[0].1, pair[1].1))
+            .map(|pair| root(at, pair[0], pair[1]))
+            .collect();
+        for three in values.windows(3) {
+            let [left, middle, right] = [three[0], three[1], three[2]];
+            let turns = middle.1.abs() <= left.1.abs() && middle.1.abs() < right.1.abs() && middle.1.abs() < NEAR;
+            if turns
+                && !changes(left.1, middle.1)
+                && !changes(middle.1, right.1)
+                && let Some(beyond) = beyond(at, left, right)
+            {
+                crossings.extend([root(at, left, beyond), root(at, beyond, right)]);
+            }
+        }
+        crossings.sort_unstable_by(f64::total_cmp);
+        crossings
     }
 
     /// The factors on the gain nearest to one, below and above, that put the response through -1.
     fn critical_gains(&self) -> (f64, f64) {
         // At the Nyquist frequency the curve ends on the axis without crossing it.
         let end = core::iter::once(PI);
-        self.crossings(|response| response.im)
+        self.crossings(phase)
             .into_iter()
             .chain(end)
             .map(|angle| -1.0 / self.chain.response(angle).re)
@@ -159,6 +203,22 @@ impl<'a> Sweep<'a> {
     }
 }
 
+/// A point between two of the same sign where `value`, which turns back between them, has the other one.
+fn beyond(value: impl Fn(f64) -> f64, left: (f64, f64), right: (f64, f64)) -> Option<(f64, f64)> {
+    /// Each leaves two thirds of the interval.
+    const STEPS: usize = 16;
+    let (mut low, mut high) = (left.0, right.0);
+    for _ in 0..STEPS {
+        let third = (high - low) / 3.0;
+        let [near, far] = [low + third, high - third].map(|angle| (angle, value(angle)));
+        if let Some(beyond) = [near, far].into_iter().find(|point| (point.1 < 0.0) != (left.1 < 0.0)) {
+            return Some(beyond);
+        }
+        if near.1.abs() < far.1.abs() { high = far.0 } else { low = near.0 }
+    }
+    None
+}
+
 /// The zero of `value` between two points of opposite sign: regula falsi, Illinois variant.
 fn root(value: impl Fn(f64) -> f64, mut left: (f64, f64), mut right: (f64, f64)) -> f64 {
     /// Some eight are enough; the bound is for values that are noise.
@@ -169,7 +229,8 @@ fn root(value: impl Fn(f64) -> f64, mut left: (f64, f64), mut right: (f64, f64))
     for _ in 0..STEPS {
         let middle = (left.0 * right.1 - right.0 * left.1) / (right.1 - left.1);
         if !(middle > left.0 && middle < right.0) {
-            break;
+            // Rounding put it onto the end that is the zero, however far the other one is.
+            return if left.1.abs() < right.1.abs() { left.0 } else { right.0 };
         }
         if (middle - last).abs() < RESOLUTION * middle {
             return middle;

@@ -14,6 +14,7 @@ const SQUARINGS: u32 = 40;
 
 /// The largest magnitude of an eigenvalue of a square `matrix`.
 pub(super) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
+    balance(&mut matrix);
     let mut square = matrix.clone();
     let mut logarithm = 0.0_f64;
     let mut weight = 1.0;
@@ -31,9 +32,38 @@ pub(super) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
     logarithm.exp()
 }
 
+/// Scales the states by powers of two, which costs no digit, until each one's row and column are about as large as each other: a square's
+/// rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is far below them.
+fn balance(matrix: &mut DMatrix<f64>) {
+    /// Enough for any file's; each sweep takes time as one column of a square does.
+    const SWEEPS: usize = 20;
+    for _ in 0..SWEEPS {
+        let mut scaled = false;
+        for state in 0..matrix.nrows() {
+            let own = matrix[(state, state)].abs();
+            let row = matrix.row(state).iter().map(|entry| entry.abs()).sum::<f64>() - own;
+            let column = matrix.column(state).iter().map(|entry| entry.abs()).sum::<f64>() - own;
+            if row <= 0.0 || column <= 0.0 {
+                continue;
+            }
+            let exponent = (0.5 * (row / column).log2()).round();
+            if exponent != 0.0 {
+                let factor = exponent.exp2();
+                matrix.row_mut(state).scale_mut(1.0 / factor);
+                matrix.column_mut(state).scale_mut(factor);
+                scaled = true;
+            }
+        }
+        if !scaled {
+            return;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scenario;
 
     fn radius(rows: [[f64; 2]; 2]) -> f64 {
         spectral_radius(DMatrix::from_row_slice(2, 2, rows.as_flattened()))
@@ -51,6 +81,26 @@ mod tests {
     fn a_double_eigenvalue_and_a_dominant_negative_one_are_found() {
         assert!((radius([[1.0, 1.0], [0.0, 1.0]]) - 1.0).abs() < 1e-8);
         assert!((radius([[0.5, 3.0], [0.0, -1.25]]) - 1.25).abs() < 1e-9);
+    }
+
+    /// Small errors die out at the same rate per second, to what a sample of 0.1 ms delays, however much faster the ticks are.
+    #[test]
+    fn faster_ticks_do_not_change_how_fast_small_errors_die_out() {
+        const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+        let decays = |rate: &str| {
+            let text = HUMMINGBIRD.replace("rate = 100.0 ", &format!("rate = {rate} "));
+            let text = text.replace("[plant]\nstep = 0.001 ", "")
+                + "[sensors]\nvelocity = \"alpha-beta\"\nvelocity_bandwidth = 80.0\n";
+            let scenario = Scenario::parse(&text, "h").unwrap();
+            let period = scenario.timing.period();
+            scenario.loops().unwrap().reports().map(|report| (report.axis, -report.spectral_radius.ln() / period))
+        };
+        let slow = decays("10000.0");
+        for rate in ["20000.0", "100000.0"] {
+            for ((axis, fast), (_, slow)) in decays(rate).into_iter().zip(slow) {
+                assert!(slow > 0.1 && (fast - slow).abs() < 0.02 * slow, "{axis:?} at {rate}: {fast} and {slow}");
+            }
+        }
     }
 
     #[test]

@@ -92,7 +92,7 @@ fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
 fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
     let gravity = f64::from(scenario.configuration.vehicle().gravity);
     let period = scenario.timing.period();
-    let Compensator { transition, input, output, direct } = scenario.loops().unwrap().law(axis).compensator();
+    let Compensator { transition, input, output, direct, .. } = scenario.loops().unwrap().law(axis).compensator();
     let mut x = DVector::zeros(transition.nrows());
     let tick = |k| {
         let [p, v, angle, rate] = motion(axis, k, period);
