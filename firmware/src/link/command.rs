@@ -72,6 +72,8 @@ pub enum Action {
     Calibrate(Option<Procedure>),
     /// Only answer.
     Answer(MavResult),
+    /// Send this message, and answer whether there was anything to send.
+    Send(Kind),
     /// Accept, and say something besides.
     Tell(Reply),
     /// Accept, and name every mode.
@@ -140,16 +142,16 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
             index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Tell(Reply::Mode(index as u8)),
             _ => DENIED,
         },
-        MavCmd::MAV_CMD_REQUEST_MESSAGE => tell(first, Reply::Message),
-        MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => tell(first, Reply::IntervalOf),
+        MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
+        MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Tell(Reply::IntervalOf(kind))),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => {
-            tell(first, |kind| Reply::Interval { kind, interval: second as i64 })
+            of_kind(first, |kind| Action::Tell(Reply::Interval { kind, interval: second as i64 }))
         }
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => DENIED,
         // What older clients say for REQUEST_MESSAGE.
-        MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Tell(Reply::Message(Kind::HomePosition)),
-        MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Tell(Reply::Message(Kind::AutopilotVersion)),
-        MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION => Action::Tell(Reply::Message(Kind::ProtocolVersion)),
+        MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Send(Kind::HomePosition),
+        MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Send(Kind::AutopilotVersion),
+        MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION => Action::Send(Kind::ProtocolVersion),
         _ => Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
     }
 }
@@ -158,10 +160,10 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
 const MODES_NUMBER: f32 = 435.0;
 
 /// Something about the message of this number; unsupported if it is none of ours.
-fn tell(number: f32, reply: impl Fn(Kind) -> Reply) -> Action {
+fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
     // A number that is none, or negative, becomes that of HEARTBEAT: not asked for that way.
     let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| streams::of_number(number as u32));
-    kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), |kind| Action::Tell(reply(kind)))
+    kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), act)
 }
 
 /// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the heading,

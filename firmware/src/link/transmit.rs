@@ -177,6 +177,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),
             Reply::Message(kind) => return self.message(kind, now),
+            Reply::Requested { kind, command, sender } => {
+                let is_said = self.message(kind, now);
+                let result =
+                    if is_said { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+                self.shared.reply(Reply::Command { command, result, sender });
+                return is_said;
+            }
             Reply::Mode(index) => {
                 let system = self.system();
                 return self.writer.write_some(system, vehicle::available_mode(index));

@@ -78,6 +78,15 @@ pub enum Reply {
     AllParameters,
     /// A message, once.
     Message(Kind),
+    /// A message, once, and COMMAND_ACK: whether there was anything to say.
+    Requested {
+        /// Which.
+        kind: Kind,
+        /// The command that asked for it.
+        command: MavCmd,
+        /// Who sent it: system and component.
+        sender: (u8, u8),
+    },
     /// AVAILABLE_MODES of one mode, counted from 1.
     Mode(u8),
     /// A message every so many us from now on; 0 as usual, below that never.

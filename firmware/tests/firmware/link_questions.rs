@@ -46,7 +46,17 @@ fn messages_are_sent_on_request_and_at_rates_that_are_asked_for() {
     };
     let (accepted, unsupported) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_UNSUPPORTED);
     let (request, interval) = (MavCmd::MAV_CMD_REQUEST_MESSAGE, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL);
-    assert_eq!(tell(request, 148.0, 0.0), (vec![Reply::Message(Kind::AutopilotVersion)], accepted));
+    for (command, number, kind) in [
+        (request, 148.0, Kind::AutopilotVersion),
+        (request, 85.0, Kind::PositionTarget),
+        (MavCmd::MAV_CMD_GET_HOME_POSITION, 0.0, Kind::HomePosition),
+    ] {
+        let shared = Local::new();
+        let asked = crate::support::receiver::command(command, [number, 0.0, 0.0, 0.0, 0.0]);
+        Fed::new(&shared).message(&asked, 0);
+        // Whoever sends it answers.
+        assert_eq!(replies(&shared), [Reply::Requested { kind, command, sender: (255, 190) }]);
+    }
     assert_eq!(tell(request, 435.0, 0.0).0.len(), 4);
     assert_eq!(tell(request, 435.0, 2.0), (vec![Reply::Mode(2)], accepted));
     assert_eq!(tell(request, 435.0, 9.0), (vec![], MavResult::MAV_RESULT_DENIED));

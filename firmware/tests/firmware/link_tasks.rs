@@ -12,6 +12,7 @@ use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
+use firmware::link::telemetry::kind::Kind;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
@@ -220,6 +221,20 @@ fn commands_are_answered_with_number_and_result() {
     let texts: Vec<STATUSTEXT_DATA> = sent(&written);
     assert_eq!(texts[0].text.to_str().unwrap(), "Refused: poses not believed for a whole second");
     assert_eq!(texts[0].severity, MavSeverity::MAV_SEVERITY_WARNING);
+}
+
+#[test]
+fn what_is_requested_is_accepted_where_there_is_anything_to_send() {
+    let shared = Local::new();
+    let (command, sender) = (MavCmd::MAV_CMD_REQUEST_MESSAGE, (255, 190));
+    for kind in [Kind::PositionTarget, Kind::ProtocolVersion, Kind::HomePosition] {
+        shared.replies.put(Reply::Requested { kind, command, sender }).unwrap();
+    }
+    // On the ground, without an estimate.
+    let written = transmitted(&shared, 100_000, |now| report(&shared, Mode::Checks, now));
+    let results: Vec<_> = sent::<Acknowledgement>(&written).iter().map(|answer| answer.result).collect();
+    let later = MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
+    assert_eq!(results, [later, MavResult::MAV_RESULT_ACCEPTED, later]);
 }
 
 const ARM: Asked =

@@ -99,6 +99,10 @@ impl<M: RawMutex> Receiver<'_, M> {
             }
             Action::Calibrate(procedure) => return self.calibrate((procedure, sender)).err(),
             Action::Answer(result) => return Some(result),
+            Action::Send(kind) => {
+                self.shared.reply(Reply::Requested { kind, command: call.command, sender });
+                return None;
+            }
             Action::Tell(reply) => self.shared.reply(reply),
             Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
         }
