@@ -141,6 +141,37 @@ mod tests {
         assert!(good > 0 && bad > 0);
     }
 
+    /// What the firmware's build would be told of the study, changed.
+    fn checked(line: &str, other: &str) -> Result<Option<String>, String> {
+        assert!(STUDY.contains(line), "{line}");
+        check(&Scenario::parse(&STUDY.replace(line, other), "a test").unwrap(), "a test")
+    }
+
+    #[test]
+    fn what_the_boards_cannot_drive_is_refused_by_name() {
+        assert_eq!(checked("name = ", "name = "), Ok(None));
+        for rate in ["rate = 50.0 ", "rate = 200.0 "] {
+            let error = checked("rate = 100.0 ", rate).unwrap_err();
+            assert!(error.starts_with("a test: control.rate: the firmware flies at 100 Hz"), "{error}");
+        }
+        let (four, six) =
+            ("[-0.120208, 0.120208, 0.0],", "[-0.120208, 0.120208, 0.0], [0.17, 0.0, 0.0], [-0.17, 0.0, 0.0],");
+        let six = STUDY.replace(four, six).replace("\"cw\", \"ccw\"]", "\"cw\", \"ccw\", \"cw\", \"ccw\"]");
+        let error = check(&Scenario::parse(&six, "a test").unwrap(), "a test").unwrap_err();
+        assert_eq!(error, "a test: rotors.position: the boards drive 4 motors, found 6");
+    }
+
+    #[test]
+    fn what_flies_on_a_desk_and_not_with_a_boards_late_rates_is_not_built() {
+        let lags = (30..60).map(|lag| format!("lag = 0.0{lag} "));
+        let late = lags.filter(|lag| {
+            let text = STUDY.replace("lag = 0.030 ", lag);
+            let verdict = Verdict::of(&Scenario::parse(&text, "a test").unwrap()).unwrap();
+            verdict.lacking().is_none() && checked("lag = 0.030 ", lag).is_err_and(|error| error.contains("ms late"))
+        });
+        assert!(late.count() > 0);
+    }
+
     #[test]
     fn another_lag_or_gain_is_another_configuration() {
         let identity_of = |text: &str| identity(&Scenario::parse(text, "a test").unwrap());

@@ -230,6 +230,10 @@ fn the_scale_is_learnt_from_the_vertical_and_stays_within_its_limits() {
     // Of little thrust it learns slowly.
     let step = scale.learnt(1.0, 2.0, 2.0, 3.0) - 1.0;
     assert!((step - 0.3 * 0.01 * 2.0 / (4.0 + 4.0)).abs() < 1e-6, "{step}");
+    // Of whatever it is told no faster than 0.2 a second.
+    for lift in [1e4, -1e4] {
+        assert!((scale.learnt(1.0, 10.0, 9.0, lift) - 1.0).abs() - 0.002 < 1e-6, "{lift} m/s^2");
+    }
     // Lying on its side it learns nothing.
     assert_eq!(scale.learnt(1.1, 10.0, 0.0, 5.0), 1.1);
 }

@@ -110,6 +110,21 @@ fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
 }
 
 #[test]
+fn a_limit_on_the_speed_beyond_the_bounds_does_not_count() {
+    let limits = GovernorLimits { horizontal_speed: 20.0, ..GovernorLimits::default() };
+    let governor = Governor::new(&TYPICAL, &limits, PERIOD, memory()).unwrap();
+    let mut fastest = 0.0_f32;
+    for _ in 0..1_000 {
+        let motion = Motion::Velocity(Vector3::new(6.0, -8.0, 0.0));
+        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        let reference = governor.tick();
+        assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+        fastest = fastest.max(reference.velocity.norm());
+    }
+    assert!(fastest > 0.999 * TYPICAL.horizontal_speed, "{fastest} m/s");
+}
+
+#[test]
 fn position_on_some_axes_and_velocity_on_the_others_are_reached_together() {
     let governor = governor();
     let motion = Motion::Mixed { position: [None, None, Some(2.0)], velocity: Vector3::new(1.0, -0.5, 0.0) };

@@ -27,6 +27,36 @@ fn each_figure_arrives_where_the_certificate_looks() {
 }
 
 #[test]
+fn rotors_that_differ_keep_the_thrusts_that_were_not_changed() {
+    let mut rotors: Vec<Rotor, 4> = built().rotors().unwrap().iter().copied().collect();
+    (rotors[2].thrust_min, rotors[2].thrust_max) = (0.02, 2.9);
+    let built = built().with_rotors(Rotors::new(&rotors).unwrap()).unwrap();
+    let figures = Figures::of(&built);
+    let third = |rotor_thrust| {
+        let tuning = Tuning { figures: Figures { rotor_thrust, ..figures }, factors: Factors::BUILT };
+        let rotor = tuning.apply(&built).unwrap().rotors().unwrap()[2];
+        (rotor.thrust_min, rotor.thrust_max)
+    };
+    let [least, most] = figures.rotor_thrust;
+    assert_eq!(third([least, most]), (0.02, 2.9));
+    assert_eq!(third([0.01, most]), (0.01, 2.9));
+    assert_eq!(third([least, 2.5]), (0.02, 2.5));
+}
+
+#[test]
+fn the_papers_law_has_no_gains_of_its_own_for_the_vertical() {
+    let built = built();
+    let other = Percent::new(90.0).unwrap();
+    for (factors, field) in [
+        (Factors { position_vertical: other, ..Factors::BUILT }, "gains.k_p_vertical"),
+        (Factors { velocity_vertical: other, ..Factors::BUILT }, "gains.k_v_vertical"),
+    ] {
+        let error = Tuning { figures: Figures::of(&built), factors }.apply(&built).unwrap_err();
+        assert_eq!(error, ParameterError { field, reason: Reason::OtherLaw });
+    }
+}
+
+#[test]
 fn what_no_vehicle_could_be_is_refused_by_field() {
     let built = built();
     let figures = Figures::of(&built);

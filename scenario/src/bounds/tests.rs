@@ -28,6 +28,11 @@ fn read(text: &str) -> Result<ReferenceBounds, FieldError> {
 #[test]
 fn left_out_they_are_the_references_own() {
     assert_eq!(read(""), Ok(OWN));
+    for (own, horizontal_speed) in [(3.0, 5.0), (7.0, 7.0)] {
+        let own = ReferenceBounds { horizontal_speed: own, ..OWN };
+        let bounds = read_bounds(&Section::root(&"".parse().unwrap()), &own);
+        assert_eq!(bounds, Ok(ReferenceBounds { horizontal_speed, ..OWN }));
+    }
 }
 
 #[test]

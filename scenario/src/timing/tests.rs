@@ -19,6 +19,15 @@ fn a_period_between_microseconds_is_refused_with_the_nearest_rate() {
     let error = read("duration = 1\ncontrol.rate = 300").unwrap_err();
     assert_eq!(error.field, "control.rate");
     assert!(error.problem.contains("nearest: 300.03"), "{error}");
+    // A third of a microsecond short of one, not beyond.
+    assert!(read("duration = 1\ncontrol.rate = 299.97").unwrap_err().problem.contains("nearest: 299.94"));
+}
+
+#[test]
+fn a_duration_of_whole_periods_has_them_all_whatever_rounding_makes_of_it() {
+    for (duration, ticks) in [("0.29", 29), ("0.58", 58), ("0.299", 29)] {
+        assert_eq!(read(&format!("duration = {duration}")).unwrap().ticks, ticks, "{duration} s");
+    }
 }
 
 #[test]

@@ -67,9 +67,11 @@ fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
     }
     let parameters = example::PARAMETERS;
     let fall = parameters.position.m_down + parameters.estimates.force_vertical - example::vehicle().gravity;
+    let before = controller.clone();
+    reference.acceleration.z = fall;
+    assert_eq!(controller.step(&state, &reference).unwrap_err(), InputError::FallsTooFast);
     reference.acceleration.z = fall.next_up();
     reference.jerk = Vector3::repeat(1e6);
-    let before = controller.clone();
     let refused = controller.step(&state, &reference).unwrap_err();
     assert_eq!(refused, InputError::OutOfRange { field: "reference" });
     assert_eq!(controller, before);
