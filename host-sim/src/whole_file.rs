@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all.
 
+use std::ffi::OsStr;
 use std::fs::File;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
@@ -21,6 +22,14 @@ pub struct WholeFile {
     names: Option<(PathBuf, PathBuf)>,
 }
 
+/// What the name begins with under which a file grows: not its own, which may be as long as names can be; but one of its own also among
+/// programs that share a number, as in containers.
+fn hidden(name: &OsStr) -> String {
+    let mut of = DefaultHasher::new();
+    name.hash(&mut of);
+    format!(".{:016x}.", of.finish())
+}
+
 impl WholeFile {
     /// Starts a file that will be called `path`. It grows under a hidden name in the same directory.
     ///
@@ -34,13 +43,17 @@ impl WholeFile {
             return Ok(Self { writer: BufWriter::new(File::options().write(true).open(path)?), names: None });
         }
         let path = followed(path)?;
-        // Not the file's own name, which may be as long as names can be; but one of its own also among programs that share a number, as in containers.
-        let mut name = DefaultHasher::new();
-        path.file_name().ok_or(io::ErrorKind::InvalidInput)?.hash(&mut name);
+        let hidden = hidden(path.file_name().ok_or(io::ErrorKind::InvalidInput)?);
         let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
-        let temporary = path.with_file_name(format!(".{:016x}.{process}.{number}.part", name.finish()));
+        let temporary = path.with_file_name(format!("{hidden}{process}.{number}.part"));
         let writer = BufWriter::new(File::create(&temporary)?);
         Ok(Self { writer, names: Some((temporary, path)) })
+    }
+
+    /// Whether a file that is to be called `name` grows as `found`, or grew so until its program was killed.
+    #[must_use]
+    pub fn grows_as(name: &str, found: &str) -> bool {
+        found.ends_with(".part") && found.starts_with(&hidden(OsStr::new(name)))
     }
 
     /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.

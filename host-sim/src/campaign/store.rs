@@ -182,8 +182,12 @@ impl Store {
         };
         for entry in entries {
             let entry = entry?;
-            if chunk_of(&entry.file_name().to_string_lossy()).is_some_and(|chunk| chunks.binary_search(&chunk).is_ok())
-            {
+            let found = entry.file_name();
+            let found = found.to_string_lossy();
+            let finished = chunk_of(&found).is_some_and(|chunk| chunks.binary_search(&chunk).is_ok());
+            // Of those that were under way when the program was killed there are no more than it had threads.
+            let broken = || chunks.iter().any(|chunk| WholeFile::grows_as(&name_of(*chunk), &found));
+            if finished || found.ends_with(".part") && broken() {
                 fs::remove_file(entry.path())?;
             }
         }
@@ -203,22 +207,24 @@ impl Store {
     }
 
     fn path_of(&self, chunk: u64) -> PathBuf {
-        self.directory.join(PARTS).join(format!("{chunk:06}.arrow"))
+        self.directory.join(PARTS).join(name_of(chunk))
     }
+}
+
+/// What the file of a chunk is called.
+fn name_of(chunk: u64) -> String {
+    format!("{chunk:06}.arrow")
+}
+
+/// Of which chunk a finished part has the name.
+fn chunk_of(name: &str) -> Option<u64> {
+    name.strip_suffix(".arrow")?.parse().ok().filter(|chunk| name_of(*chunk) == name)
 }
 
 /// Whether a batch holds the flights of a chunk.
 fn is_chunk(batch: &RecordBatch, manifest: &Manifest, chunk: u64) -> bool {
     *batch.schema() == schema(manifest)
         && batch.column(0).as_primitive::<UInt64Type>().values().iter().copied().eq(manifest.flights_of(chunk))
-}
-
-/// Of which chunk a part has the name, finished or under way.
-fn chunk_of(name: &str) -> Option<u64> {
-    let under_way =
-        name.strip_prefix('.').and_then(|name| name.strip_suffix(".part")).and_then(|name| name.rsplit_once('.'));
-    let digits = under_way.map_or(name, |(name, _)| name).strip_suffix(".arrow")?;
-    digits.parse().ok().filter(|chunk: &u64| format!("{chunk:06}") == digits)
 }
 
 /// Keeps everybody else from writing into `directory`, where its file system can: some, across a network, cannot.
