@@ -98,16 +98,25 @@ impl Governor {
         PyArray1::from_slice(py, &of_asked(&self.governor.tick()))
     }
 
-    /// The references (ticks, 19) of as many periods.
+    /// The references (ticks, 19) of as many periods. Interrupted, it is where it was.
     fn run<'py>(&mut self, py: Python<'py>, ticks: Whole) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let ticks = ticks.within("ticks", 0..=MOST_TICKS)?;
-        let governor = &mut self.governor;
-        array(py, py.detach(|| (0..ticks).map(|_| of_asked(&governor.tick())).collect()))
+        let ticks = ticks.within("ticks", 0..=MOST_TICKS)? as usize;
+        let mut governor = self.governor.clone();
+        let mut references = Vec::with_capacity(ticks);
+        while references.len() < ticks {
+            let brief = TICKS_BETWEEN_SIGNALS.min(ticks - references.len());
+            py.detach(|| references.extend((0..brief).map(|_| of_asked(&governor.tick()))));
+            py.check_signals()?;
+        }
+        self.governor = governor;
+        array(py, references)
     }
 }
 
 /// Of one call: about half a gigabyte of references.
 const MOST_TICKS: u64 = 10_000_000;
+/// Some milliseconds of them.
+const TICKS_BETWEEN_SIGNALS: usize = 10_000;
 
 fn single(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector3<f32>> {
     Ok(Vector3::from(row::<3>(array, field)?).map(|value| value as f32))

@@ -28,6 +28,7 @@ except KeyboardInterrupt:
     [
         'sh.fly(sh.Scenario.built_in("paper").edited({"duration": 1e6}))',
         'sh.tune(sh.Scenario.built_in("study"), generations=100000)',
+        '[sh.Governor(sh.Scenario.built_in("paper")).run(10_000_000) for _ in range(100)]',
     ],
 )
 def test_ctrl_c_ends_it_within_two_seconds(work):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import saturated_hybrid as sh
 from saturated_hybrid.environment import VectorEnvironment
+from saturated_hybrid.rotorpy import SaturatedHybridControl
 
 PAPER = sh.Scenario.built_in("paper")
 HUMMINGBIRD = sh.Scenario.built_in("hummingbird")
@@ -52,6 +53,8 @@ MILLION = "must be a whole number from 0 to 1000000, found"
         (lambda: sh.LawRows(PAPER, 10**9), f"rows: {MILLION} {10**9}"),
         (lambda: sh.VehicleRows(PAPER, 10**30), f"rows: {MILLION} 1{'0' * 30}"),
         (lambda: sh.VehicleRows(PAPER, 10**5000), f"rows: {MILLION} one of thousands of digits"),
+        (lambda: VectorEnvironment(PAPER, 2).reset(seed=[1, -3]), "seed: must not be below zero, found -3"),
+        (lambda: SaturatedHybridControl({"mass": 0.5}), "quad_params: 'Ixx' is missing"),
         (lambda: VectorEnvironment(PAPER, -1), f"rows: {MILLION} -1"),
         (lambda: sh.VehicleRows(PAPER, 1).place([sh.state()], None, [-1]), "seeds: must be a whole number from 0 to 18446744073709551615"),
         (lambda: sh.Governor(PAPER).run(-1), "ticks: must be a whole number from 0 to 10000000, found -1"),

@@ -326,7 +326,7 @@ class Governor:
     def tick(self) -> NDArray[np.float32]:
         """The reference (19,) one period later."""
     def run(self, ticks: int) -> NDArray[np.float32]:
-        """The references (ticks, 19) of as many periods."""
+        """The references (ticks, 19) of as many periods. Interrupted, it is where it was."""
 
 @final
 class Claim:

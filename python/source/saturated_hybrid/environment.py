@@ -114,6 +114,9 @@ class VectorEnvironment(_Many):
                 seeds = list(seed)
             if len(seeds) != self.num_envs:
                 raise ValueError(f"seed: must be an integer or {self.num_envs} of them, found {len(seeds)}")
+            below = [each for each in seeds if each is not None and each < 0]
+            if below:
+                raise ValueError(f"seed: must not be below zero, found {below[0]}")
             self._generators = [np.random.default_rng(each) for each in seeds]
         unknown = set(options or {}) - {"state"}
         if unknown:

@@ -8,6 +8,10 @@ import numpy as np
 from . import _core
 
 GRAVITY = 9.81
+# Of RotorPy's vehicle.
+READ = (
+    "mass", "Ixx", "Iyy", "Izz", "rotor_pos", "rotor_directions", "k_eta", "k_m", "rotor_speed_min", "rotor_speed_max", "tau_m",
+)
 # How far a time may be from a tick, as a share of the period: RotorPy adds its steps up.
 ROUNDING = 1e-6
 
@@ -109,6 +113,9 @@ def check_vehicle(quad_params, scenario):
     rotors = scenario.rotors
     if rotors is None:
         raise ValueError(f"{scenario.name}: rotors: the scenario has no such section; add one")
+    lacking = [name for name in READ if name not in quad_params]
+    if lacking:
+        raise ValueError(f"quad_params: {lacking[0]!r} is missing")
     theirs = {
         "vehicle.mass": (scenario.mass, quad_params["mass"]),
         "vehicle.inertia": (scenario.inertia, [quad_params[name] for name in ("Ixx", "Iyy", "Izz")]),

@@ -5,6 +5,7 @@ use super::super::manifest::{CHUNK, MANIFEST};
 use super::super::step::longest;
 use super::super::store::{REPORT, RESULT, SCENARIO};
 use super::*;
+use crate::whole_file::WholeFile;
 use std::fs;
 use std::path::PathBuf;
 
@@ -88,7 +89,7 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     let kept = flown[1].clone();
     store.keep(1, &kept).unwrap();
     fs::write(again.join("parts/000002.arrow"), b"ARROW1\0\0 and then nothing").unwrap();
-    fs::write(again.join("parts/.000003.arrow.1.part"), b"half").unwrap();
+    std::mem::forget(WholeFile::create(&again.join("parts/000003.arrow")).unwrap());
     assert!(store.part(1) == Some(kept.clone()) && store.part(2).is_none() && store.part(0).is_none());
     // A number that was changed is damage as well, where the part is sealed; those of older campaigns are not, and are taken.
     let (sealed, middle) = (fs::read(again.join("parts/000001.arrow")).unwrap(), 8000);
