@@ -113,6 +113,29 @@ fn delay_that_makes_commands_alternate_ends_the_margin() {
     }
 }
 
+/// A vertical loop at 20 Hz whose commands are 1.5 ticks late: a fraction of a tick more makes a crossing that was not there before.
+#[test]
+fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
+    let gains = GainParameters {
+        k_p: 868.05176,
+        k_v: 21.862_217,
+        k_f: 2.050_610_8,
+        k_s: 2.743_467_8,
+        ..GainParameters::TABLE_1
+    };
+    let timing = Timing { period: 0.05, delay_samples: 1.53125, ..IDEAL };
+    let margins = model(gains, timing).report(Axis::Vertical).margins.unwrap();
+    let with_delay = |extra: f64| {
+        let delay_samples = timing.delay_samples + extra / timing.period;
+        oracle::spectral_radius(Axis::Vertical, &gains, Timing { delay_samples, ..timing }, 1.0)
+    };
+    assert!(with_delay(0.06) > 1.0);
+    assert!(margins.delay < 0.06 && (with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
+    for part in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99] {
+        assert!(with_delay(part * margins.delay) < 1.0, "{part} of {margins:?}");
+    }
+}
+
 #[test]
 fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     // J s^2 + k_omega s + k_theta / 16: |L| = 1 at w, phase left atan(k_omega w / (k_theta / 16)), half a sample held.

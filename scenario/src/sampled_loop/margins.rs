@@ -6,6 +6,9 @@
 //! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left. At the Nyquist
 //! frequency there is no phase to take: the response is real, and further delay carries it along the axis.
 //!
+//! A fraction of a sample may also make a crossing that was not there without it, which no step from the crossings there leads to. So the
+//! eigenvalues themselves are asked, up to a few samples of delay.
+//!
 //! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at more closely: it may
 //! cross twice between neighbours.
 
@@ -52,7 +55,8 @@ pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64, period: f64) -> Sampl
         return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
     };
     let turned = delay_margin(chain, &grid, delay, *lowest);
-    let delay = nyquist_margin(chain, delay, turned).unwrap_or(turned);
+    let found = nyquist_margin(chain, delay, turned).unwrap_or(turned);
+    let delay = borne_out(chain, delay, found);
     SampleMargins { gain_up, gain_down, delay, crossover: *crossover }
 }
 
@@ -116,6 +120,25 @@ fn nyquist_margin(chain: &SampledLoop<'_>, delay: f64, longest: f64) -> Option<f
     let values: Vec<(f64, f64)> = points.map(|extra| (extra, beyond(extra))).collect();
     let passes = |pair: &&[(f64, f64)]| (pair[0].1 < 0.0) != (pair[1].1 < 0.0);
     values.windows(2).find(passes).map(|pair| root(beyond, pair[0], pair[1]))
+}
+
+/// What of `margin`, samples, the eigenvalues bear out.
+fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
+    /// Further delays that are tried, samples apart.
+    const STEP: f64 = 0.25;
+    /// So many of them: from there on a fraction of a sample changes little.
+    const TRIED: u32 = 8;
+    /// Halvings of a step.
+    const HALVINGS: usize = 40;
+    let is_stable = |extra: &f64| chain.with_delay(delay + extra).spectral_radius() < 1.0;
+    let mut tried = (1..=TRIED).map(|step| f64::from(step) * STEP).take_while(|extra| *extra < margin);
+    let Some(unstable) = tried.find(|extra| !is_stable(extra)) else { return margin };
+    let (mut low, mut high) = (unstable - STEP, unstable);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_stable(&middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// Frequencies, rising, with the law's part of the response: the same for every delay.
