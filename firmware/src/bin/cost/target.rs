@@ -104,8 +104,8 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Option<Certifi
     let certify: Certify = black_box(Certified::new);
     let (bytes, _) = stack::depth(|| certify(configuration.clone()).is_ok());
     let copy = configuration.clone();
-    let (instructions, certified) = counter.long(|| certify(copy));
-    let Ok(certified) = certified else {
+    let (instructions, certified) = counter.long(|| certify(copy).ok());
+    let Some(certified) = certified else {
         hprintln!("{}: the embedded configuration is not certified", configuration::NAME);
         return None;
     };
