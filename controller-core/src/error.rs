@@ -20,6 +20,10 @@ pub enum Reason {
     NotBelow(f32),
     /// Not above the value given, with that value.
     NotAbove(f32),
+    /// Above the greatest value there may be, with that value.
+    Above(f32),
+    /// Below the least value there may be, with that value.
+    Below(f32),
     /// Moments of inertia of a rigid body: none exceeds the sum of the other two.
     TriangleInequality,
     /// Too few elements, with the least number.
@@ -48,6 +52,8 @@ impl fmt::Display for Reason {
             Self::Negative => write!(f, "must not be negative"),
             Self::NotBelow(limit) => write!(f, "must be below {limit}"),
             Self::NotAbove(limit) => write!(f, "must be above {limit}"),
+            Self::Above(limit) => write!(f, "must be at most {limit}"),
+            Self::Below(limit) => write!(f, "must be at least {limit}"),
             Self::TriangleInequality => {
                 write!(
                     f,

@@ -141,7 +141,7 @@ impl Governor {
             (limits.timeout, LONGEST_TIME, "governor.timeout"),
         ] {
             require_positive(value, field)?;
-            require(value <= most, field, Reason::NotBelow(most))?;
+            require(value <= most, field, Reason::Above(most))?;
         }
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
         *memory = Memory::EMPTY;

@@ -98,7 +98,7 @@ impl Conditioner {
         ] {
             require_positive(value, field)?;
         }
-        require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::NotBelow(0.25 * p.rate))?;
+        require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::Above(0.25 * p.rate))?;
         Ok(Self {
             calibration: *calibration,
             watch: Watch::new(Ranges { gyro: p.gyro_range, accelerometer: p.accelerometer_range }),

@@ -69,7 +69,7 @@ impl FilterTransition {
     pub fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
         let longest = Self::LONGEST_PERIOD;
-        require(period <= longest, "control.period", Reason::NotBelow(longest))?;
+        require(period <= longest, "control.period", Reason::Above(longest))?;
         let (k_f, k_s, h) = (f64::from(k_f), f64::from(k_s), f64::from(period));
         let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.

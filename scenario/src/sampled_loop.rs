@@ -131,10 +131,10 @@ impl LoopModel {
             require(value.is_finite(), field, Reason::NotFinite)?;
         }
         require(period > 0.0, "control.period", Reason::NotPositive)?;
-        require(period <= f64::from(LONGEST_PERIOD), "control.period", Reason::NotBelow(LONGEST_PERIOD))?;
+        require(period <= f64::from(LONGEST_PERIOD), "control.period", Reason::Above(LONGEST_PERIOD))?;
         require(rotor_lag >= 0.0, "rotors.lag", Reason::Negative)?;
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
-        require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::NotBelow(GREATEST_DELAY))?;
+        require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::Above(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
         Ok(Self { inertia, slopes: Slopes::of(law, vehicle), timing, velocity_bandwidth: None })
     }

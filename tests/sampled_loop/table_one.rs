@@ -77,12 +77,12 @@ fn a_bad_timing_is_refused_by_name() {
     let law = LawParameters::Paper(PaperLaw { gains, thrust_floor: None });
     for (timing, field, reason) in [
         (Timing { period: 0.0, ..IDEAL }, "control.period", Reason::NotPositive),
-        (Timing { period: 0.2, ..IDEAL }, "control.period", Reason::NotBelow(0.1)),
+        (Timing { period: 0.2, ..IDEAL }, "control.period", Reason::Above(0.1)),
         (Timing { period: f64::NAN, ..IDEAL }, "control.period", Reason::NotFinite),
         (Timing { rotor_lag: -1e-3, ..IDEAL }, "rotors.lag", Reason::Negative),
         (Timing { rotor_lag: f64::INFINITY, ..IDEAL }, "rotors.lag", Reason::NotFinite),
         (Timing { delay_samples: -0.5, ..IDEAL }, "sampling.delay", Reason::Negative),
-        (Timing { delay_samples: 65.0, ..IDEAL }, "sampling.delay", Reason::NotBelow(64.0)),
+        (Timing { delay_samples: 65.0, ..IDEAL }, "sampling.delay", Reason::Above(64.0)),
     ] {
         assert_eq!(LoopModel::new(&vehicle, &law, timing), Err(ParameterError { field, reason }));
     }

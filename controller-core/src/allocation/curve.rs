@@ -47,7 +47,7 @@ impl ThrustCurve {
         require_positive(thrust_max, "rotors.thrust_max")?;
         require_finite(linear, "rotors.curve")?;
         require(linear >= 0.0, "rotors.curve", Reason::Negative)?;
-        require(linear <= 1.0, "rotors.curve", Reason::NotBelow(1.0))?;
+        require(linear <= 1.0, "rotors.curve", Reason::Above(1.0))?;
         Ok(Self { thrust_max, linear })
     }
 

@@ -99,7 +99,7 @@ impl Configuration {
         let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
         require_positive(floor, field)?;
         let least = self.least_thrust();
-        require(floor <= least, field, Reason::NotBelow(least))?;
+        require(floor <= least, field, Reason::Above(least))?;
         Ok(Self { law: LawParameters::Paper(PaperLaw { thrust_floor: Some(floor), ..law }), ..self })
     }
 
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(paper().with_thrust_floor(least).unwrap().thrust_floor(), Some(least));
         let refused = |floor: f32| paper().with_thrust_floor(floor).unwrap_err();
         let field = "control.thrust_floor";
-        assert_eq!(refused(least.next_up()), ParameterError { field, reason: Reason::NotBelow(least) });
+        assert_eq!(refused(least.next_up()), ParameterError { field, reason: Reason::Above(least) });
         assert_eq!(refused(0.0), ParameterError { field, reason: Reason::NotPositive });
     }
 

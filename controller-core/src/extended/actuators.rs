@@ -106,7 +106,7 @@ impl ActuatorModel {
         let (lag, period) = (f64::from(lag), f64::from(period));
         let samples = f64::from(delay) / period;
         // A delay of whole samples that rounding put just below or above is one.
-        require(samples <= (DELAY_MAX - 1) as f64 + ROUNDING, "sampling.delay", Reason::NotBelow(longest))?;
+        require(samples <= (DELAY_MAX - 1) as f64 + ROUNDING, "sampling.delay", Reason::Above(longest))?;
         let whole = math::floor(samples + ROUNDING);
         let late = (samples - whole).max(0.0) * period;
         // e(t), and the mean of e over t times t, which is the lag times 1 - e(t).

@@ -103,7 +103,7 @@ impl Controller {
         let ExtendedLaw { parameters, actuators } = law;
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
-        require(period <= longest, "control.period", Reason::NotBelow(longest))?;
+        require(period <= longest, "control.period", Reason::Above(longest))?;
         Self::check_period(parameters, period)?;
         let p = &parameters.position;
         Ok(Self {

@@ -145,7 +145,7 @@ impl ForceGenerator {
             (e.force_bandwidth_across, "estimates.force_bandwidth_across"),
             (e.force_bandwidth_vertical, "estimates.force_bandwidth_vertical"),
         ] {
-            require(bandwidth <= greatest, field, Reason::NotBelow(greatest))?;
+            require(bandwidth <= greatest, field, Reason::Above(greatest))?;
         }
         Ok(())
     }

@@ -52,9 +52,9 @@ impl HeadingLag {
 /// Names `gains.c_1` or `gains.c_2`.
 pub fn check(parameters: &HeadingParameters, period: f32) -> Result<(), ParameterError> {
     let HeadingParameters { c_1, c_2, .. } = *parameters;
-    require(c_2 * period <= 1.0, "gains.c_2", Reason::NotBelow(1.0 / period))?;
+    require(c_2 * period <= 1.0, "gains.c_2", Reason::Above(1.0 / period))?;
     let most = 0.5 * c_2 / period;
-    require(c_1 <= most, "gains.c_1", Reason::NotBelow(most))
+    require(c_1 <= most, "gains.c_1", Reason::Above(most))
 }
 
 /// The desired frame's motion, and the lag's.

@@ -190,8 +190,8 @@ impl Extended {
             (e.torque_smoothing, "estimates.torque_smoothing"),
         ] {
             require_finite(value, field)?;
-            require(value >= Self::BANDWIDTH_LEAST, field, Reason::NotAbove(Self::BANDWIDTH_LEAST))?;
-            require(value <= Self::BANDWIDTH_GREATEST, field, Reason::NotBelow(Self::BANDWIDTH_GREATEST))?;
+            require(value >= Self::BANDWIDTH_LEAST, field, Reason::Below(Self::BANDWIDTH_LEAST))?;
+            require(value <= Self::BANDWIDTH_GREATEST, field, Reason::Above(Self::BANDWIDTH_GREATEST))?;
         }
         for (value, field) in [
             (p.k_p_across, "gains.k_p_across"),
@@ -242,18 +242,18 @@ impl Extended {
         ] {
             require_positive(value, field)?;
             require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
-            require(value <= most, field, Reason::NotBelow(most))?;
+            require(value <= most, field, Reason::Above(most))?;
         }
         require_positive(*floor_margin, "gains.floor_margin")?;
         let least = Self::FLOOR_MARGIN_LEAST * vehicle.mass * vehicle.gravity;
-        require(*floor_margin >= least, "gains.floor_margin", Reason::NotAbove(least))?;
+        require(*floor_margin >= least, "gains.floor_margin", Reason::Below(least))?;
         require(*floor_margin < Self::GREATEST, "gains.floor_margin", Reason::NotBelow(Self::GREATEST))?;
         require(a.alpha < 1.0, "gains.alpha", Reason::NotBelow(1.0))?;
         require(a.ease >= 0.0, "gains.ease", Reason::Negative)?;
         require(a.ease < 1.0, "gains.ease", Reason::NotBelow(1.0))?;
         require(e.scale_least > 0.1, "estimates.scale_least", Reason::NotAbove(0.1))?;
-        require(e.scale_least <= 1.0, "estimates.scale_least", Reason::NotBelow(1.0))?;
-        require(e.scale_greatest >= 1.0, "estimates.scale_greatest", Reason::NotAbove(1.0))?;
+        require(e.scale_least <= 1.0, "estimates.scale_least", Reason::Above(1.0))?;
+        require(e.scale_greatest >= 1.0, "estimates.scale_greatest", Reason::Below(1.0))?;
         require(e.scale_greatest < 10.0, "estimates.scale_greatest", Reason::NotBelow(10.0))?;
         let extended = Self(parameters);
         require(extended.greatest_fall() < vehicle.gravity, "gains.m_down", Reason::NotBelow(vehicle.gravity))?;

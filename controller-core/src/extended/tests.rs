@@ -329,9 +329,9 @@ fn constants_out_of_their_range_are_refused_by_name() {
     assert_eq!(refused(&|p| p.attitude.ease = 1.0), beyond("gains.ease", Reason::NotBelow(1.0)));
     assert_eq!(refused(&|p| p.attitude.ease = -0.1), beyond("gains.ease", Reason::Negative));
     let (least, greatest) = ("estimates.scale_least", "estimates.scale_greatest");
-    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1), beyond(least, Reason::NotBelow(1.0)));
+    assert_eq!(refused(&|p| p.estimates.scale_least = 1.1), beyond(least, Reason::Above(1.0)));
     assert_eq!(refused(&|p| p.estimates.scale_least = 0.05), beyond(least, Reason::NotAbove(0.1)));
-    assert_eq!(refused(&|p| p.estimates.scale_greatest = 0.99), beyond(greatest, Reason::NotAbove(1.0)));
+    assert_eq!(refused(&|p| p.estimates.scale_greatest = 0.99), beyond(greatest, Reason::Below(1.0)));
     assert_eq!(refused(&|p| p.estimates.scale_greatest = 10.0), beyond(greatest, Reason::NotBelow(10.0)));
     assert_eq!(refused(&|p| p.estimates.force_across = f32::NAN).field, "estimates.force_across");
     assert_eq!(refused(&|p| p.floor_margin = 0.0).field, "gains.floor_margin");

@@ -273,9 +273,11 @@ fn a_limit_that_is_too_great_is_said_to_be_so() {
         Governor::new(&TYPICAL, &limits, PERIOD, memory()).unwrap_err().to_string()
     };
     let limits = GovernorLimits::default();
-    assert_eq!(said(GovernorLimits { timeout: 61.0, ..limits }), "governor.timeout: must be below 60");
-    assert!(said(GovernorLimits { snap_ramp: 59.0, ..limits }).starts_with("governor.snap_ramp: must be below"));
-    assert!(said(GovernorLimits { heading_ramp: 59.0, ..limits }).starts_with("governor.heading_ramp: must be below"));
+    assert_eq!(said(GovernorLimits { timeout: 61.0, ..limits }), "governor.timeout: must be at most 60");
+    assert!(said(GovernorLimits { snap_ramp: 59.0, ..limits }).starts_with("governor.snap_ramp: must be at most"));
+    assert!(
+        said(GovernorLimits { heading_ramp: 59.0, ..limits }).starts_with("governor.heading_ramp: must be at most")
+    );
 }
 
 #[test]

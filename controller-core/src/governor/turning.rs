@@ -101,7 +101,7 @@ impl Turning {
         period: f32,
     ) -> Result<(), ParameterError> {
         let length = ticks(limits.heading_ramp, period);
-        require(length <= TURN_HISTORY, "governor.heading_ramp", Reason::NotBelow(TURN_HISTORY as f32 * period))?;
+        require(length <= TURN_HISTORY, "governor.heading_ramp", Reason::Above(TURN_HISTORY as f32 * period))?;
         let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
         let rate = (bounds.heading_rate * (1.0 - ROUNDING_ROOM)).min(RATE_SHARE * math::sqrt(second));
         let strongest = strongest_at(rate, bounds, period);

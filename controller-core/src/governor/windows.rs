@@ -51,7 +51,7 @@ impl Windows {
     /// The windows for `bounds`, all of them positive, at `period` seconds a tick.
     pub fn design(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         let third = (2 * ticks(0.5 * limits.snap_ramp, period)).max(2);
-        require(third <= LAST, "governor.snap_ramp", Reason::NotBelow(LAST as f32 * period))?;
+        require(third <= LAST, "governor.snap_ramp", Reason::Above(LAST as f32 * period))?;
         let mut share = 1.0 - ROUNDING_ROOM;
         let mut fitted = Self::lengths(bounds, share, period, third);
         for _ in 0..FITTING_STEPS {
@@ -97,7 +97,7 @@ impl Windows {
             (vertical, "reference_bounds.vertical_acceleration"),
         ] {
             let least = FEWEST_LEVELS / (per_metre * share * period * period);
-            require(level * per_metre >= FEWEST_LEVELS, field, Reason::NotAbove(least))?;
+            require(level * per_metre >= FEWEST_LEVELS, field, Reason::Below(least))?;
         }
         // Converting to an integer rounds towards zero.
         let whole = |level: f32| (level * per_metre) as u32 as f32;

@@ -99,7 +99,7 @@ fn parameters_that_make_no_sense_are_refused_by_name() {
     let refused = |parameters: &ImuParameters| Conditioner::new(parameters, &Calibration::NONE).err().unwrap();
     let good = ImuParameters::BMI088;
     assert_eq!(refused(&ImuParameters { rate: 0.0, ..good }).field, "imu.rate");
-    assert_eq!(refused(&ImuParameters { cutoff: 251.0, ..good }).reason, Reason::NotBelow(250.0));
+    assert_eq!(refused(&ImuParameters { cutoff: 251.0, ..good }).reason, Reason::Above(250.0));
     assert_eq!(refused(&ImuParameters { gyro_range: f32::NAN, ..good }).reason, Reason::NotFinite);
     assert!((conditioner().delay() - 3.7e-3).abs() < 1e-5);
 }

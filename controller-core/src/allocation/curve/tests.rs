@@ -64,7 +64,7 @@ fn without_a_believable_reading_there_is_no_compensation() {
 #[test]
 fn curves_that_bend_the_wrong_way_are_refused() {
     assert_eq!(ThrustCurve::new(1.0, -0.1).unwrap_err().reason, Reason::Negative);
-    let bent = ParameterError { field: "rotors.curve", reason: Reason::NotBelow(1.0) };
+    let bent = ParameterError { field: "rotors.curve", reason: Reason::Above(1.0) };
     assert_eq!(ThrustCurve::new(1.0, 1.1).unwrap_err(), bent);
     assert_eq!(ThrustCurve::new(1.0, f32::NAN).unwrap_err().reason, Reason::NotFinite);
     assert_eq!(ThrustCurve::new(0.0, 0.5).unwrap_err().field, "rotors.thrust_max");
