@@ -207,6 +207,6 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     }
 
     fn request(&self, request: Request) -> Result<(), Full> {
-        self.shared.request(Asked { request, command: None, sender: None })
+        self.shared.request(Asked { request, order: None })
     }
 }

@@ -241,10 +241,9 @@ impl<M: RawMutex> Shared<M> {
         if let Err(refusal) = result {
             self.announce(Event::Refused(refusal));
         }
-        let Some(command) = asked.command else { return };
+        let Some(order) = asked.order else { return };
         let result = if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED };
-        let sender = asked.sender.unwrap_or_default();
-        let _ = self.answers.put(Reply::Command { command, result, sender });
+        let _ = self.answers.put(Reply::Command(order.answered(result)));
         self.outgoing.signal(());
     }
 

@@ -38,6 +38,10 @@ class Client:
     async def near(self, target, within=0.2):
         return math.dist(await self.place(), target) < within
 
+    async def rests(self):
+        now = (await self.telemetry.position_velocity_ned()).velocity
+        return math.hypot(now.north_m_s, now.east_m_s, now.down_m_s) < 0.03
+
     async def fly_to(self, target, yaw):
         await self.offboard.set_position_ned(PositionNedYaw(*target, yaw))
         await self.until(lambda: self.near(target), 20, f"there: {target}")
@@ -88,7 +92,8 @@ async def fly(flown):
         print("  mavsdk: went to a place on the globe", flush=True)
 
         await client.action.hold()
-        await asyncio.sleep(1.0)
+        # How long that takes of this desk's time depends on how fast the vehicle's time goes.
+        await client.until(client.rests, 25, "at rest")
         held = await client.place()
         await asyncio.sleep(2.0)
         assert await client.near(held, 0.1), (held, await client.place())

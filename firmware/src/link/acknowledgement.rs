@@ -6,15 +6,30 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavMessage, MavResult};
 use mavlink::{MavlinkVersion, error::ParserError};
 
+/// A command of somebody's, to be answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Order {
+    /// Its number, whether the dialect has that one or not.
+    pub command: u16,
+    /// Who sent it: system and component.
+    pub sender: (u8, u8),
+}
+
+impl Order {
+    /// The answer to it.
+    #[must_use]
+    pub const fn answered(self, result: MavResult) -> Acknowledgement {
+        Acknowledgement { order: self, result }
+    }
+}
+
 /// COMMAND_ACK, with its extension fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Acknowledgement {
-    /// The command's number.
-    pub command: u16,
+    /// What it answers.
+    pub order: Order,
     /// What became of it.
     pub result: MavResult,
-    /// Who sent it: system and component.
-    pub target: (u8, u8),
 }
 
 /// Where COMMAND_LONG and COMMAND_INT have their command: after seven numbers of four bytes.
@@ -44,7 +59,7 @@ impl MessageData for Acknowledgement {
     const ENCODED_LEN: usize = COMMAND_ACK_DATA::ENCODED_LEN + 7;
 
     fn ser(&self, _: MavlinkVersion, payload: &mut [u8]) -> usize {
-        let ([low, high], (system, component)) = (self.command.to_le_bytes(), self.target);
+        let ([low, high], (system, component)) = (self.order.command.to_le_bytes(), self.order.sender);
         let bytes = [low, high, self.result as u8, 0, 0, 0, 0, 0, system, component];
         payload.iter_mut().zip(bytes).for_each(|(place, byte)| *place = byte);
         // Zeros at the end are cut off.
@@ -56,6 +71,7 @@ impl MessageData for Acknowledgement {
         // The crate's type reads the result, of a command that it knows.
         let [low, high] = (MavCmd::MAV_CMD_NAV_WAYPOINT as u16).to_le_bytes();
         let COMMAND_ACK_DATA { result, .. } = COMMAND_ACK_DATA::deser(version, &[low, high, byte(2)])?;
-        Ok(Self { command: u16::from_le_bytes([byte(0), byte(1)]), result, target: (byte(8), byte(9)) })
+        let order = Order { command: u16::from_le_bytes([byte(0), byte(1)]), sender: (byte(8), byte(9)) };
+        Ok(order.answered(result))
     }
 }

@@ -123,7 +123,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
             0.0 if second == FORCE => Action::ForceDisarm,
             0.0 => Action::Ask(Request::Disarm),
             1.0 => Action::Ask(Request::Arm),
-            _ => DENIED,
+            _ => denied("Arm: parameter 1 is 1 to arm, 0 to disarm"),
         },
         MavCmd::MAV_CMD_NAV_TAKEOFF => {
             // Most clients that name no height send NaN, some zero.
@@ -132,7 +132,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         }
         MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
-        MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call).map_or(DENIED, |test| Action::Ask(Request::MotorTest(test))),
+        MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call),
         MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
@@ -140,14 +140,14 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
             0.0 => Action::TellModes,
             index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Tell(Reply::Mode(index as u8)),
-            _ => DENIED,
+            _ => denied("Modes: parameter 2 is 0 or a mode's index"),
         },
         MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
         MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Tell(Reply::IntervalOf(kind))),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => {
             of_kind(first, |kind| Action::Tell(Reply::Interval { kind, interval: second as i64 }))
         }
-        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => DENIED,
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is no number"),
         // What older clients say for REQUEST_MESSAGE.
         MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Send(Kind::HomePosition),
         MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Send(Kind::AutopilotVersion),
@@ -171,17 +171,17 @@ fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
 fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     let [_, flags, _, yaw, _, _, altitude] = call.parameters;
     let Some((latitude, longitude, frame)) = call.place else {
-        return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
+        return unsupported("Reposition: by COMMAND_INT only");
     };
     let altitude = match frame {
         MavFrame::MAV_FRAME_GLOBAL | MavFrame::MAV_FRAME_GLOBAL_INT => altitude,
         MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
             origin.place(home).altitude + altitude
         }
-        _ => return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED),
+        _ => return unsupported("Reposition: in a global frame only"),
     };
-    if !altitude.is_finite() {
-        return DENIED;
+    if !altitude.is_finite() || [latitude, longitude].contains(&i32::MAX) {
+        return denied("Reposition: needs a place and an altitude");
     }
     let place = origin.local(&Place { latitude, longitude, altitude });
     // Of a yaw that counts from where the vehicle points only none is understood: no turn.
@@ -197,7 +197,9 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     Action::Ask(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
 }
 
-const DENIED: Action = Action::Answer(MavResult::MAV_RESULT_DENIED);
+const fn denied(words: &'static str) -> Action {
+    Action::Refuse(MavResult::MAV_RESULT_DENIED, words)
+}
 
 const fn unsupported(words: &'static str) -> Action {
     Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
@@ -205,13 +207,17 @@ const fn unsupported(words: &'static str) -> Action {
 
 /// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative times
 /// become zero, which is refused as well.
-fn motor_test(call: &Call) -> Option<MotorTest> {
+fn motor_test(call: &Call) -> Action {
     let [number, unit, throttle, seconds, count, ..] = call.parameters;
-    let rotor = motor(number)?;
     let in_percent = unit == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 as f32;
     let is_one = count == 0.0 || count == 1.0;
-    let usable = in_percent && is_one && throttle.is_finite() && seconds.is_finite();
-    usable.then(|| MotorTest { rotor, level: throttle / 100.0, duration: (seconds * 1e6) as u64 })
+    match motor(number) {
+        Some(rotor) if in_percent && is_one && throttle.is_finite() && seconds.is_finite() => {
+            let (level, duration) = (throttle / 100.0, (seconds * 1e6) as u64);
+            Action::Ask(Request::MotorTest(MotorTest { rotor, level, duration }))
+        }
+        _ => denied("Motor test: one motor, 1 to 4, in percent"),
+    }
 }
 
 /// What a command tells one motor's controller. Modes in which a motor turns both ways are not for rotors.
@@ -229,7 +235,7 @@ fn configure_actuator(call: &Call) -> Action {
     };
     match motor(function) {
         Some(rotor) => Action::Ask(Request::MotorSetting(MotorSetting { rotor, setting })),
-        None => DENIED,
+        None => denied("Motor setting: parameter 5 is 1 to 4"),
     }
 }
 
@@ -288,7 +294,7 @@ fn set_mode(call: &Call, armed: bool) -> Action {
         };
     }
     if base.contains(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED) {
-        return if armed { DENIED } else { Action::EnterHil };
+        return if armed { denied("A simulator: disarmed only") } else { Action::EnterHil };
     }
     let guided = base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED);
     if guided { Action::Ask(Request::FlySetpoints) } else { NO_MODE }

@@ -2,7 +2,6 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::acknowledgement::Acknowledgement;
 use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::origin::Origin;
@@ -166,22 +165,16 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
-            Reply::Command { command, result, sender } => {
-                self.say(&Acknowledgement { command: command as u16, result, target: sender });
-            }
-            Reply::UnknownCommand { command, sender } => {
-                let result = MavResult::MAV_RESULT_UNSUPPORTED;
-                self.say(&Acknowledgement { command, result, target: sender });
-            }
+            Reply::Command(acknowledgement) => self.say(&acknowledgement),
             Reply::Ping(ping) => self.say(&ping),
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),
             Reply::Message(kind) => return self.message(kind, now),
-            Reply::Requested { kind, command, sender } => {
+            Reply::Requested(kind, order) => {
                 let is_said = self.message(kind, now);
                 let result =
                     if is_said { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
-                self.shared.reply(Reply::Command { command, result, sender });
+                self.shared.reply(Reply::Command(order.answered(result)));
                 return is_said;
             }
             Reply::Mode(index) => {

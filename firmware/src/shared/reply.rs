@@ -1,10 +1,11 @@
 //! What the vehicle answers, and to what.
 
+use crate::link::acknowledgement::{Acknowledgement, Order};
 use crate::link::files::FileRequest;
 use crate::link::telemetry::kind::Kind;
 use crate::parameters::table::Name;
 use controller_core::flight::Request;
-use mavlink::dialects::common::{MavCmd, MavMissionResult, MavResult};
+use mavlink::dialects::common::MavMissionResult;
 
 /// PING: superseded by TIMESYNC, but clients still send it and wait for the answer.
 #[expect(deprecated, reason = "see above")]
@@ -15,14 +16,12 @@ pub type Ping = mavlink::dialects::common::PING_DATA;
 pub struct Asked {
     /// What for.
     pub request: Request,
-    /// The command it came by, if it was one.
-    pub command: Option<MavCmd>,
-    /// The system and the component that sent it, if it came over the link.
-    pub sender: Option<(u8, u8)>,
+    /// The command it came by, if it came over the link.
+    pub order: Option<Order>,
 }
 
-/// A calibration to be begun, or the end of the one under way; and who asked, to be answered: system and component.
-pub type Calibration = (Option<Procedure>, (u8, u8));
+/// A calibration to be begun, or the end of the one under way; and the command that asked for it, to be answered.
+pub type Calibration = (Option<Procedure>, Order);
 
 /// What is to be calibrated of the inertial sensors: see [`crate::imu`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,21 +49,7 @@ pub struct MissionList {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {
     /// COMMAND_ACK.
-    Command {
-        /// What it answers.
-        command: MavCmd,
-        /// With what.
-        result: MavResult,
-        /// Who sent it: system and component.
-        sender: (u8, u8),
-    },
-    /// COMMAND_ACK: unsupported, of a number that the dialect does not have.
-    UnknownCommand {
-        /// The number.
-        command: u16,
-        /// Who sent it: system and component.
-        sender: (u8, u8),
-    },
+    Command(Acknowledgement),
     /// PING, sent back.
     Ping(Ping),
     /// TIMESYNC: the time of day.
@@ -79,14 +64,7 @@ pub enum Reply {
     /// A message, once.
     Message(Kind),
     /// A message, once, and COMMAND_ACK: whether there was anything to say.
-    Requested {
-        /// Which.
-        kind: Kind,
-        /// The command that asked for it.
-        command: MavCmd,
-        /// Who sent it: system and component.
-        sender: (u8, u8),
-    },
+    Requested(Kind, Order),
     /// AVAILABLE_MODES of one mode, counted from 1.
     Mode(u8),
     /// A message every so many us from now on; 0 as usual, below that never.

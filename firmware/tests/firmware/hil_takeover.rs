@@ -1,9 +1,9 @@
 //! When a simulator takes over from sensors and motors, and what becomes of those.
 
-use crate::support::receiver::{Fed, Local, newest, texts};
+use crate::support::receiver::{Fed, Local, newest, ordered, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
-use controller_core::estimator::Increment;
+use controller_core::estimator::{Clipped, Increment};
 use controller_core::flight::{ImuSample, MotorTest, Request};
 use controller_core::imu::ImuParameters;
 use firmware::boot;
@@ -11,6 +11,7 @@ use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::hil::SelectedMotors;
 use firmware::imu;
+use firmware::link::acknowledgement::Acknowledgement;
 use firmware::shared::{Asked, Flag, Reply};
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
@@ -92,6 +93,7 @@ pub fn increment(now: u64) -> Increment {
         delta_angle: Vector3::zeros(),
         delta_velocity: Vector3::z() * 9.81 * 0.005,
         angular_velocity: Vector3::zeros(),
+        clipped: Clipped::NEITHER,
     }
 }
 
@@ -116,8 +118,8 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
         shared.ground_station.put((), now);
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
-            let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-            shared.request(Asked { request, command: Some(command), sender: None }).unwrap();
+            let order = ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM);
+            shared.request(Asked { request, order: Some(order) }).unwrap();
         }
         if now == 45_000 {
             shared.hil.raise();
@@ -125,7 +127,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
     });
     assert!(hil.active());
     assert!(!shared.report.get().unwrap().value.mode.is_armed());
-    let Some(Reply::Command { result, .. }) = shared.answers.take() else { panic!("no answer") };
+    let Some(Reply::Command(Acknowledgement { result, .. })) = shared.answers.take() else { panic!("no answer") };
     (pins.0, result, texts(&shared))
 }
 

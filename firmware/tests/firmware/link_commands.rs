@@ -1,7 +1,7 @@
 //! Commands and heartbeats in: what they do, and what is answered.
 
 use crate::support::desk::Desk;
-use crate::support::receiver::{Fed, Local, answer, command, disarm, replies, report, texts};
+use crate::support::receiver::{Fed, Local, answer, command, disarm, ordered, replies, report, texts};
 use crate::support::{patched, v1, v2, v2_of_payload};
 use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::Name;
@@ -25,7 +25,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
         let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, command: Some(ARM_DISARM), sender: Some((255, 190)) });
+        assert_eq!(asked, Asked { request: Request::Arm, order: Some(ordered(ARM_DISARM)) });
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }
@@ -53,20 +53,16 @@ fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
     for _ in 0..REQUESTS + 3 {
         fed.message(&arm(), 0);
     }
-    let rejected =
-        Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_TEMPORARILY_REJECTED, sender: (255, 190) };
+    let rejected = Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED));
     assert_eq!(replies(&shared), [rejected.clone(), rejected.clone(), rejected]);
     fed.message(&disarm(), 0);
     assert!(shared.disarm.take());
     assert!(shared.requests.take().is_none());
-    let refused = Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_DENIED, sender: (255, 190) };
+    let refused = Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_DENIED));
     for _ in 0..REQUESTS {
         assert_eq!(shared.answers.take(), Some(refused.clone()));
     }
-    assert_eq!(
-        replies(&shared),
-        [Reply::Command { command: ARM_DISARM, result: MavResult::MAV_RESULT_ACCEPTED, sender: (255, 190) }]
-    );
+    assert_eq!(replies(&shared), [Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_ACCEPTED))]);
 }
 
 #[test]
@@ -146,7 +142,7 @@ fn a_motors_controller_is_named_and_what_it_shall_do() {
 }
 
 #[test]
-fn nonsense_is_denied() {
+fn nonsense_is_denied_and_said_to_be() {
     let test = MavCmd::MAV_CMD_DO_MOTOR_TEST;
     let nan = f32::NAN;
     for message in [
@@ -160,8 +156,15 @@ fn nonsense_is_denied() {
         command(test, [1.0, 0.0, 5.0, 1.0, 4.0]),
         command(MavCmd::MAV_CMD_DO_SET_MODE, [nan, 6.0, 0.0, 0.0, 0.0]),
         command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 9.0, 0.0, 0.0]),
+        command(MavCmd::MAV_CMD_CONFIGURE_ACTUATOR, [1.0, 0.0, 0.0, 0.0, 5.0]),
+        command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [435.0, 99.0, 0.0, 0.0, 0.0]),
+        command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [30.0, nan, 0.0, 0.0, 0.0]),
     ] {
         assert_eq!(answer(&message, Mode::Ready), MavResult::MAV_RESULT_DENIED, "{message:?}");
+        let shared = Local::new();
+        Fed::new(&shared).message(&message, 0);
+        let [words] = &texts(&shared)[..] else { panic!("{message:?}") };
+        assert!(words.len() <= 50, "{words}");
     }
 }
 
@@ -177,11 +180,7 @@ fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
             for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let shared = Local::new();
                 Fed::new(&shared).bytes(&patched(&message, 4 * parameter, value), 0);
-                let denied = Reply::Command {
-                    command: message.command,
-                    result: MavResult::MAV_RESULT_DENIED,
-                    sender: (255, 190),
-                };
+                let denied = Reply::Command(ordered(message.command).answered(MavResult::MAV_RESULT_DENIED));
                 assert_eq!(replies(&shared).contains(&denied), parameter < used, "{message:?} {parameter} {value}");
                 assert!((requests(&shared) == 0) || parameter >= used);
             }
@@ -245,8 +244,8 @@ fn the_message_set_mode_means_the_command() {
     ] {
         let shared = Local::new();
         Fed::new(&shared).bytes(&v2_of_payload(1, 11, EXTRA_CRC, &payload), 0);
-        let command = Some(MavCmd::MAV_CMD_DO_SET_MODE);
-        let asked = request.map(|request| Asked { request, command, sender: Some((255, 190)) });
+        let order = Some(ordered(MavCmd::MAV_CMD_DO_SET_MODE));
+        let asked = request.map(|request| Asked { request, order });
         assert_eq!(shared.requests.take(), asked, "{payload:?}");
         let is_refused = request.is_none() && payload[4] == 1;
         assert_eq!((replies(&shared).len(), texts(&shared).len()), (is_refused.into(), is_refused.into()));
@@ -351,7 +350,7 @@ fn a_station_that_was_refused_keeps_nobody_from_stopping_the_motors() {
             // Too early: nobody may arm yet.
             20 => fed.bytes(&from(255, 1, &arm()), now),
             // A radio does, later.
-            250 => shared.request(Asked { request: Request::Arm, command: None, sender: None }).unwrap(),
+            250 => shared.request(Asked { request: Request::Arm, order: None }).unwrap(),
             _ => {}
         }
         fed.bytes(&from(255, tick as u8, &command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [0.0; 5])), now);

@@ -1,9 +1,10 @@
 //! What is asked of the vehicle, beside what it shall do: messages, missions, places, the time, nonsense.
 
-use crate::support::receiver::{Fed, Local, answer, command, replies, texts};
+use crate::support::receiver::{Fed, Local, answer, command, ordered, replies, texts};
 use crate::support::{extended, v2_of_payload};
 use controller_core::flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::telemetry::kind::Kind;
 use firmware::shared::{MissionList, Ping, REPLIES, Reply};
@@ -30,7 +31,9 @@ fn commands_nobody_knows_are_answered_as_unsupported() {
             payload[30] = target;
             let shared = Local::new();
             Fed::new(&shared).bytes(&v2_of_payload(1, id, crc, &payload), 0);
-            assert_eq!(replies(&shared), vec![Reply::UnknownCommand { command: 65_000, sender: (255, 190) }; answers]);
+            let order = Order { command: 65_000, sender: (255, 190) };
+            let unsupported = Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED));
+            assert_eq!(replies(&shared), vec![unsupported; answers]);
         }
     }
 }
@@ -41,7 +44,7 @@ fn messages_are_sent_on_request_and_at_rates_that_are_asked_for() {
         let shared = Local::new();
         Fed::new(&shared).message(&crate::support::receiver::command(command, [first, second, 0.0, 0.0, 0.0]), 0);
         let replies = replies(&shared);
-        let Some(Reply::Command { result, .. }) = replies.last() else { panic!("{replies:?}") };
+        let Some(Reply::Command(Acknowledgement { result, .. })) = replies.last() else { panic!("{replies:?}") };
         (replies[..replies.len() - 1].to_vec(), *result)
     };
     let (accepted, unsupported) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_UNSUPPORTED);
@@ -55,7 +58,7 @@ fn messages_are_sent_on_request_and_at_rates_that_are_asked_for() {
         let asked = crate::support::receiver::command(command, [number, 0.0, 0.0, 0.0, 0.0]);
         Fed::new(&shared).message(&asked, 0);
         // Whoever sends it answers.
-        assert_eq!(replies(&shared), [Reply::Requested { kind, command, sender: (255, 190) }]);
+        assert_eq!(replies(&shared), [Reply::Requested(kind, ordered(command))]);
     }
     assert_eq!(tell(request, 435.0, 0.0).0.len(), 4);
     assert_eq!(tell(request, 435.0, 2.0), (vec![Reply::Mode(2)], accepted));
@@ -108,8 +111,16 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
     Fed::new(&shared).message(&relative(0.5), 0);
     assert_eq!(shared.requests.take(), None);
     assert_eq!(texts(&shared), ["Reposition: yaw from north only"]);
-    assert_eq!(asked(&goto(MavFrame::MAV_FRAME_GLOBAL, f32::NAN, 0.0)), None);
-    assert_eq!(asked(&goto(MavFrame::MAV_FRAME_LOCAL_NED, 3.0, 0.0)), None);
+    let nowhere = COMMAND_INT_DATA { y: i32::MAX, ..goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, 0.0) };
+    for (message, words) in [
+        (goto(MavFrame::MAV_FRAME_GLOBAL, f32::NAN, 0.0), "Reposition: needs a place and an altitude"),
+        (nowhere, "Reposition: needs a place and an altitude"),
+        (goto(MavFrame::MAV_FRAME_LOCAL_NED, 3.0, 0.0), "Reposition: in a global frame only"),
+    ] {
+        let shared = Local::new();
+        Fed::new(&shared).message(&message, 0);
+        assert_eq!((shared.requests.take(), texts(&shared)), (None, vec![words.to_owned()]));
+    }
 }
 
 /// What sending, asking for and clearing a list is answered with.

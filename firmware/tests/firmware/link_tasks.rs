@@ -1,14 +1,14 @@
 //! The link's two tasks on lines that deliver in pieces, fail, end or take nothing more.
 
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
-use crate::support::receiver::{Local, report};
+use crate::support::receiver::{Local, ordered, report};
 use crate::support::{Simulated, sent, v2};
 use controller_core::flight::{Mode, Refusal, Request};
 use controller_core::state::State;
 use core::cell::RefCell;
 use embassy_futures::join::join;
 use embedded_io_async::{ErrorKind, ErrorType, Read};
-use firmware::link::acknowledgement::Acknowledgement;
+use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
@@ -195,14 +195,16 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    let asked = |sender| Asked { request: Request::Arm, command: Some(command), sender };
-    shared.answer(&asked(Some((255, 190))), Ok(()));
-    shared.answer(&asked(Some((7, 1))), Err(Refusal::PosesUnsettled));
+    let by = |command: u16, sender: (u8, u8)| Order { command, sender };
+    let asked = |sender| Asked { request: Request::Arm, order: Some(by(command as u16, sender)) };
+    shared.answer(&asked((255, 190)), Ok(()));
+    shared.answer(&asked((7, 1)), Err(Refusal::PosesUnsettled));
+    shared.answer(&asked((0, 0)), Ok(()));
     // Nobody on the link.
-    shared.answer(&asked(None), Ok(()));
+    shared.answer(&Asked { request: Request::Arm, order: None }, Ok(()));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
-    shared.replies.put(Reply::Command { command: other, result, sender: (254, 0) }).unwrap();
-    shared.replies.put(Reply::UnknownCommand { command: 65_000, sender: (1, 191) }).unwrap();
+    shared.replies.put(Reply::Command(by(other as u16, (254, 0)).answered(result))).unwrap();
+    shared.replies.put(Reply::Command(by(65_000, (1, 191)).answered(result))).unwrap();
     let written = transmitted(&shared, 100_000, |_| ());
     let (accepted, denied) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_DENIED);
     let expected = [
@@ -212,7 +214,7 @@ fn commands_are_answered_with_number_and_result() {
         (other as u16, result, (254, 0)),
         (65_000, result, (1, 191)),
     ];
-    let expected = expected.map(|(command, result, target)| Acknowledgement { command, result, target });
+    let expected = expected.map(|(command, result, sender)| by(command, sender).answered(result));
     assert_eq!(sent::<Acknowledgement>(&written), expected);
     // Who knows no extension fields reads the same.
     let answers: Vec<COMMAND_ACK_DATA> = sent(&written);
@@ -226,9 +228,9 @@ fn commands_are_answered_with_number_and_result() {
 #[test]
 fn what_is_requested_is_accepted_where_there_is_anything_to_send() {
     let shared = Local::new();
-    let (command, sender) = (MavCmd::MAV_CMD_REQUEST_MESSAGE, (255, 190));
+    let order = ordered(MavCmd::MAV_CMD_REQUEST_MESSAGE);
     for kind in [Kind::PositionTarget, Kind::ProtocolVersion, Kind::HomePosition] {
-        shared.replies.put(Reply::Requested { kind, command, sender }).unwrap();
+        shared.replies.put(Reply::Requested(kind, order)).unwrap();
     }
     // On the ground, without an estimate.
     let written = transmitted(&shared, 100_000, |now| report(&shared, Mode::Checks, now));
@@ -237,8 +239,7 @@ fn what_is_requested_is_accepted_where_there_is_anything_to_send() {
     assert_eq!(results, [later, MavResult::MAV_RESULT_ACCEPTED, later]);
 }
 
-const ARM: Asked =
-    Asked { request: Request::Arm, command: Some(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM), sender: Some((255, 190)) };
+const ARM: Asked = Asked { request: Request::Arm, order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)) };
 
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {

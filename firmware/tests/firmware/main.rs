@@ -20,6 +20,7 @@ mod link_commands;
 mod link_frames;
 mod link_messages;
 mod link_parameters;
+mod link_pose_times;
 mod link_poses;
 mod link_questions;
 mod link_setpoints;

@@ -246,7 +246,7 @@ fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
     let mut radio = Radio::new(&shared);
     radio.take(&channels(HIGH, HIGH, LOW), 0);
     report(&shared, Mode::Flying, true);
-    while shared.request(Asked { request: Request::Land, command: None, sender: None }).is_ok() {}
+    while shared.request(Asked { request: Request::Land, order: None }).is_ok() {}
     radio.listen(SILENCE + 1);
     requests(&shared);
     radio.listen(SILENCE + 100_001);

@@ -1,9 +1,10 @@
 //! A restart by command: granted on the ground, refused otherwise, and done after it was answered.
 
 use crate::support::Simulated;
-use crate::support::receiver::{Fed, Local, command, replies, report, texts};
+use crate::support::receiver::{Fed, Local, command, ordered, replies, report, texts};
 use controller_core::flight::Mode;
 use firmware::hardware::Restart;
+use firmware::link::acknowledgement::Acknowledgement;
 use firmware::restart::{self, GRACE};
 use firmware::shared::Reply;
 use mavlink::dialects::common::{MavCmd, MavResult};
@@ -14,7 +15,8 @@ const RESTART: MavCmd = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN;
 /// Asks with this first parameter; the answer, what was said, and whether a restart is under way.
 fn asked(shared: &Local, first: f32) -> (MavResult, Vec<String>, bool) {
     Fed::new(shared).message(&command(RESTART, [first, 0.0, 0.0, 0.0, 0.0]), 0);
-    let [Reply::Command { command: RESTART, result, .. }] = replies(shared)[..] else { panic!("no answer") };
+    let [Reply::Command(Acknowledgement { order, result })] = replies(shared)[..] else { panic!("no answer") };
+    assert_eq!(order, ordered(RESTART));
     (result, texts(shared), shared.restarting.is_raised())
 }
 

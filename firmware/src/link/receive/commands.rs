@@ -2,7 +2,7 @@
 
 use super::Receiver;
 use crate::frames;
-use crate::link::acknowledgement::command_of;
+use crate::link::acknowledgement::{Order, command_of};
 use crate::link::command::{Action, Call, action};
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
@@ -48,7 +48,10 @@ impl<M: RawMutex> Receiver<'_, M> {
         let Some(message) = message else {
             let unknown = command_of(frame.message, frame.payload);
             match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
-                Some((command, _)) => self.shared.reply(Reply::UnknownCommand { command, sender }),
+                Some((command, _)) => {
+                    let order = Order { command, sender };
+                    self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
+                }
                 None => self.refused(),
             }
             return;
@@ -62,9 +65,9 @@ impl<M: RawMutex> Receiver<'_, M> {
             return;
         }
         let call = Call::from(message);
-        let (command, armed) = (call.command, self.shared.commander.get());
+        let (order, armed) = (Order { command: call.command as u16, sender }, self.shared.commander.get());
         let result = if !self.shared.is_armed() || self.commander.may(&call, sender.0, armed, frame.time) {
-            match self.act(&call, sender, frame.time) {
+            match self.act(&call, order, frame.time) {
                 Some(result) => result,
                 None => return,
             }
@@ -72,11 +75,11 @@ impl<M: RawMutex> Receiver<'_, M> {
             self.stranger_refused.warn(self.shared, frame.time, "Refused: another station commands");
             MavResult::MAV_RESULT_DENIED
         };
-        self.shared.reply(Reply::Command { command, result, sender });
+        self.shared.reply(Reply::Command(order.answered(result)));
     }
 
-    /// Acts on a command of `sender`'s at `now`, us; what to answer, unless somebody else does.
-    fn act(&mut self, call: &Call, sender: (u8, u8), now: u64) -> Option<MavResult> {
+    /// Acts on a command at `now`, us; what to answer, unless somebody else does.
+    fn act(&mut self, call: &Call, order: Order, now: u64) -> Option<MavResult> {
         let report = self.shared.report.get();
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
         let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
@@ -85,8 +88,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 if request == Request::FlySetpoints {
                     self.take_over(now);
                 }
-                let asked = Asked { request, command: Some(call.command), sender: Some(sender) };
-                let asked = self.shared.request(asked);
+                let asked = self.shared.request(Asked { request, order: Some(order) });
                 return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }
             Action::ForceDisarm => self.shared.request_disarm(),
@@ -97,10 +99,10 @@ impl<M: RawMutex> Receiver<'_, M> {
                 self.shared.announce(Event::new(Severity::Warning, words));
                 return Some(result);
             }
-            Action::Calibrate(procedure) => return self.calibrate((procedure, sender)).err(),
+            Action::Calibrate(procedure) => return self.calibrate((procedure, order)).err(),
             Action::Answer(result) => return Some(result),
             Action::Send(kind) => {
-                self.shared.reply(Reply::Requested { kind, command: call.command, sender });
+                self.shared.reply(Reply::Requested(kind, order));
                 return None;
             }
             Action::Tell(reply) => self.shared.reply(reply),

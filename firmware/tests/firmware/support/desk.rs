@@ -1,7 +1,7 @@
 //! A vehicle on a desk: it never moves, whatever its motors are told, and its sensors and poses say so.
 
 use super::receiver::Local;
-use controller_core::estimator::{Increment, PoseMeasurement};
+use controller_core::estimator::{Clipped, Increment, PoseMeasurement};
 use controller_core::flight::{Mode, PERIOD, Pose, Stamped, Velocity};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::boot;
@@ -34,6 +34,7 @@ impl<'a> Desk<'a> {
                 delta_angle: zero,
                 delta_velocity: Vector3::new(0.0, 0.0, 9.81 * 5e-3),
                 angular_velocity: zero,
+                clipped: Clipped::NEITHER,
             });
         }
         self.now += PERIOD;

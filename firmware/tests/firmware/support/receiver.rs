@@ -1,9 +1,10 @@
 //! A receiver fed with frames, and everything it may change.
 
-use super::v2;
+use super::{GROUND, v2};
 use controller_core::estimator::PoseMeasurement;
 use controller_core::flight::{Mode, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
 use firmware::shared::{Reply, Report, Shared, Text};
@@ -65,6 +66,11 @@ pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
     COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
 }
 
+/// The same, as whoever answers it knows it: the ground station's.
+pub const fn ordered(command: MavCmd) -> Order {
+    Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id) }
+}
+
 /// A disarm command with force.
 pub fn disarm() -> COMMAND_LONG_DATA {
     command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [0.0, 21196.0, 0.0, 0.0, 0.0])
@@ -82,7 +88,7 @@ pub fn answer(message: &COMMAND_LONG_DATA, mode: Mode) -> MavResult {
     Fed::new(&shared).message(message, 0);
     assert!(shared.requests.take().is_none());
     match replies(&shared)[..] {
-        [Reply::Command { command, result, .. }] if command == message.command => result,
+        [Reply::Command(Acknowledgement { order, result })] if order == ordered(message.command) => result,
         ref other => panic!("{other:?}"),
     }
 }
