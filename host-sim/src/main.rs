@@ -122,21 +122,22 @@ fn fly_into(
 }
 
 fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
-    let (scenario, text, file) = arguments.scenario()?;
-    let (orders, law) = (arguments.orders(&scenario)?, arguments.law(&scenario)?);
+    let source = arguments.source()?;
+    let scenario = source.scenario();
+    let (orders, law) = (arguments.orders(scenario)?, arguments.law(scenario)?);
     let name = match &law {
         LawChoice::Ours => scenario.name.clone(),
         LawChoice::Rival(kind, _) => format!("{}-{}", scenario.name, kind.name()),
     };
     if let Some(number) = arguments.replay {
-        let mut thrown = circumstances(&scenario, &scenario.campaign.ranges, orders.seed, number);
+        let mut thrown = circumstances(scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{name}-{number}");
-        permit(&thrown, &format!("{file}: "), "campaign.duration", arguments.large_log)?;
-        let text = written::above(&text, &thrown, orders.seed, number);
+        permit(&thrown, &format!("{}: ", source.file()), "campaign.duration", arguments.large_log)?;
+        let text = written::above(source.text(), &thrown, orders.seed, number);
         return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
     let (directory, interrupt) = (arguments.directory(&name), watch()?);
-    show_campaign(campaign::fly::campaign(&scenario, &text, &file, &law, &orders, &directory, &interrupt), &directory)
+    show_campaign(campaign::fly::campaign(&source, &law, &orders, &directory, &interrupt), &directory)
 }
 
 fn run_merge(arguments: &MergeArguments) -> Result<ExitCode, String> {

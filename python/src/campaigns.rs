@@ -6,7 +6,7 @@ use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
 use crate::whole::Whole;
 use host_sim::campaign::CampaignError;
-use host_sim::campaign::fly::{self, Orders};
+use host_sim::campaign::fly::{self, Orders, Source};
 use host_sim::campaign::step;
 use host_sim::campaign::summary;
 use host_sim::flier::OURS;
@@ -116,9 +116,8 @@ pub fn campaign(
     let law = of_rivals::chosen(law, &stepped, gains.as_deref());
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
-    let flown = interruptible(py, |interrupt| {
-        alone(|| fly::campaign(&stepped, &scenario.text, &scenario.file, &law, &orders, &directory, interrupt))
-    })?;
+    let source = Source::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
+    let flown = interruptible(py, |interrupt| alone(|| fly::campaign(&source, &law, &orders, &directory, interrupt)))?;
     Ok(Campaign { summary: flown?.map_err(raised)? })
 }
 

@@ -85,6 +85,24 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
     assert!(conditional > 50, "only {conditional} loops had a lower gain limit");
 }
 
+/// The spectral radius with commands that are `extra` s later.
+fn delayed(axis: Axis, gains: &GainParameters, timing: Timing, extra: f64) -> f64 {
+    let delay_samples = timing.delay_samples + extra / timing.period;
+    oracle::spectral_radius(axis, gains, Timing { delay_samples, ..timing }, 1.0)
+}
+
+/// The delay margin, s, of a loop that loses its stability there and not before.
+fn ends_where_it_says(axis: Axis, gains: GainParameters, timing: Timing) -> f64 {
+    let margins = model(gains, timing).report(axis).margins.unwrap();
+    let with_delay = |extra: f64| delayed(axis, &gains, timing, extra);
+    assert!((with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
+    for part in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99] {
+        assert!(with_delay(part * margins.delay) < 1.0, "{part} of {margins:?}");
+    }
+    assert!(with_delay(margins.delay * 1.01) > 1.0, "{margins:?}");
+    margins.delay
+}
+
 /// A lateral loop whose command changes its sign from tick to tick: slow ticks, and a position law so stiff that what it feeds forward
 /// jumps. Part of a sample more turns it over, at the Nyquist frequency and nowhere else.
 #[test]
@@ -100,16 +118,7 @@ fn delay_that_makes_commands_alternate_ends_the_margin() {
     };
     for delay_samples in [0.0, 0.55, 0.6] {
         let timing = Timing { period: 0.02, delay_samples, ..IDEAL };
-        let margins = model(gains, timing).report(Axis::LateralY).margins.unwrap();
-        let with_delay = |extra: f64| {
-            let delay_samples = timing.delay_samples + extra / timing.period;
-            oracle::spectral_radius(Axis::LateralY, &gains, Timing { delay_samples, ..timing }, 1.0)
-        };
-        assert!((with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
-        for part in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99] {
-            assert!(with_delay(part * margins.delay) < 1.0, "{part} of {margins:?}");
-        }
-        assert!(with_delay(margins.delay * 1.01) > 1.0, "{margins:?}");
+        ends_where_it_says(Axis::LateralY, gains, timing);
     }
 }
 
@@ -124,16 +133,8 @@ fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
         ..GainParameters::TABLE_1
     };
     let timing = Timing { period: 0.05, delay_samples: 1.53125, ..IDEAL };
-    let margins = model(gains, timing).report(Axis::Vertical).margins.unwrap();
-    let with_delay = |extra: f64| {
-        let delay_samples = timing.delay_samples + extra / timing.period;
-        oracle::spectral_radius(Axis::Vertical, &gains, Timing { delay_samples, ..timing }, 1.0)
-    };
-    assert!(with_delay(0.06) > 1.0);
-    assert!(margins.delay < 0.06 && (with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
-    for part in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99] {
-        assert!(with_delay(part * margins.delay) < 1.0, "{part} of {margins:?}");
-    }
+    assert!(delayed(Axis::Vertical, &gains, timing, 0.06) > 1.0);
+    assert!(ends_where_it_says(Axis::Vertical, gains, timing) < 0.06);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use host_sim::campaign::fly::{Orders, grounded};
+use host_sim::campaign::fly::{Orders, Source};
 use host_sim::campaign::step;
 use host_sim::flier::{LawChoice, OURS};
 use host_sim::rivals::gains;
@@ -90,11 +90,11 @@ fn shard(text: &str) -> Result<(u64, u64), String> {
 }
 
 impl CampaignArguments {
-    /// The scenario with the plant step that is flown, the text it was read from, and what errors call that.
+    /// The scenario and where it is from.
     ///
     /// # Errors
     /// Names the file or the argument that is refused.
-    pub fn scenario(&self) -> Result<(Scenario, String, String), String> {
+    pub fn source(&self) -> Result<Source, String> {
         let read = |file: &Path| {
             std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
         };
@@ -113,14 +113,11 @@ impl CampaignArguments {
             name = format!("{name} with {}", draws.display());
         }
         let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
-        if let Some(problem) = grounded(&scenario) {
-            return Err(format!("{name}: {problem}"));
-        }
         let stepped = match self.plant_step {
             None => step::longest(&scenario),
             Some(wanted) => step::of(&scenario, wanted).map_err(|problem| format!("--plant-step: {problem}"))?,
         };
-        Ok((stepped, text, name))
+        Source::new(stepped, text, name).map_err(|error| error.to_string())
     }
 
     /// How many flights, and which.

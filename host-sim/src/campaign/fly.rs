@@ -34,45 +34,82 @@ pub struct Orders {
     pub shard: (u64, u64),
 }
 
-/// Flies `scenario` under `law`, with the plant step that it has, read from `text`, which errors call `file`, into `directory`, or what is
-/// missing there.
+/// A scenario that a campaign can fly, with the plant step that is flown, and where it is from.
+pub struct Source {
+    scenario: Scenario,
+    text: String,
+    file: String,
+}
+
+impl Source {
+    /// `scenario`, read from `text`, which errors call `file`.
+    ///
+    /// # Errors
+    /// If it is [`grounded`].
+    pub fn new(scenario: Scenario, text: String, file: String) -> Result<Self, CampaignError> {
+        let source = Self { scenario, text, file };
+        match grounded(&source.scenario) {
+            Some(problem) => Err(source.error(problem)),
+            None => Ok(source),
+        }
+    }
+
+    /// What is flown.
+    #[must_use]
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// What it was read from.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What errors call that.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn error(&self, problem: impl Display) -> CampaignError {
+        CampaignError::Input(format!("{}: {problem}", self.file))
+    }
+
+    fn verdict(&self) -> Result<Verdict, CampaignError> {
+        Verdict::of(&self.scenario).map_err(|error| self.error(error))
+    }
+}
+
+/// Flies `source` under `law` into `directory`, or what is missing there.
 ///
 /// # Errors
 /// [`CampaignError`]; chunks that were finished stay.
 pub fn campaign(
-    scenario: &Scenario,
-    text: &str,
-    file: &str,
+    source: &Source,
     law: &LawChoice,
     orders: &Orders,
     directory: &Path,
     interrupt: &Interrupt,
 ) -> Result<Summary, CampaignError> {
-    if let Some(problem) = grounded(scenario) {
-        return Err(of_file(file, problem));
-    }
+    let Source { scenario, text, .. } = source;
     let Orders { flights, seed, shard } = *orders;
     if let Some(problem) = idle(orders) {
         return Err(CampaignError::Input(problem));
     }
-    let verdict = Verdict::of(scenario).map_err(|error| of_file(file, error))?;
+    let verdict = source.verdict()?;
     let flier = Flier::new(law, scenario, verdict.certified())
-        .ok_or_else(|| of_file(file, format_args!("the law {} is undefined for its gains", law.name())))?;
+        .ok_or_else(|| source.error(format_args!("the law {} is undefined for its gains", law.name())))?;
     let manifest = Manifest::new(scenario, text, flights, seed, shard).under(law.clone());
     let store = Store::open(directory, &manifest, text)?;
     let flown = match store.result() {
         Some(flown) => flown,
         None => {
-            let chunks = Chunks::new(scenario, file, &flier, verdict.certificate(), &store, interrupt);
+            let chunks = Chunks::new(source, &flier, verdict.certificate(), &store, interrupt);
             chunks.fly()?
         }
     };
-    finish(scenario, text, &verdict, &store, &flown)
-}
-
-/// Of a scenario that was read from `file`.
-fn of_file(file: &str, problem: impl Display) -> CampaignError {
-    CampaignError::Input(format!("{file}: {problem}"))
+    finish(source, &verdict, &store, &flown)
 }
 
 /// Why nothing of `scenario` is thrown into the air, if so.
@@ -124,7 +161,8 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
     stores.iter().try_for_each(|(store, _)| store.scenario().map(drop))?;
     let file = file.display().to_string();
     let scenario = Scenario::parse(&text, &file).map_err(|error| CampaignError::Input(error.to_string()))?;
-    let verdict = Verdict::of(&scenario).map_err(|error| of_file(&file, error))?;
+    let source = Source::new(scenario, text, file)?;
+    let verdict = source.verdict()?;
     let whole = Manifest { shard: (1, 1), result: None, ..manifest };
     let mut numbered: Vec<(u64, RecordBatch)> = stores
         .into_iter()
@@ -132,18 +170,13 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
         .collect();
     numbered.sort_by_key(|(chunk, _)| *chunk);
     let flown: Vec<RecordBatch> = numbered.into_iter().map(|(_, batch)| batch).collect();
-    let store = Store::open(directory, &whole, &text)?;
-    finish(&scenario, &text, &verdict, &store, &flown)
+    let store = Store::open(directory, &whole, &source.text)?;
+    finish(&source, &verdict, &store, &flown)
 }
 
 /// Writes what was flown and what it showed.
-fn finish(
-    scenario: &Scenario,
-    text: &str,
-    verdict: &Verdict,
-    store: &Store,
-    flown: &[RecordBatch],
-) -> Result<Summary, CampaignError> {
+fn finish(source: &Source, verdict: &Verdict, store: &Store, flown: &[RecordBatch]) -> Result<Summary, CampaignError> {
+    let Source { scenario, text, .. } = source;
     let summary = Summary::of(scenario, verdict, store.manifest(), flown);
     store.finish(flown)?;
     store.write(SUMMARY, &summary.to_string())?;
@@ -153,8 +186,7 @@ fn finish(
 
 /// Chunks to fly.
 struct Chunks<'a> {
-    scenario: &'a Scenario,
-    file: &'a str,
+    source: &'a Source,
     flier: &'a Flier,
     certificate: &'a Certificate,
     store: &'a Store,
@@ -165,16 +197,14 @@ struct Chunks<'a> {
 
 impl<'a> Chunks<'a> {
     fn new(
-        scenario: &'a Scenario,
-        file: &'a str,
+        source: &'a Source,
         flier: &'a Flier,
         certificate: &'a Certificate,
         store: &'a Store,
         interrupt: &'a Interrupt,
     ) -> Self {
         Self {
-            scenario,
-            file,
+            source,
             flier,
             certificate,
             store,
@@ -207,9 +237,9 @@ impl<'a> Chunks<'a> {
         if let Some(signal) = self.interrupt.signal() {
             return Err(CampaignError::Interrupted(signal));
         }
-        let flown = throw(self.flier, self.scenario, self.certificate, self.store.manifest().seed, number);
+        let flown = throw(self.flier, &self.source.scenario, self.certificate, self.store.manifest().seed, number);
         self.show(1);
-        flown.map_err(|error| of_file(self.file, error))
+        flown.map_err(|error| self.source.error(error))
     }
 
     /// So many more are done.

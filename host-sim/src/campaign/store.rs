@@ -77,6 +77,9 @@ impl Store {
         store.write(SCENARIO, text)?;
         let parts = directory.join(PARTS);
         fs::create_dir_all(&parts).map_err(unwritable(&parts))?;
+        for path in [RESULT, SUMMARY, REPORT].map(|name| directory.join(name)) {
+            WholeFile::try_name(&path).map_err(unwritable(&path))?;
+        }
         Ok(store)
     }
 

@@ -338,6 +338,7 @@ mod tests {
         assert_eq!((format_decade(1e-5), format_decade(10.0)), ("10⁻⁵".into(), "10¹".into()));
         assert_eq!((format_linear(-0.0, 20.0), format_linear(0.25, 0.5)), ("0".into(), "0.25".into()));
     }
+
     #[test]
     fn both_ends_of_a_logarithmic_axis_have_labels() {
         let points = vec![(0.0, 1e-4), (1.0, 1e2)];

@@ -3,11 +3,11 @@
 //! An eigenvalue e^(i angle) appears where the loop's response passes through -1. Scaling the loop's gain by kappa moves
 //! every point of the response along its ray, so the critical kappa are -1 / L at the crossings of the negative real
 //! axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held command
-//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left. At the Nyquist
-//! frequency there is no phase to take: the response is real, and further delay carries it along the axis.
+//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left.
 //!
-//! A fraction of a sample may also make a crossing that was not there without it, which no step from the crossings there leads to. So the
-//! eigenvalues themselves are asked, up to a few samples of delay.
+//! Two kinds of crossings no step leads to. A fraction of a sample may make one that was not there without it. And at the Nyquist frequency
+//! there is no phase to take: the response is real, and further delay carries it along the axis. So the eigenvalues themselves are asked, up to
+//! two samples of further delay.
 //!
 //! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at more closely: it may
 //! cross twice between neighbours.
@@ -55,8 +55,7 @@ pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64, period: f64) -> Sampl
         return SampleMargins { gain_up, gain_down, delay: 0.0, crossover: 0.0 };
     };
     let turned = delay_margin(chain, &grid, delay, *lowest);
-    let found = nyquist_margin(chain, delay, turned).unwrap_or(turned);
-    let delay = borne_out(chain, delay, found);
+    let delay = borne_out(chain, delay, turned);
     SampleMargins { gain_up, gain_down, delay, crossover: *crossover }
 }
 
@@ -108,37 +107,26 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
     if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
-/// The least further delay, in samples and below `longest`, at which the response at the Nyquist frequency passes through -1, if
-/// there is one.
-fn nyquist_margin(chain: &SampledLoop<'_>, delay: f64, longest: f64) -> Option<f64> {
-    /// In a sample of delay, along which the response is nearly a straight line.
-    const POINTS: u32 = 16;
-    let law = chain.law_response(PI);
-    let beyond = |extra: f64| 1.0 + chain.with_delay(delay + extra).response_with(PI, &law).re;
-    // A whole sample turns the response's sign, a second one turns it back.
-    let points = (0..=2 * POINTS).map(|point| f64::from(point) / f64::from(POINTS)).map(|extra| extra.min(longest));
-    let values: Vec<(f64, f64)> = points.map(|extra| (extra, beyond(extra))).collect();
-    let passes = |pair: &&[(f64, f64)]| (pair[0].1 < 0.0) != (pair[1].1 < 0.0);
-    values.windows(2).find(passes).map(|pair| root(beyond, pair[0], pair[1]))
-}
-
 /// What of `margin`, samples, the eigenvalues bear out.
 fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
-    /// Further delays that are tried, samples apart.
-    const STEP: f64 = 0.25;
+    /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist frequency is
+    /// farthest along the axis.
+    const PARTS: f64 = 4.0;
     /// So many of them: from there on a fraction of a sample changes little.
     const TRIED: u32 = 8;
-    /// Halvings of a step.
+    /// Halvings of such a part.
     const HALVINGS: usize = 40;
-    let is_stable = |extra: &f64| chain.with_delay(delay + extra).spectral_radius() < 1.0;
-    let mut tried = (1..=TRIED).map(|step| f64::from(step) * STEP).take_while(|extra| *extra < margin);
-    let Some(unstable) = tried.find(|extra| !is_stable(extra)) else { return margin };
-    let (mut low, mut high) = (unstable - STEP, unstable);
+    let is_stable = |delay: &f64| chain.with_delay(*delay).spectral_radius() < 1.0;
+    let below = (PARTS * delay).floor();
+    let mut tried =
+        (1..=TRIED).map(|part| (below + f64::from(part)) / PARTS).take_while(|tried| *tried < delay + margin);
+    let Some(unstable) = tried.find(|tried| !is_stable(tried)) else { return margin };
+    let (mut low, mut high) = (delay.max(unstable - 1.0 / PARTS), unstable);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if is_stable(&middle) { low = middle } else { high = middle }
     }
-    low
+    low - delay
 }
 
 /// Frequencies, rising, with the law's part of the response: the same for every delay.

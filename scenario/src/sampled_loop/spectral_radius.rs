@@ -33,7 +33,8 @@ pub(super) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
 }
 
 /// Scales the states by powers of two, which costs no digit, until each one's row and column are about as large as each other: a square's
-/// rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is far below them.
+/// rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is far below them. (nalgebra's balancing
+/// does not end where an entry is infinite.)
 fn balance(matrix: &mut DMatrix<f64>) {
     /// Enough for any file's; each sweep takes time as one column of a square does.
     const SWEEPS: usize = 20;

@@ -6,25 +6,31 @@ use crate::extended::parameters::{EstimateParameters, ExtendedParameters};
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-#[test]
-fn every_rotor_has_a_row_and_weak_rotors_fail_theirs() {
+/// The example's vehicle under a law with these estimates, without rotors.
+fn configured(estimates: EstimateParameters, references: ReferenceBounds) -> (Configuration, ExtendedLaw) {
     let vehicle = example::vehicle();
-    let parameters = Extended::new(example::PARAMETERS, &vehicle).unwrap();
-    let references = example::REFERENCES;
-    let rotors = example::rotors();
+    let parameters = Extended::new(ExtendedParameters { estimates, ..example::PARAMETERS }, &vehicle).unwrap();
     let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
     let limits = Limits::new(limits, &vehicle).unwrap();
     let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
-    let configuration = Configuration::extended(vehicle, limits, law, references).unwrap().with_rotors(rotors).unwrap();
-    let certificate = ExtendedCertificate::new(&configuration, &law).unwrap();
+    (Configuration::extended(vehicle, limits, law, references).unwrap(), law)
+}
+
+/// The certificate of the same vehicle on `rotors`.
+fn on_rotors(estimates: EstimateParameters, rotors: Rotors) -> ExtendedCertificate {
+    let (configuration, law) = configured(estimates, example::REFERENCES);
+    ExtendedCertificate::new(&configuration.with_rotors(rotors).unwrap(), &law).unwrap()
+}
+
+#[test]
+fn every_rotor_has_a_row_and_weak_rotors_fail_theirs() {
+    let estimates = example::PARAMETERS.estimates;
+    let certificate = on_rotors(estimates, example::rotors());
     assert_eq!(certificate.inequalities.len(), WITHOUT_ROTORS + 4);
     assert_eq!(certificate.bounds.rotors.len(), 4);
-    // Thrust beyond every rotor's is beyond the certificate: with a tenth of the speed nothing fits.
-    let weak = Configuration::extended(vehicle, limits, law, references).unwrap();
-    let quad =
-        QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 600.0 };
-    let weak = weak.with_rotors(Rotors::quad_x(quad).unwrap()).unwrap();
-    let failing = ExtendedCertificate::new(&weak, &law).unwrap();
+    // Thrust beyond every rotor's is beyond the certificate: with a sixth of the thrust nothing fits.
+    let weak = QuadX { speed_max: 600.0, ..example::QUAD };
+    let failing = on_rotors(estimates, Rotors::quad_x(weak).unwrap());
     let rows = failing.inequalities.iter().filter(|row| row.name.starts_with('R'));
     assert_eq!(rows.filter(|row| !row.holds()).count(), 4);
 }
@@ -62,13 +68,9 @@ fn a_flat_body_has_the_floor_of_one_that_is_nearly_flat() {
 
 /// The rows about `references` alone, of a law that knows a drag of `drag`, 1/s.
 fn feasible(references: ReferenceBounds, drag: f32) -> [Inequality; 5] {
-    let vehicle = example::vehicle();
     let estimates = EstimateParameters { drag_across: drag, ..example::PARAMETERS.estimates };
-    let parameters = Extended::new(ExtendedParameters { estimates, ..example::PARAMETERS }, &vehicle).unwrap();
-    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
-    let limits = Limits::new(limits, &vehicle).unwrap();
-    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
-    feasibility(&Configuration::extended(vehicle, limits, law, references).unwrap(), &parameters)
+    let (configuration, law) = configured(estimates, references);
+    feasibility(&configuration, &law.parameters)
 }
 
 #[test]
@@ -117,22 +119,9 @@ fn a_reference_that_sinks_leaves_less_to_fall_with_and_more_to_carry() {
 
 /// What the rotors are asked for under a law that counts on these scales, each of them turning at least at 300 rad/s.
 fn asked(scale_least: f32, scale_greatest: f32) -> bounds::ExtendedBounds {
-    let vehicle = example::vehicle();
     let estimates = EstimateParameters { scale_least, scale_greatest, ..example::PARAMETERS.estimates };
-    let parameters = Extended::new(ExtendedParameters { estimates, ..example::PARAMETERS }, &vehicle).unwrap();
-    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
-    let limits = Limits::new(limits, &vehicle).unwrap();
-    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
-    let quad = QuadX {
-        arm: 0.17,
-        thrust_coefficient: 5.57e-6,
-        drag_coefficient: 1.36e-7,
-        speed_min: 300.0,
-        speed_max: 1500.0,
-    };
-    let configuration = Configuration::extended(vehicle, limits, law, example::REFERENCES).unwrap();
-    let configuration = configuration.with_rotors(Rotors::quad_x(quad).unwrap()).unwrap();
-    ExtendedCertificate::new(&configuration, &law).unwrap().bounds
+    let turning = QuadX { speed_min: 300.0, ..example::QUAD };
+    on_rotors(estimates, Rotors::quad_x(turning).unwrap()).bounds
 }
 
 #[test]

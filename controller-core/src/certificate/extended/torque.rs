@@ -161,7 +161,7 @@ impl Torques {
     #[inline(never)] // called from many places, before flight
     pub fn swung(&self, lever: &Lever, tilt: &TiltCell, swing: &Swing) -> f64 {
         let [turn, _] = self.turn;
-        let (&Lever { length, sin, cos }, &Swing { across: swing, most }) = (lever, swing);
+        let (&Lever { length, sin, cos }, &Swing { across, most }) = (lever, swing);
         if length <= 0.0 || most <= 0.0 {
             return 0.0;
         }
@@ -176,9 +176,9 @@ impl Torques {
         };
         let beyond = sin_far * cos + cos_far * sin <= 0.0;
         let farthest = if beyond { -1.0 } else { cos_far * cos - sin_far * sin };
-        // swing sin alpha + turn |cos alpha| has its greatest value on either side of a right angle, and between the two its least.
+        // across sin alpha + turn |cos alpha| has its greatest value on either side of a right angle, and between the two its least.
         let reaches = |cosine: f64| nearest >= cosine && cosine >= farthest;
-        let there = |cosine: f64| swing * math::sqrt_of_rounded(1.0 - cosine * cosine) + turn * cosine.abs();
+        let there = |cosine: f64| across * math::sqrt_of_rounded(1.0 - cosine * cosine) + turn * cosine.abs();
         let peak = turn / most;
         length * if reaches(peak) || reaches(-peak) { most } else { math::greater_f64(there(nearest), there(farthest)) }
     }

@@ -23,8 +23,12 @@ fn directory(test: &str) -> PathBuf {
     path
 }
 
-fn scenario() -> Scenario {
-    longest(&Scenario::parse(&text(), "f").unwrap())
+fn source(text: String) -> Source {
+    Source::new(longest(&Scenario::parse(&text, "f").unwrap()), text, "f".to_owned()).unwrap()
+}
+
+fn fly(source: &Source, orders: &Orders, directory: &Path) -> Result<Summary, CampaignError> {
+    campaign(source, &LawChoice::Ours, orders, directory, &Interrupt::default())
 }
 
 fn orders(part: u64, parts: u64) -> Orders {
@@ -33,8 +37,7 @@ fn orders(part: u64, parts: u64) -> Orders {
 
 fn fly_on(threads: usize, orders: &Orders, directory: &Path) -> Summary {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| campaign(&scenario(), &text(), "f", &LawChoice::Ours, orders, directory, &Interrupt::default()))
-        .unwrap()
+    pool.install(|| fly(&source(text()), orders, directory)).unwrap()
 }
 
 /// Every file, by name.
@@ -84,7 +87,9 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     let (whole, again) = (directory("unbroken"), directory("broken"));
     fly_on(2, &orders(1, 1), &whole);
     // As an end of the power leaves it: a chunk that is there, one that is damaged, and one that was being written.
-    let store = Store::open(&again, &Manifest::new(&scenario(), &text(), FLIGHTS, 5, (1, 1)), &text()).unwrap();
+    let source = source(text());
+    let manifest = Manifest::new(&source.scenario, &source.text, FLIGHTS, 5, (1, 1));
+    let store = Store::open(&again, &manifest, &source.text).unwrap();
     let flown = Store::complete(&whole).unwrap().1;
     let kept = flown[1].clone();
     store.keep(1, &kept).unwrap();
@@ -104,10 +109,9 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     assert!(part(&changed[..arrow]).is_some_and(|changed| changed != [kept]) && part(&changed).is_none());
     assert!((0..arrow).step_by(13).all(|end| part(&sealed[..end]).is_none()));
     let there = fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap();
-    let verdict = Verdict::of(&scenario()).unwrap();
-    let (same, none) = (scenario(), Interrupt::default());
-    let ours = Flier::new(&LawChoice::Ours, &same, verdict.certified()).unwrap();
-    assert_eq!(Chunks::new(&same, "f", &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
+    let (verdict, none) = (source.verdict().unwrap(), Interrupt::default());
+    let ours = Flier::new(&LawChoice::Ours, &source.scenario, verdict.certified()).unwrap();
+    assert_eq!(Chunks::new(&source, &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
     // One writes into a directory at a time.
     drop(store);
     assert_eq!(fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap(), there);
@@ -122,21 +126,16 @@ fn a_directory_is_of_one_campaign() {
     let few = Orders { flights: 60, seed: 1, shard: (1, 1) };
     fly_on(1, &few, &first);
     let before = files(&first);
-    let refuse = |orders: &Orders, text: &str, expected: &str| {
-        let scenario = longest(&Scenario::parse(text, "f").unwrap());
-        let error = campaign(&scenario, text, "f", &LawChoice::Ours, orders, &first, &Interrupt::default())
-            .unwrap_err()
-            .to_string();
+    let refuse = |orders: &Orders, text: String, expected: &str| {
+        let error = fly(&source(text), orders, &first).unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("choose another --out"), "{error}");
     };
-    refuse(&Orders { seed: 2, ..few }, &text(), "not the same seed (1 and 2)");
-    refuse(&Orders { flights: 61, ..few }, &text(), "not the same number of flights (60 and 61)");
-    refuse(&Orders { shard: (1, 2), ..few }, &text(), "not the same shard ([1,1] and [1,2])");
-    refuse(&few, &format!("{}# Another.\n", text()), "not the same scenario;");
+    refuse(&Orders { seed: 2, ..few }, text(), "not the same seed (1 and 2)");
+    refuse(&Orders { flights: 61, ..few }, text(), "not the same number of flights (60 and 61)");
+    refuse(&Orders { shard: (1, 2), ..few }, text(), "not the same shard ([1,1] and [1,2])");
+    refuse(&few, format!("{}# Another.\n", text()), "not the same scenario;");
     fs::write(first.join(MANIFEST), "{}").unwrap();
-    let error = campaign(&scenario(), &text(), "f", &LawChoice::Ours, &few, &first, &Interrupt::default())
-        .unwrap_err()
-        .to_string();
+    let error = fly(&source(text()), &few, &first).unwrap_err().to_string();
     assert!(error.ends_with("campaign.json: is no campaign's of this program"), "{error}");
     fs::write(first.join(MANIFEST), &before[1].1).unwrap();
     assert_eq!(files(&first), before);
@@ -144,10 +143,22 @@ fn a_directory_is_of_one_campaign() {
 }
 
 #[test]
+fn what_cannot_be_written_in_the_end_is_found_before_anything_is_flown() {
+    let out = directory("taken");
+    fly_on(1, &orders(1, 1), &out);
+    fs::remove_file(out.join(RESULT)).unwrap();
+    fs::create_dir(out.join(RESULT)).unwrap();
+    let error = fly(&source(text()), &orders(1, 1), &out).unwrap_err().to_string();
+    assert!(error.contains("campaign.arrow: cannot be written"), "{error}");
+    assert_eq!(fs::read_dir(out.join("parts")).unwrap().count(), 0);
+    fs::remove_dir_all(&out).unwrap();
+}
+
+#[test]
 fn a_scenario_that_nothing_is_thrown_from_is_named_by_its_file() {
     let (text, out) = (format!("{HUMMINGBIRD}\n[ground]\nheight = 0.0\n"), directory("grounded"));
-    let grounded = Scenario::parse(&text, "mine.toml").unwrap();
-    let flown = campaign(&grounded, &text, "mine.toml", &LawChoice::Ours, &orders(1, 1), &out, &Interrupt::default());
+    let grounded = Source::new(Scenario::parse(&text, "f").unwrap(), text, "mine.toml".to_owned());
+    let flown = grounded.and_then(|source| fly(&source, &orders(1, 1), &out));
     let error = flown.unwrap_err().to_string();
     assert!(error.starts_with("mine.toml: ground: a campaign throws"), "{error}");
     assert!(!out.exists());
