@@ -3,7 +3,7 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::memory::Estimates;
 use controller_core::flight::{
     FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
@@ -123,8 +123,14 @@ fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
         let (height, acceleration) = lifted(tick);
         let zero = Vector3::zeros();
         let delta_velocity = Vector3::new(0.0, 0.0, (9.81 + acceleration) * PERIOD as f32 * 1e-6);
-        let increment =
-            Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, angular_velocity: zero };
+        let increment = Increment {
+            start: now - PERIOD,
+            end: now,
+            delta_angle: zero,
+            delta_velocity,
+            angular_velocity: zero,
+            clipped: Clipped::NEITHER,
+        };
         let position = Vector3::new(0.0, 0.0, height);
         let still = Velocity::World(Vector3::zeros());
         let pose = Pose::new(position, still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();

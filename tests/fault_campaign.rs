@@ -21,7 +21,7 @@ mod watch;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::flight::rules::{Condition, Row, TABLE};
-use controller_core::flight::{FlightSettings, Reason, Transition};
+use controller_core::flight::{FlightSettings, Mode, Reason, Transition};
 use controller_core::reference::ReferenceBounds;
 use failure::Failure;
 use phase::Phase;
@@ -161,5 +161,8 @@ pub fn fly_pairs(mut cases: Vec<Case>) {
     let (taken, left): (Vec<&Row>, Vec<&Row>) = TABLE.iter().partition(taken);
     println!("{} of the table's {} rows were taken, or lead nowhere; not these:", taken.len(), TABLE.len());
     left.iter().for_each(|row| println!("    {:?}, {:?}", row.from, row.condition));
-    assert!(left.iter().all(|row| NOT_BY_FAILURES.contains(&row.condition)), "a failure no longer leads there");
+    // A crash by the IMU alone: where the ground is level, the IMU stops fitting what is commanded 0.2 s sooner.
+    let is_sooner = |row: &Row| (row.from, row.condition) == (Mode::Descending, Condition::Crashed);
+    let elsewhere = |row: &&Row| NOT_BY_FAILURES.contains(&row.condition) || is_sooner(row);
+    assert!(left.iter().all(elsewhere), "a failure no longer leads there");
 }

@@ -11,6 +11,7 @@
 //!                    nominal, covariance -> advance, test, fuse -> nominal alone, to the end
 //! ```
 //!
+//! - `present`: what the law is told of it, without the rotors' shaking;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;
@@ -51,11 +52,12 @@ mod candidate;
 mod checkpoints;
 mod measurement;
 mod nominal;
+mod present;
 mod stream;
 mod taking;
 
 pub use health::{COASTING_AFTER, Faults, Health};
-pub use history::{EXTRAPOLATION_MAX, Increment};
+pub use history::{Clipped, EXTRAPOLATION_MAX, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
@@ -71,6 +73,7 @@ use heapless::Vec;
 use history::History;
 use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
+use present::Present;
 use stream::Stream;
 
 /// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves. Longer than
@@ -87,9 +90,9 @@ const WAITING: usize = 4;
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatedState {
-    /// For the law. The body rate is the low-passed one, less its bias.
+    /// For the law. The body rate is the low-passed one, less its bias; the velocity one that does not shake with the rotors.
     pub state: State,
-    /// v', m/s^2, world: the mean over the last increment, by accelerometer.
+    /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
     /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and [`Estimator::adopt`]. Who
     /// differentiates the state, begins anew when it changes.
@@ -183,24 +186,23 @@ impl Estimator {
     pub fn state(&self, now: u64) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
-        let per_second = 1.0 / last.seconds();
-        let bent = last.delta_angle.cross(&last.delta_velocity) * 0.5;
-        let force = (last.delta_velocity - bent) * per_second;
+        let Present { force, shaking } = Present::of(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
             start: last.end,
             end: last.end + ahead,
-            delta_angle: last.delta_angle * (per_second * seconds),
+            delta_angle: last.delta_angle * (seconds / last.seconds()),
             delta_velocity: force * seconds,
-            angular_velocity: last.angular_velocity,
+            ..*last
         };
         let (mut nominal, gravity) = (*latest, self.settings.parameters().gravity);
-        let mut acceleration = rotated(&nominal.attitude, &(force - nominal.accelerometer_bias));
+        let mut acceleration = rotated(&latest.attitude, &(force - latest.accelerometer_bias));
         acceleration.z -= gravity;
         nominal.advance(&increment, gravity);
         let Nominal { position, velocity, attitude, gyro_bias, .. } = nominal;
         let angular_velocity = last.angular_velocity - gyro_bias;
-        let state = State { position, velocity, attitude, angular_velocity };
+        let state =
+            State { position, velocity: velocity - rotated(&latest.attitude, &shaking), attitude, angular_velocity };
         Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps })
     }
 

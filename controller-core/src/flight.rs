@@ -26,6 +26,7 @@
 //! because a lost body was found again, the reference jumps with it, and brakes from there: the vehicle does not lurch.
 
 mod bench;
+mod calm;
 mod chain;
 mod estimate;
 #[cfg(test)]

@@ -6,17 +6,20 @@
 //!   needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz stays what it is, a
 //!   motion to and fro.
 //! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant rate. So the
-//!   gyro passes a second-order [low-pass](low_pass) first. Its delay is known, [`Conditioner::delay`], and must be counted in the
+//!   gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether. Its delay is known, [`Conditioner::delay`], and must be counted in the
 //!   margins of the sampled loops.
 //!
-//! | sample at | low-pass of 60 Hz | mean over 5 ms |
+//! | sample at | low-pass | mean over 5 ms |
 //! |---|---|---|
-//! | 70 Hz | 0.59 | 0.81 |
-//! | 100 Hz | 0.33 | 0.64 |
-//! | 130 Hz | 0.19 | 0.44 |
+//! | 70 Hz | 0.31 | 0.81 |
+//! | 100 Hz | 0 | 0.64 |
+//! | 130 Hz | 0.15 | 0.44 |
 //! | delay | 3.7 ms | none: integrals |
 //!
-//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. Up to [`BRIDGED_MAX`]
+//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops that.
+//!
+//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is over sooner than full scale
+//! is a fault, but its increment says so, for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`]
 //! without samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so
 //! does the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
@@ -35,7 +38,7 @@ pub use watch::ImuFault;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};
-use integrator::Integrator;
+use integrator::{Integrator, Sample};
 use low_pass::LowPass;
 use nalgebra::Vector3;
 use watch::{Ranges, Watch};
@@ -51,8 +54,10 @@ pub const BRIDGED_MAX: u64 = 15_000;
 pub struct ImuParameters {
     /// Samples a second, Hz.
     pub rate: f32,
-    /// Where the low-pass for the law's body rates has lost half the power, Hz.
+    /// Of the poles of the low-pass for the law's body rates, Hz.
     pub cutoff: f32,
+    /// What this low-pass stops altogether, Hz.
+    pub stopped: f32,
     /// The gyro's full scale, rad/s.
     pub gyro_range: f32,
     /// The accelerometer's full scale, m/s^2.
@@ -60,8 +65,9 @@ pub struct ImuParameters {
 }
 
 impl ImuParameters {
-    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz.
-    pub const BMI088: Self = Self { rate: 1000.0, cutoff: 60.0, gyro_range: 34.906_586, accelerometer_range: 235.36 };
+    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz that stops the rate of the ticks.
+    pub const BMI088: Self =
+        Self { rate: 1000.0, cutoff: 60.0, stopped: 100.0, gyro_range: 34.906_586, accelerometer_range: 235.36 };
 }
 
 /// What a sample was good for.
@@ -87,22 +93,24 @@ impl Conditioner {
     /// For a sensor with `parameters`, whose samples `calibration` corrects.
     ///
     /// # Errors
-    /// Names the parameter that is not positive, or a cutoff beyond a quarter of the rate.
+    /// Names the parameter that is not positive, or a frequency of the low-pass beyond a quarter of the rate.
     pub fn new(parameters: &ImuParameters, calibration: &Calibration) -> Result<Self, ParameterError> {
         let p = parameters;
         for (value, field) in [
             (p.rate, "imu.rate"),
             (p.cutoff, "imu.cutoff"),
+            (p.stopped, "imu.stopped"),
             (p.gyro_range, "imu.gyro_range"),
             (p.accelerometer_range, "imu.accelerometer_range"),
         ] {
             require_positive(value, field)?;
         }
         require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::Above(0.25 * p.rate))?;
+        require(p.stopped <= 0.25 * p.rate, "imu.stopped", Reason::Above(0.25 * p.rate))?;
         Ok(Self {
             calibration: *calibration,
             watch: Watch::new(Ranges { gyro: p.gyro_range, accelerometer: p.accelerometer_range }),
-            low_pass: LowPass::new(f64::from(p.cutoff), f64::from(p.rate)),
+            low_pass: LowPass::new(p.cutoff.into(), p.stopped.into(), p.rate.into()),
             integrator: Integrator::EMPTY,
             newest: None,
         })
@@ -152,17 +160,18 @@ impl Conditioner {
         }
         let rate = self.calibration.rate(angular_velocity);
         let force = specific_force.map(|force| self.calibration.force(force));
+        let sample = Sample { time, rate, force, clipped: self.watch.clipped() };
         match self.integrator.age(time) {
             Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
             Some(age) if age <= BRIDGED_MAX => {
                 let smooth = self.low_pass.take(&rate);
-                let increment = self.integrator.take(time, &rate, force.as_ref(), &smooth, INCREMENT);
+                let increment = self.integrator.take(&sample, &smooth, INCREMENT);
                 self.keep(time, &smooth, force);
                 Conditioned { increment, fault }
             }
             before => {
                 self.low_pass.settle(&rate);
-                self.integrator.begin(time, &rate, force.as_ref());
+                self.integrator.begin(&sample);
                 self.keep(time, &rate, force);
                 Conditioned { increment: None, fault: fault.or(before.map(|_| ImuFault::Gap)) }
             }

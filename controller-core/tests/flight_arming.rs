@@ -171,7 +171,7 @@ fn arming_is_refused_where_the_accelerometer_says_that_up_is_elsewhere() {
 }
 
 #[test]
-fn arming_is_refused_where_the_gyro_turns_or_is_biased_by_a_degree_a_second() {
+fn arming_is_refused_where_the_gyro_turns_or_is_biased_by_two_degrees_a_second() {
     let turning = |rate: f32| {
         move |imu: &mut Increment| {
             imu.delta_angle.x += rate * imu.seconds();
@@ -180,7 +180,7 @@ fn arming_is_refused_where_the_gyro_turns_or_is_biased_by_a_degree_a_second() {
     };
     refuses_sensors(|flight| flight.imu = Box::new(turning(10.0)), Refusal::Estimator(Fault::NotStarted));
     refuses(with_imu(turning(10.0)), Refusal::Moving);
-    refuses_sensors(|flight| flight.imu = Box::new(turning(1_f32.to_radians())), Refusal::Estimator(Fault::GyroBias));
+    refuses_sensors(|flight| flight.imu = Box::new(turning(2_f32.to_radians())), Refusal::Estimator(Fault::GyroBias));
 }
 
 #[test]

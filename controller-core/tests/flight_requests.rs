@@ -170,8 +170,7 @@ fn told_to_land_without_a_pose() -> Flight {
 #[test]
 fn a_landing_that_is_granted_without_a_pose_is_begun_when_there_is_one() {
     let mut flight = told_to_land_without_a_pose();
-    flight.until(Reason::PoseRegained, 20);
-    flight.until(Reason::LandCommanded, 1);
+    flight.until(Reason::LandingResumed, 20);
     // Once: who holds afterwards holds.
     assert_eq!(ask(&mut flight, Request::Hold).mode, Mode::Holding);
     assert_eq!(flight.ticks(300).mode, Mode::Holding);
@@ -180,7 +179,7 @@ fn a_landing_that_is_granted_without_a_pose_is_begun_when_there_is_one() {
 #[test]
 fn a_landing_that_is_granted_without_a_pose_gives_way_to_what_is_asked_for_later() {
     let mut flight = told_to_land_without_a_pose();
-    flight.until(Reason::PoseRegained, 20);
+    flight.until(Reason::LandingResumed, 20);
     assert_eq!(ask(&mut flight, Request::Hold).answer, Some(Ok(())));
     assert_eq!(flight.ticks(300).mode, Mode::Holding);
     // Nor does it outlast its flight.

@@ -40,7 +40,7 @@ pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
 
 /// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has.
 pub const PARAMETERS: ImuParameters =
-    ImuParameters { rate: 800.0, cutoff: 60.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4 };
+    ImuParameters { rate: 800.0, cutoff: 60.0, stopped: 100.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4 };
 
 /// Faults in a row after which the sensor is powered up anew.
 pub const RESTART_AFTER: u8 = 5;

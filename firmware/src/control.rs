@@ -108,8 +108,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
-            let sender = asked.and_then(|asked| asked.sender);
-            self.shared.commander.put(sender.map(|(system, _)| system), now);
+            let order = asked.and_then(|asked| asked.order);
+            self.shared.commander.put(order.map(|order| order.sender.0), now);
         }
         self.tell(&outcome, asked);
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());

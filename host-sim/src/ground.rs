@@ -4,21 +4,24 @@
 //! hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for ever without
 //! drifting. In the air the ground does nothing.
 //!
-//! A vehicle that comes down stops where it touches: the impact is perfectly plastic, without a bounce. The legs put it
-//! upright again if it leaned by no more than [`LEGS_TILT_MAX`]; one that leaned further lies as it fell. No energy comes
-//! from any of this: motion only ends, and the body is not lifted back to the ground's height, which it passes by at most
-//! what it falls in one plant step.
+//! A vehicle that comes down stops where it touches: the impact is perfectly plastic, without a bounce. One that leans is then on its
+//! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that leaned further lies as it
+//! fell. No energy comes from any of this: a body is not lifted back to the ground's height, which it passes by at most what it falls in one
+//! plant step, or, after a hop that leaned, by what its foot did.
 //!
-//! There is no sliding, no tipping over an edge and no ground effect, and a fall breaks nothing.
+//! There is no sliding, no tipping over an edge by a torque from standing, and no ground effect, and a fall breaks nothing.
+
+mod rocking;
+
+pub use rocking::TILT_MAX;
 
 use crate::plant::Plant;
 use controller_core::vehicle::Vehicle;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, Vector3};
+use rocking::{Lean, Rocked, Rocking, Weight, tilt, up};
 use scenario::body::BodyState;
 use scenario::body::attitude_from_euler;
-
-/// How far a vehicle may lean when it touches the ground for its legs to put it upright, rad: 30 degrees.
-pub const LEGS_TILT_MAX: f64 = 0.52;
+use scenario::reality::truth::Truth;
 
 /// A vehicle that came down.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,63 +32,101 @@ pub struct Touchdown {
     pub tilt: f64,
 }
 
+/// How a vehicle is on the ground.
+#[derive(Debug, Clone)]
+enum Stance {
+    /// Not at all.
+    Air,
+    /// At rest.
+    Still,
+    /// On one foot.
+    Rocking(Rocking),
+}
+
 /// Level ground under one vehicle.
 #[derive(Debug, Clone)]
 pub struct Ground {
     /// Height of the vehicle's origin when it stands, m.
     height: f64,
-    /// m g, N.
-    weight: f64,
-    /// g, m/s^2.
-    gravity: f64,
-    standing: bool,
+    weight: Weight,
+    /// Plant step, s.
+    step: f64,
+    stance: Stance,
 }
 
 impl Ground {
-    /// Ground on which `vehicle` stands with its origin at `height`, m; and there it stands, where `start` says, level.
+    /// Ground on which `vehicle` stands with its origin at `height`, m; and there it stands, where `start` says, level. `step` is the
+    /// plant's, s.
     #[must_use]
-    pub fn under(vehicle: &Vehicle, height: f64, start: &BodyState) -> (Self, BodyState) {
-        let gravity = f64::from(vehicle.gravity);
-        let ground = Self { height, weight: f64::from(vehicle.mass) * gravity, gravity, standing: true };
+    pub fn under(vehicle: &Vehicle, height: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
+        let (mass, inertia) = (f64::from(vehicle.mass), vehicle.inertia.map(f64::from));
+        let weight = Weight { mass, inertia, gravity: f64::from(vehicle.gravity) };
         let position = Vector3::new(start.position.x, start.position.y, height);
-        (ground, standing(position, upright(start)))
+        (Self { height, weight, step, stance: Stance::Still }, standing(position, upright(start)))
     }
 
-    /// Ground on which a vehicle of `mass`, kg, stands with its origin at `height`, m; and where it is, if it was at `start`: on
-    /// its legs if that is down there.
+    /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it was at `start`: at
+    /// rest on it if that is down there.
     #[must_use]
-    pub fn at(height: f64, mass: f64, gravity: f64, start: &BodyState) -> (Self, BodyState) {
-        let mut ground = Self { height, weight: mass * gravity, gravity, standing: false };
+    pub fn at(height: f64, truth: &Truth, gravity: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
+        let weight = Weight { mass: truth.mass, inertia: truth.inertia, gravity };
+        let mut ground = Self { height, weight, step, stance: Stance::Air };
         let state = ground.touch(start).map_or(*start, |(state, _)| state);
         (ground, state)
     }
 
-    /// Whether the vehicle stands on it.
+    /// Whether the vehicle is on it, on all its feet or on one.
     #[must_use]
     pub fn stands(&self) -> bool {
-        self.standing
+        !matches!(self.stance, Stance::Air)
     }
 
-    /// Whether a vehicle on which an upward force of `lift`, N, acts besides its weight stands still.
-    #[must_use]
-    pub fn carries(&self, lift: f64) -> bool {
-        self.standing && lift <= self.weight
+    /// Somebody's hands take hold of it: if it was on one foot, off that.
+    pub fn take_off_foot(&mut self) {
+        if let Stance::Rocking(_) = self.stance {
+            self.stance = Stance::Air;
+        }
     }
 
-    /// Where a vehicle that moved to `state` ends if it touches the ground there.
+    /// Where a vehicle at `state`, on which `force`, N, world, acts besides its weight, and `torque`, N m, body, is after a step on the
+    /// ground; none if that does not hold it.
+    pub fn hold(&mut self, state: &BodyState, force: &Vector3<f64>, torque: &Vector3<f64>) -> Option<BodyState> {
+        let rocked = match &mut self.stance {
+            Stance::Air => Rocked::Off,
+            Stance::Still if force.z <= self.weight.newtons() => Rocked::Ended(*state),
+            Stance::Still => Rocked::Off,
+            Stance::Rocking(rocking) => rocking.advance(&self.weight, force, torque, self.step),
+        };
+        match rocked {
+            Rocked::Leaning(state) => Some(state),
+            Rocked::Ended(state) => {
+                self.stance = Stance::Still;
+                Some(state)
+            }
+            Rocked::Off => None,
+        }
+    }
+
+    /// Where a vehicle that moved freely to `state` ends if it touches the ground there.
     pub fn touch(&mut self, state: &BodyState) -> Option<(BodyState, Touchdown)> {
-        self.standing = state.position.z <= self.height && state.velocity.z <= 0.0;
-        if !self.standing {
+        let (lean, climbing) = (Lean::of(state), state.velocity.z);
+        let (rise, rising) = lean.as_ref().map_or((0.0, 0.0), Lean::rise);
+        // What is no number touches nothing.
+        let touches = state.position.z <= self.height + rise && climbing <= 0.0 && climbing <= rising;
+        if !touches {
+            self.stance = Stance::Air;
             return None;
         }
-        let touchdown = Touchdown { speed: -state.velocity.z, tilt: up(state).z.clamp(-1.0, 1.0).acos() };
-        let attitude = if touchdown.tilt <= LEGS_TILT_MAX { upright(state) } else { state.attitude };
-        Some((standing(state.position, attitude), touchdown))
+        let touchdown = Touchdown { speed: -climbing, tilt: tilt(state) };
+        self.stance = lean.map_or(Stance::Still, |lean| Stance::Rocking(Rocking::begin(state, lean, &self.weight)));
+        Some((standing(state.position, state.attitude), touchdown))
     }
 
     /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.
     pub fn act(&mut self, plant: &mut Plant, thrust: f64, torque: &Vector3<f64>) -> Option<Touchdown> {
-        if self.carries(thrust * up(plant.state()).z) {
+        let force = up(plant.state()) * thrust;
+        if let Some(state) = self.hold(plant.state(), &force, torque) {
+            plant.place(state);
             return None;
         }
         plant.act(thrust, torque);
@@ -93,21 +134,6 @@ impl Ground {
         plant.place(state);
         Some(touchdown)
     }
-
-    /// Specific force, m/s^2, body frame: what an accelerometer shows after a step under `thrust`, N.
-    #[must_use]
-    pub fn specific_force(&self, state: &BodyState, thrust: f64) -> Vector3<f64> {
-        if self.standing {
-            UnitQuaternion::new_unchecked(state.attitude).inverse() * Vector3::new(0.0, 0.0, self.gravity)
-        } else {
-            Vector3::new(0.0, 0.0, thrust * self.gravity / self.weight)
-        }
-    }
-}
-
-/// R(q) e3.
-fn up(state: &BodyState) -> Vector3<f64> {
-    UnitQuaternion::new_unchecked(state.attitude) * Vector3::z()
 }
 
 /// Level, with the yaw that `state` has.

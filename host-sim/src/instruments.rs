@@ -6,11 +6,13 @@
 //! ```
 //!
 //! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed decides
-//! everything that is drawn: the same motion is sensed in the same way, to the last bit.
+//! everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor shows more than a BMI088's range: a hard
+//! touchdown's 50 g are 24 g to it.
 
 use crate::sensors::{noise, single};
 use controller_core::estimator::EstimatorParameters;
 use controller_core::flight::{ImuSample, Pose, Stamped, Velocity};
+use controller_core::imu::ImuParameters;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -81,7 +83,8 @@ impl Instruments {
         if (self.clock / SAMPLE).is_multiple_of(self.what.pose_every) {
             self.look(state, &attitude, time);
         }
-        ImuSample { angular_velocity: single(&rate), specific_force: single(&force) }
+        let (gyro, accelerometer) = (ImuParameters::BMI088.gyro_range, ImuParameters::BMI088.accelerometer_range);
+        ImuSample { angular_velocity: shown(&rate, gyro), specific_force: shown(&force, accelerometer) }
     }
 
     /// The next pose that has arrived by the last sample, with the time at which it was true. Its velocity is zero: the
@@ -111,3 +114,11 @@ impl Instruments {
         self.what.outage.is_some_and(|outage| (outage.start..outage.start + outage.duration).contains(&arrival))
     }
 }
+
+/// What a sensor with this `range` shows.
+fn shown(truth: &Vector3<f64>, range: f32) -> Vector3<f32> {
+    single(truth).map(|component| component.clamp(-range, range))
+}
+
+#[cfg(test)]
+mod tests;

@@ -22,7 +22,7 @@ use controller_core::governor::GovernorLimits;
 use controller_core::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
 use firmware::hardware::{MOTORS, MotorCommand};
 use firmware::outputs::Outputs;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};
 use scenario::reality::ground::Ground;
@@ -187,13 +187,13 @@ impl<'m> PilotedVehicle<'m> {
         while let Some((_, command)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
             self.acting = command;
         }
-        let (thrusts, before) = (self.thrusts(), self.vehicle.state().attitude);
+        let thrusts = self.thrusts();
         for _ in 0..self.steps {
             self.vehicle.drive(&thrusts).map_err(|_| PilotedError::Diverged)?;
         }
         self.now += SAMPLE;
         meddler.act(&mut self.vehicle, self.now);
-        let sample = self.instruments.sample(&turned(&before, self.vehicle.state()), self.now);
+        let sample = self.instruments.sample(self.vehicle.state(), self.now);
         if let Some(sample) = meddler.sample(sample, self.now) {
             let force = Some(&sample.specific_force);
             let taken = self.conditioner.sample(self.now, &sample.angular_velocity, force);
@@ -247,15 +247,6 @@ impl<'m> PilotedVehicle<'m> {
             *part = left;
         }
     }
-}
-
-/// `state` with the mean rate since `before`, a sample ago, if that was no turn at the body's own rate: legs that put a leaning
-/// vehicle upright turn it at once, and a gyro sees that.
-fn turned(before: &Quaternion<f64>, state: &BodyState) -> BodyState {
-    let turn = UnitQuaternion::new_normalize(before.conjugate() * state.attitude).scaled_axis();
-    let rate = turn / (SAMPLE as f64 * 1e-6);
-    let is_set_upright = state.angular_velocity == Vector3::zeros() && turn.norm() > 1e-9;
-    BodyState { angular_velocity: if is_set_upright { rate } else { state.angular_velocity }, ..*state }
 }
 
 /// The scenario, begun on the ground at the origin, level and at rest.

@@ -94,7 +94,7 @@ impl RealVehicle {
         let gravity = f64::from(model.gravity);
         let (ground, start) = match reality.ground {
             Some(ground) => {
-                let (ground, start) = Ground::at(ground.height, truth.mass, gravity, &scenario.initial);
+                let (ground, start) = Ground::at(ground.height, &truth, gravity, &scenario.initial, step);
                 (Some(ground), start)
             }
             None => (None, scenario.initial),
@@ -174,6 +174,13 @@ impl RealVehicle {
 
     /// Moves its origin as somebody's hands do.
     pub fn place(&mut self, state: &BodyState) {
+        if let Some(ground) = &mut self.ground {
+            ground.take_off_foot();
+        }
+        self.put(state);
+    }
+
+    fn put(&mut self, state: &BodyState) {
         self.body.place(state);
         self.state = *state;
     }
@@ -230,19 +237,20 @@ impl RealVehicle {
                 None => (force, torque),
             }
         };
-        let carried = self.ground.as_ref().is_some_and(|ground| {
-            let state = self.body.state();
-            let (force, _) = forces(0, state);
-            ground.carries((UnitQuaternion::new_unchecked(state.attitude) * force).z)
+        let held = self.ground.as_mut().and_then(|ground| {
+            let body = self.body.state();
+            let (force, torque) = forces(0, body);
+            ground.hold(&self.state, &(UnitQuaternion::new_unchecked(body.attitude) * force), &torque)
         });
-        if !carried {
+        let grounded = held.or_else(|| {
             self.body.advance(self.step, forces);
             self.state = self.body.origin();
-            if let Some((landed, touchdown)) = self.ground.as_mut().and_then(|ground| ground.touch(&self.state)) {
-                self.body.place(&landed);
-                self.state = landed;
-                self.touchdown = Some(touchdown);
-            }
+            let (landed, touchdown) = self.ground.as_mut()?.touch(&self.state)?;
+            self.touchdown = Some(touchdown);
+            Some(landed)
+        });
+        if let Some(state) = grounded {
+            self.put(&state);
         }
         if let Some(wind) = &mut self.wind {
             wind.advance();

@@ -22,9 +22,12 @@ LEVELLING_MAX = 1.0
 SILENCE_MAX = 2.5
 SILENCE_LANDS = 10.0
 
-# With noise, m: how well a hover is held, and how far telemetry is from the truth. Measured: 2.6 mm and 1.2 mm on both machines.
+# With noise, m: how well a hover is held, and how far telemetry is from the truth. A touchdown at 0.5 m/s is beyond the accelerometer's
+# range: for a moment, s, telemetry is further off. Both figures are those of tests/touchdown.rs, which has touchdowns at every moment.
 NOISY_HOVER = 0.01
-NOISY_ERROR = 0.005
+NOISY_ERROR = 0.003
+TOUCHDOWN_ERROR = 0.025
+TOUCHDOWN_KNOWN = 0.2
 
 
 def take_off(station, believed_within=1e-3):
@@ -54,6 +57,7 @@ def flight(machine):
         print(f"    1 m step within 0.1 m in {station.go(there, 0.1, 5.0):.2f} s")
         station.wait(3.0)
         assert station.worst_distance(there, 3.0) <= NOISY_HOVER
+        landing = station.now
         print(f"    landed and disarmed in {station.land(15.0):.2f} s")
         station.wait(0.5)
         rig.land()
@@ -63,10 +67,14 @@ def flight(machine):
         truly = max(math.dist(place, HOVER) for _, place in rig.truth(begin, end))
         print(f"    truly within {1e3 * truly:.1f} mm meanwhile")
         assert truly <= NOISY_HOVER, truly
-        told = rig.worst_error(station.track)
-        print(f"    telemetry within {1e3 * told:.1f} mm of the truth, from boot to the end")
+        touched = next(time for time, (_, _, height) in rig.truth(landing, math.inf) if height < 1e-3)
+        at_touchdown = [report for report in station.track if abs(report[0] - touched) <= TOUCHDOWN_KNOWN]
+        told = rig.worst_error([report for report in station.track if report not in at_touchdown])
+        shocked = rig.worst_error(at_touchdown)
+        print(f"    telemetry within {1e3 * told:.1f} mm of the truth, {1e3 * shocked:.1f} mm at the touchdown")
         # Telemetry that tells the truth to a tenth of a millimetre comes from sensors without noise.
         assert 1e-4 < told <= NOISY_ERROR, told
+        assert shocked <= TOUCHDOWN_ERROR, shocked
         assert max(row["pz"] for row in rig.rows) < HOVER[2] + 0.05
 
 

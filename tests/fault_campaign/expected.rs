@@ -167,9 +167,7 @@ pub fn least(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
             _ => answer.in_flight.iter().filter(|(_, limit)| since > limit).map(|one| one.0).max().unwrap_or(CarryOn),
         }
     };
-    // Poses that are believed again end a landing too: the vehicle holds.
-    let holds = failed.iter().any(|(failure, _)| answer(*failure, phase).most >= Descend);
-    let least = if holds && phase == Phase::Landing { Hold } else { of_phase(phase).0 };
+    let least = of_phase(phase).0;
     // What may be lost need not get where it is pushed, nor what is lower by the move of its frame; what a sender says of itself is believed;
     // frozen poses that begin anew, or drift, are found anew; and hands that come later find it in the air.
     let has = |wanted: &[Failure]| failed.iter().any(|(failure, _)| wanted.contains(failure));

@@ -99,6 +99,9 @@ const JUMP: Vector3<f32> = Vector3::new(3.0, -2.0, 1.0);
 /// How long it takes to turn the vehicle over, s.
 const TIPPING: f64 = 0.5;
 
+/// How long hands take to stop what they take hold of, s.
+const GRASPING: f64 = 0.05;
+
 /// Accelerations of gust, updraft and wind, m/s^2, and for how long they last, s.
 const GUST: (f64, f64) = (9.0, 2.5);
 const UPDRAFT: (f64, f64) = (3.2, 5.0);
@@ -180,9 +183,10 @@ impl Meddler for Failures {
             let rate = if since < TIPPING { angle / TIPPING } else { 0.0 };
             let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), since / TIPPING * angle);
             let attitude = UnitQuaternion::new_normalize(held.attitude) * turned;
+            let grasped = (since / GRASPING).min(1.0);
             vehicle.place(&BodyState {
-                position: held.position,
-                velocity: Vector3::zeros(),
+                position: held.position + held.velocity * (GRASPING * grasped * (1.0 - 0.5 * grasped)),
+                velocity: held.velocity * (1.0 - grasped),
                 attitude: attitude.into_inner(),
                 angular_velocity: Vector3::new(rate, 0.0, 0.0),
             });

@@ -5,7 +5,8 @@ use super::expected::{self, Severity};
 use super::failure::{Failure, Failures};
 use super::phase::{Phase, Sight};
 use super::watch;
-use controller_core::flight::{Inputs, Mode, Output, Reason, Request, Transition};
+use controller_core::estimator::Rejected;
+use controller_core::flight::{Inputs, Mode, Outcome, Output, Reason, Request, Transition};
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -68,6 +69,10 @@ struct Flight<'m> {
     heard: Option<u64>,
     /// Since when it stands on the ground with its motors off, ticks.
     down: Option<u64>,
+    /// When it last touched the ground, us.
+    hit: u64,
+    /// Why the last tick's pose was refused, if it was.
+    refused: Option<Rejected>,
     flown: Flown,
 }
 
@@ -84,6 +89,8 @@ pub fn fly(vehicle: &Vehicle, case: Case) -> Flown {
         sight: Sight { tick: 0, mode: Mode::Boot, lasts: 0, height: 0.0, asked: case.height, now: 0 },
         heard: None,
         down: None,
+        hit: 0,
+        refused: None,
         flown: Flown {
             case,
             path: Vec::new(),
@@ -166,6 +173,7 @@ impl Flight<'_> {
             self.note(transition);
         }
         self.check_touchdown();
+        self.check_pose(&outcome);
         self.check_severity();
         let stands = self.stands();
         self.down = self.down.or(Some(self.sight.tick)).filter(|_| stands && outcome.output == Output::Stop);
@@ -216,7 +224,10 @@ impl Flight<'_> {
     /// What has failed, and for how long, s.
     fn failed(&self) -> Vec<(Failure, f64)> {
         let now = self.sight.now;
-        let failed = |failure| Some((failure, self.failures.since(failure, now)?));
+        // What a hit on the ground has given to the velocity, beyond the accelerometer's range, is told from a drift only in time.
+        let counts_from = |failure| if failure == Failure::PoseDrifts { self.hit } else { 0 };
+        let lasts = |failure| Some(self.failures.since(failure, now)?.min((now - counts_from(failure)) as f64 * 1e-6));
+        let failed = |failure| Some((failure, lasts(failure)?));
         let second = self.case.second.filter(|_| self.struck.1.is_some()).map(|(second, _)| second);
         self.struck.0.map(|_| self.case.first).into_iter().chain(second).filter_map(failed).collect()
     }
@@ -251,6 +262,7 @@ impl Flight<'_> {
 
     fn check_touchdown(&mut self) {
         let Some(touchdown) = self.vehicle.vehicle_mut().take_touchdown() else { return };
+        self.hit = self.sight.now;
         if self.struck.0.is_none() {
             return;
         }
@@ -265,6 +277,21 @@ impl Flight<'_> {
         if self.flown.is_gentle && touchdown.speed > most {
             self.complain(format!("touched down at {:.3} m/s, {most} m/s are gentle", touchdown.speed));
         }
+    }
+
+    /// What makes it land at most leaves its poses to be believed, also where it hits the ground harder than the accelerometer can show. One in
+    /// a hundred thousand is refused for its noise, but not two after each other.
+    fn check_pose(&mut self, outcome: &Outcome) {
+        let refused = outcome.pose.and_then(Result::err).filter(|refused| refused.is_lie());
+        let (failed, phase) = (self.failed(), self.case.phase);
+        let is_gentle = failed.iter().all(|one| expected::answer(one.0, phase).is_gentle);
+        if let (Some(why), Some(_)) = (refused, self.refused)
+            && is_gentle
+            && expected::most(phase, &failed) <= Severity::Land
+        {
+            self.complain(format!("refused two poses: {why:?}"));
+        }
+        self.refused = refused;
     }
 
     /// Down and off, it disarms, and arms again only if nothing speaks against it.

@@ -15,7 +15,8 @@ use nalgebra::Matrix3;
 /// and their jitter.
 pub const COASTING_AFTER: u64 = 300_000;
 
-/// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace).
+/// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace). As with poses, not for longer than
+/// [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
 const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
 /// The mean NIS beyond which poses are noisier than they say: by a factor of 1.7, or not white.
@@ -77,6 +78,8 @@ pub struct Health {
 pub(super) struct Statistics {
     /// When the last pose that was fused was true, us.
     pub fused_at: u64,
+    /// When the estimate last was certain, us.
+    pub certain_at: u64,
     pub jumps: u32,
     last: Option<Result<Taken, Rejected>>,
     counts: (u32, u32),
@@ -84,7 +87,7 @@ pub(super) struct Statistics {
 }
 
 impl Statistics {
-    pub const NONE: Self = Self { fused_at: 0, jumps: 0, last: None, counts: (0, 0), nis: (3.0, 3.0) };
+    pub const NONE: Self = Self { fused_at: 0, certain_at: 0, jumps: 0, last: None, counts: (0, 0), nis: (3.0, 3.0) };
 
     /// None, after a restart: the state's jumps go on counting.
     pub fn restarted(&self) -> Self {
@@ -105,6 +108,13 @@ impl Statistics {
                 }
             }
             Err(_) => self.counts.1 = self.counts.1.saturating_add(1),
+        }
+    }
+
+    /// What `filter` is like after a pose.
+    pub fn look(&mut self, filter: &Filter) {
+        if is_certain(deviations(filter)) {
+            self.certain_at = filter.time;
         }
     }
 
@@ -146,7 +156,7 @@ impl Health {
         imu_age: u64,
         now: u64,
     ) -> Self {
-        let Statistics { fused_at, jumps, last, counts, nis } = *statistics;
+        let Statistics { fused_at, certain_at, jumps, last, counts, nis } = *statistics;
         let stale = imu_age > EXTRAPOLATION_MAX;
         let mut health = Self {
             faults: Faults::default().with(Fault::NotStarted, filter.is_none()).with(Fault::ImuStale, stale),
@@ -158,27 +168,37 @@ impl Health {
             ..Self::NONE
         };
         let Some(filter) = filter else { return health };
-        let deviation = |block: &Matrix3<f32>| math::sqrt(block.m11 + block.m22 + block.m33);
-        let covariance = &filter.covariance;
-        health.deviations = (deviation(&covariance.pp), deviation(&covariance.vv), deviation(&covariance.tt));
+        health.deviations = deviations(filter);
         let gyro = math::sqrt(filter.nominal.gyro_bias.norm_squared());
         let accelerometer = math::sqrt(filter.nominal.accelerometer_bias.norm_squared());
         health.biases = (gyro, accelerometer);
         let parameters = settings.parameters();
-        // Written so that a number that is none is a fault.
-        let within = |value: f32, most: f32| value <= most;
-        let certain = within(health.deviations.0, UNCERTAIN.0)
-            && within(health.deviations.1, UNCERTAIN.1)
-            && within(health.deviations.2, UNCERTAIN.2);
+        let uncertain = !is_certain(health.deviations) && now.saturating_sub(certain_at) > COASTING_AFTER;
         health.faults = health
             .faults
             .with(Fault::NoPose, now.saturating_sub(fused_at) > COASTING_AFTER)
-            .with(Fault::Uncertain, !certain)
+            .with(Fault::Uncertain, uncertain)
             .with(Fault::GyroBias, !within(gyro, parameters.gyro_bias_max))
             .with(Fault::AccelerometerBias, !within(accelerometer, parameters.accelerometer_bias_max))
             .with(Fault::Inconsistent, !(within(nis.0, NIS_MEAN_MAX) && within(nis.1, NIS_MEAN_MAX)));
         health
     }
+}
+
+/// Roots of the traces of the covariance: position m, velocity m/s, attitude rad.
+fn deviations(filter: &Filter) -> (f32, f32, f32) {
+    let deviation = |block: &Matrix3<f32>| math::sqrt(block.m11 + block.m22 + block.m33);
+    let covariance = &filter.covariance;
+    (deviation(&covariance.pp), deviation(&covariance.vv), deviation(&covariance.tt))
+}
+
+fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
+    within(position, UNCERTAIN.0) && within(velocity, UNCERTAIN.1) && within(attitude, UNCERTAIN.2)
+}
+
+/// Written so that a number that is none is a fault.
+fn within(value: f32, most: f32) -> bool {
+    value <= most
 }
 
 #[cfg(test)]
@@ -196,9 +216,9 @@ mod tests {
         let pose = PoseMeasurement::new(&Pose::new(zero, Velocity::World(zero), level).unwrap());
         let mut filter = Filter::start(0, &pose, &Biases::unknown(&settings), &settings);
         filter.covariance.vv = Matrix3::from_diagonal_element(1e-4);
-        let mut statistics = Statistics::NONE;
+        let mut statistics = Statistics { fused_at: 1, ..Statistics::NONE };
         change(&mut filter, &mut statistics);
-        let health = Health::new(Some(&filter), &statistics, &settings, 0, COASTING_AFTER);
+        let health = Health::new(Some(&filter), &statistics, &settings, 0, COASTING_AFTER + 1);
         assert_eq!(health.is_good(), health.faults.worst().is_none());
         health.faults.worst()
     }
@@ -211,6 +231,12 @@ mod tests {
             assert_eq!(faults(|filter, _| filter.covariance.pp = block(share * UNCERTAIN.0)), fault, "position");
             assert_eq!(faults(|filter, _| filter.covariance.vv = block(share * UNCERTAIN.1)), fault, "velocity");
             assert_eq!(faults(|filter, _| filter.covariance.tt = block(share * UNCERTAIN.2)), fault, "attitude");
+            // Just now it was certain.
+            let shocked = faults(|filter, statistics| {
+                filter.covariance.vv = block(share * UNCERTAIN.1);
+                statistics.certain_at = 1;
+            });
+            assert_eq!(shocked, None);
         }
     }
 

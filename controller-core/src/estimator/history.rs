@@ -16,8 +16,31 @@ use nalgebra::Vector3;
 /// How far beyond the last increment a state is extrapolated, and the longest increment, us.
 pub const EXTRAPOLATION_MAX: u64 = 20_000;
 
+/// How long the slow force is averaged over, s.
+const SLOW: f32 = 0.1;
+
 /// Increments that are kept: 320 ms of them at 5 ms.
 pub const CAPACITY: usize = 64;
+
+/// Which of the IMU's sensors were at full scale: there the truth is beyond what they show, nobody knows how far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Clipped {
+    /// The gyro.
+    pub gyro: bool,
+    /// The accelerometer: a shock, such as a hard touchdown.
+    pub accelerometer: bool,
+}
+
+impl Clipped {
+    /// Neither.
+    pub const NEITHER: Self = Self { gyro: false, accelerometer: false };
+
+    /// Those of either.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self { gyro: self.gyro | other.gyro, accelerometer: self.accelerometer | other.accelerometer }
+    }
+}
 
 /// How the vehicle turned and accelerated over a short time, by its IMU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +55,8 @@ pub struct Increment {
     pub delta_velocity: Vector3<f32>,
     /// The body rate at the end as the law may have it: low-passed, rad/s, biases included.
     pub angular_velocity: Vector3<f32>,
+    /// What was at full scale meanwhile.
+    pub clipped: Clipped,
 }
 
 impl Increment {
@@ -49,6 +74,16 @@ impl Increment {
         finite && self.start < self.end && self.end - self.start <= longest
     }
 
+    /// A vector of the body at the start, as it is at the end: to first order in the turn.
+    pub(super) fn turned_back(&self, vector: &Vector3<f32>) -> Vector3<f32> {
+        vector - self.delta_angle.cross(vector)
+    }
+
+    /// d in the frame at the end, m/s.
+    pub(super) fn push_at_end(&self) -> Vector3<f32> {
+        self.turned_back(&self.delta_velocity)
+    }
+
     /// The part of it between two times, us, if it has one.
     fn part(&self, from: u64, to: u64) -> Option<Self> {
         let (start, end) = (from.max(self.start), to.min(self.end));
@@ -62,18 +97,28 @@ impl Increment {
         let delta_angle = self.delta_angle * part;
         let bent = self.delta_angle.cross(&self.delta_velocity) * (0.5 * part * (1.0 - part));
         let delta_velocity = self.delta_velocity * part - bent;
-        Some(Self { start, end, delta_angle, delta_velocity, angular_velocity: self.angular_velocity })
+        Some(Self { start, end, delta_angle, delta_velocity, ..*self })
     }
+}
+
+/// f_slow of `present` after an increment, by what it was before, m/s^2.
+pub(super) fn slow_force(before: Option<&Vector3<f32>>, increment: &Increment) -> Vector3<f32> {
+    let (push, seconds) = (increment.push_at_end(), increment.seconds());
+    let Some(before) = before else { return push / seconds };
+    let before = increment.turned_back(before);
+    before + (push - before * seconds) / SLOW
 }
 
 /// The ring.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct History {
     increments: Deque<Increment, CAPACITY>,
+    /// f_slow, m/s^2, body; of no meaning while there is no increment.
+    slow_force: Vector3<f32>,
 }
 
 impl History {
-    pub const EMPTY: Self = Self { increments: Deque::new() };
+    pub const EMPTY: Self = Self { increments: Deque::new(), slow_force: Vector3::new(0.0, 0.0, 0.0) };
 
     /// When the oldest increment begins and the newest ends, us.
     pub fn span(&self) -> Option<(u64, u64)> {
@@ -85,13 +130,25 @@ impl History {
         self.increments.back()
     }
 
+    /// The one before it.
+    pub fn before_newest(&self) -> Option<&Increment> {
+        self.increments.iter().nth_back(1)
+    }
+
     /// The increment that the next one to be [pushed](Self::push) will drive out.
     pub fn leaving(&self) -> Option<&Increment> {
         if self.increments.is_full() { self.increments.front() } else { None }
     }
 
+    /// The specific force averaged over a tenth of a second, m/s^2, in the body frame at the end of the newest increment.
+    pub fn slow_force(&self) -> &Vector3<f32> {
+        &self.slow_force
+    }
+
     /// Adds an increment that begins where the last one ended.
     pub fn push(&mut self, increment: &Increment) {
+        let before = self.newest().map(|_| &self.slow_force);
+        self.slow_force = slow_force(before, increment);
         if self.increments.is_full() {
             self.increments.pop_front();
         }

@@ -14,7 +14,7 @@
 //! 4 tan(t / 4) n, which is t n to third order, has a rational exponential and logarithm, and no singularity below a full turn.
 //! They act from the left, in world axes: q_true = exp(theta) * q.
 
-use super::history::Increment;
+use super::history::{Clipped, Increment};
 use crate::math;
 use crate::rotation::half_rotation;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
@@ -45,6 +45,8 @@ pub(super) struct Motion {
     pub turn_rate: Vector3<f32>,
     /// h, s.
     pub seconds: f32,
+    /// What of it was beyond the sensors' ranges.
+    pub clipped: Clipped,
 }
 
 impl Nominal {
@@ -63,7 +65,7 @@ impl Nominal {
         self.attitude = unit(&(self.attitude * half_rotation(&(turn * 0.5))));
         let turn_rate = if seconds > 0.0 { rotation * turn / seconds } else { Vector3::zeros() };
         let rotation = rotation + rotation * (turn * 0.5).cross_matrix();
-        Motion { rotation, velocity_change, turn_rate, seconds }
+        Motion { rotation, velocity_change, turn_rate, seconds, clipped: increment.clipped }
     }
 }
 

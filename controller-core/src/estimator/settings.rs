@@ -31,7 +31,7 @@ pub struct EstimatorParameters {
     pub gyro_bias: f32,
     /// Standard deviation of b_a on each axis before the first pose, m/s^2.
     pub accelerometer_bias: f32,
-    /// |b_g| beyond which a gyro is not plausible, rad/s.
+    /// |b_g| beyond which a gyro is not plausible, rad/s: far enough beyond its deviation that no sound gyro is refused.
     pub gyro_bias_max: f32,
     /// |b_a| beyond which the accelerometer and the poses do not agree on where up is, m/s^2.
     pub accelerometer_bias_max: f32,
@@ -56,7 +56,7 @@ impl EstimatorParameters {
         accelerometer_walk: 1.9e-3,
         gyro_bias: 5e-3,
         accelerometer_bias: 0.2,
-        gyro_bias_max: 0.014,
+        gyro_bias_max: 0.025,
         accelerometer_bias_max: 1.0,
         position_noise: 1e-3,
         attitude_noise: 5.2e-3,

@@ -53,6 +53,9 @@ impl Estimator {
             Ok(_) => self.carry_on(),
             Err(_) => {}
         }
+        if let Some(filter) = &self.filter {
+            self.statistics.look(filter);
+        }
         verdict
     }
 
@@ -186,9 +189,9 @@ impl Estimator {
 
     /// Whether an increment is of a vehicle that moves, beyond any noise at rest.
     pub(super) fn moves(&self, increment: &Increment) -> bool {
-        /// rad/s: six times a BMI088's noise over 5 ms.
-        const RATE: f32 = 0.02;
-        /// m/s^2: a plausible bias, and noise.
+        /// rad/s: a plausible bias, which nobody knows before the first pose, and six times a BMI088's noise over 5 ms.
+        const RATE: f32 = 0.045;
+        /// m/s^2: the same.
         const ACCELERATION: f32 = 0.5;
         self.differs(increment, RATE, ACCELERATION)
     }

@@ -4,4 +4,5 @@
 mod lies;
 mod motion;
 mod poses;
+mod shocks;
 mod starting;

@@ -65,10 +65,11 @@ pub(crate) fn vehicle() -> Vehicle {
     Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap()
 }
 
+pub(crate) const QUAD: QuadX =
+    QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
+
 pub(crate) fn rotors() -> Rotors {
-    let quad =
-        QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
-    Rotors::quad_x(quad).unwrap()
+    Rotors::quad_x(QUAD).unwrap()
 }
 
 /// What it may be asked to fly.

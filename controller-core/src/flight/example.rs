@@ -1,16 +1,15 @@
 //! A vehicle to test with: the AscTec Hummingbird of `vehicles/hummingbird.toml`.
 
-use crate::allocation::{QuadX, Rotors};
 use crate::certificate::certified::Certified;
 use crate::certificate::configuration::Configuration;
+use crate::extended;
 use crate::gains::{GainParameters, Gains};
 use crate::reference::ReferenceBounds;
-use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+use crate::vehicle::{LimitParameters, Limits};
 use nalgebra::Vector3;
 
 pub(crate) fn certified() -> Certified {
-    let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
-    let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap();
+    let vehicle = extended::example::vehicle();
     let torque_max = Vector3::new(1.0, 1.0, 0.2);
     let limits = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, &vehicle).unwrap();
     let gains = GainParameters {
@@ -26,18 +25,8 @@ pub(crate) fn certified() -> Certified {
         delta: 0.02,
         alpha: 0.25,
     };
-    let bounds = ReferenceBounds {
-        horizontal_speed: 5.0,
-        horizontal_acceleration: 2.4675,
-        vertical_acceleration: 0.1755,
-        jerk: 3.876,
-        snap: 6.089,
-        heading_rate: 1.316,
-        heading_second_derivative: 1.7318,
-    };
-    let quad =
-        QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
+    let bounds = ReferenceBounds { horizontal_speed: 5.0, ..extended::example::REFERENCES };
     let configuration = Configuration::new(vehicle, limits, Gains::new(gains, &vehicle).unwrap(), bounds);
-    let configuration = configuration.unwrap().with_rotors(Rotors::quad_x(quad).unwrap()).unwrap();
+    let configuration = configuration.unwrap().with_rotors(extended::example::rotors()).unwrap();
     Certified::new(configuration).unwrap()
 }

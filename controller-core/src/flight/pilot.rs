@@ -42,7 +42,7 @@ pub struct Pilot<'m> {
     /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
     newest: Newest,
     wanted_since: Option<u64>,
-    /// Whether a landing was granted to a vehicle without a pose: it begins when there is one.
+    /// Whether a vehicle without a pose was landing, or has been told to land: it does when there is one.
     must_still_land: bool,
     thrust_check: ThrustCheck,
 }
@@ -198,13 +198,10 @@ impl<'m> Pilot<'m> {
         if transition.from.is_armed() {
             self.wanted_since = None;
         }
-        self.must_still_land &= matches!(transition.reason, Reason::PoseRegained | Reason::PoseLost);
+        self.must_still_land |= transition.from == Mode::Landing;
+        self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
-        }
-        if transition.reason == Reason::PoseRegained {
-            // A landing may have been broken off when the pose was lost.
-            self.watch.tell_low_again();
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {

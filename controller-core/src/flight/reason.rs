@@ -56,6 +56,8 @@ worded! {
         ImuDoubtful = "Stopped: IMU does not fit what was commanded",
         /// Poses are believed again.
         PoseRegained = "Pose regained: braking to hold position",
+        /// The same, of a vehicle that was landing or has been told to land.
+        LandingResumed = "Pose regained: landing",
         /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
         DescendingOver = "Stopped: neither pose nor ground found in 30 s",
         /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
@@ -101,7 +103,8 @@ impl Reason {
             | Self::HoldCommanded
             | Self::LandCommanded
             | Self::Landed
-            | Self::PoseRegained => false,
+            | Self::PoseRegained
+            | Self::LandingResumed => false,
             Self::NotCertified
             | Self::Killed
             | Self::Crashed

@@ -9,7 +9,11 @@
 //!   come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
 //! - *Tracking lost*: far from the reference; or still, well below it: a vehicle that does not get off the ground.
+//!
+//! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the [average](super::calm). A jerk is over
+//! too soon for that.
 
+use super::calm::Calm;
 use super::chain::{Chain, Flown};
 use super::exchange::{Battery, Inputs};
 use super::lasting::Lasting;
@@ -68,6 +72,7 @@ pub(super) struct Watch {
     late: Lasting,
     doubtful: Lasting,
     turning: Lasting,
+    calm: Calm,
     /// Whether something has stopped a vehicle that goes down by the IMU alone.
     jerked: bool,
     /// Whether a low battery has had its landing: whoever flies on knows.
@@ -87,7 +92,7 @@ pub(super) struct Seen {
     pub imu_doubtful: bool,
 }
 
-/// What there is to look at in a tick: the estimate, and what the last tick flew.
+/// What there is to look at in a tick: the estimate as it is on average, and what the last tick flew.
 struct Look<'a> {
     mode: Mode,
     state: Option<&'a EstimatedState>,
@@ -136,9 +141,10 @@ impl Look<'_> {
         Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
     }
 
-    /// Whether something stops a vehicle that goes down.
-    fn jerks(&self) -> bool {
-        self.chain.is_some_and(Chain::sinks) && self.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > JERK)
+    /// Whether something stops a vehicle that goes down, in this very tick's `state`.
+    fn jerks(&self, state: Option<&EstimatedState>) -> bool {
+        let now = Look { state, ..*self };
+        self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > JERK)
     }
 
     /// Whether it should accelerate downwards and does not, `jerked` before or not.
@@ -179,8 +185,9 @@ impl Watch {
     ) -> Seen {
         let Inputs { now, battery, is_late, .. } = *inputs;
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
-        let look = Look { mode, state, chain, flown };
-        self.jerked = mode == Mode::Descending && (self.jerked || look.jerks());
+        let calm = self.calm.tick(state);
+        let look = Look { mode, state: calm.as_ref(), chain, flown };
+        self.jerked = mode == Mode::Descending && (self.jerked || look.jerks(state));
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
@@ -203,11 +210,6 @@ impl Watch {
     /// A low battery has been acted on.
     pub fn tell_low(&mut self) {
         self.low_is_told = true;
-    }
-
-    /// What was done about it has come to nothing: it is to be acted on again.
-    pub fn tell_low_again(&mut self) {
-        self.low_is_told = false;
     }
 }
 

@@ -12,15 +12,20 @@
 //! 3 degrees at 50 Hz, a violent vibration, that is 9.2 deg/s of false rate without them and 0.8 with (this module's tests). They cost 15 multiplications. Source: P. G. Savage, *Strapdown inertial navigation integration algorithm design*, AIAA
 //! J. Guidance 21, 1998, parts 1 and 2, to the order that samples at 1 kHz need.
 
-use crate::estimator::Increment;
+use crate::estimator::{Clipped, Increment};
 use nalgebra::Vector3;
 
 /// A sample that has been corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Sample {
-    time: u64,
-    rate: Vector3<f32>,
-    force: Vector3<f32>,
+pub struct Sample {
+    /// When it was taken, us.
+    pub time: u64,
+    /// Body rate, rad/s.
+    pub rate: Vector3<f32>,
+    /// Specific force, m/s^2; none where the accelerometer did not answer.
+    pub force: Option<Vector3<f32>>,
+    /// What of it is beyond its range.
+    pub clipped: Clipped,
 }
 
 /// An increment under way.
@@ -30,12 +35,18 @@ pub struct Integrator {
     start: u64,
     angle: Vector3<f32>,
     velocity: Vector3<f32>,
+    clipped: Clipped,
 }
 
 impl Integrator {
     /// Before the first sample.
-    pub const EMPTY: Self =
-        Self { last: None, start: 0, angle: Vector3::new(0.0, 0.0, 0.0), velocity: Vector3::new(0.0, 0.0, 0.0) };
+    pub const EMPTY: Self = Self {
+        last: None,
+        start: 0,
+        angle: Vector3::new(0.0, 0.0, 0.0),
+        velocity: Vector3::new(0.0, 0.0, 0.0),
+        clipped: Clipped::NEITHER,
+    };
 
     /// How long after the last sample `time` is, us: zero for one that is not later; none without a last one.
     #[must_use]
@@ -43,30 +54,24 @@ impl Integrator {
         self.last.map(|last| time.saturating_sub(last.time))
     }
 
-    /// Begins anew with a sample of body rate (rad/s) and specific force (m/s^2), at `time`, us. Without a force it begins with
-    /// none: the vehicle might be in free fall.
-    pub fn begin(&mut self, time: u64, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) {
-        let force = force.copied().unwrap_or_default();
-        *self = Self { last: Some(Sample { time, rate: *rate, force }), start: time, ..Self::EMPTY };
+    /// Begins anew with a sample. Without a force it begins with none: the vehicle might be in free fall.
+    pub fn begin(&mut self, sample: &Sample) {
+        *self = Self { last: Some(*sample), start: sample.time, ..Self::EMPTY };
     }
 
-    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. `smooth` is the body rate for the law.
-    pub fn take(
-        &mut self,
-        time: u64,
-        rate: &Vector3<f32>,
-        force: Option<&Vector3<f32>>,
-        smooth: &Vector3<f32>,
-        least: u64,
-    ) -> Option<Increment> {
-        let last = self.last?;
-        let force = force.copied().unwrap_or(last.force);
+    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. `smooth` is the body rate for the law. A force
+    /// that is missing is the last one.
+    pub fn take(&mut self, sample: &Sample, smooth: &Vector3<f32>, least: u64) -> Option<Increment> {
+        let (last, time) = (self.last?, sample.time);
+        let before = last.force.unwrap_or_default();
+        let force = sample.force.unwrap_or(before);
         let seconds = time.saturating_sub(last.time) as f32 * 1e-6;
-        let turn = (last.rate + rate) * (0.5 * seconds);
-        let push = (last.force + force) * (0.5 * seconds);
+        let turn = (last.rate + sample.rate) * (0.5 * seconds);
+        let push = (before + force) * (0.5 * seconds);
         self.velocity += push + (self.angle + turn * 0.5).cross(&push);
         self.angle += turn + self.angle.cross(&turn) * 0.5;
-        self.last = Some(Sample { time, rate: *rate, force });
+        self.clipped = self.clipped.or(last.clipped).or(sample.clipped);
+        self.last = Some(Sample { force: Some(force), ..*sample });
         if time.saturating_sub(self.start) < least {
             return None;
         }
@@ -76,6 +81,7 @@ impl Integrator {
             delta_angle: self.angle,
             delta_velocity: self.velocity,
             angular_velocity: *smooth,
+            clipped: self.clipped,
         };
         *self = Self { last: self.last, start: time, ..Self::EMPTY };
         Some(increment)

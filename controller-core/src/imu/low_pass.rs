@@ -1,8 +1,15 @@
-//! A second-order Butterworth low-pass on three axes, by the bilinear transform with its cutoff put right.
+//! A second-order low-pass on three axes that stops one frequency altogether: Butterworth's poles with two zeros on the imaginary axis.
 //!
 //! ```text
-//! K = tan(pi f_c / f_s),   n = 1 / (1 + sqrt(2) K + K^2)
-//! b_0 = b_2 = K^2 n,  b_1 = 2 b_0,  a_1 = 2 (K^2 - 1) n,  a_2 = (1 - sqrt(2) K + K^2) n
+//! H(s) = (1 + s^2 / w_z^2) / (1 + sqrt(2) s / w_c + s^2 / w_c^2)
+//! ```
+//!
+//! A zero at the rate of the control ticks, because what swings as fast as one looks seems to stand still. In front of w_z the numerator is real and positive: the phase, and with
+//! it the delay, are those of the poles alone. By the bilinear transform, with both frequencies put right:
+//!
+//! ```text
+//! K = tan(pi f_c / f_s),   r = 1 / tan(pi f_z / f_s)^2,   n = 1 / (1 + sqrt(2) K + K^2)
+//! b_0 = b_2 = K^2 (1 + r) n,  b_1 = 2 K^2 (1 - r) n,  a_1 = 2 (K^2 - 1) n,  a_2 = (1 - sqrt(2) K + K^2) n
 //! y_k = b_0 x_k + b_1 x_k-1 + b_2 x_k-2 - a_1 y_k-1 - a_2 y_k-2
 //! ```
 //!
@@ -16,6 +23,7 @@ use nalgebra::Vector3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
     b0: f32,
+    b1: f32,
     a1: f32,
     a2: f32,
     delay: f32,
@@ -24,13 +32,16 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// Half the power is gone at `cutoff`; `rate` samples a second; both in Hz.
+    /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate` samples a second; all in Hz.
     #[must_use]
-    pub fn new(cutoff: f64, rate: f64) -> Self {
+    pub fn new(cutoff: f64, stopped: f64, rate: f64) -> Self {
         let k = math::tan(core::f64::consts::PI * cutoff / rate);
+        let tangent = math::tan(core::f64::consts::PI * stopped / rate);
+        let r = 1.0 / (tangent * tangent);
         let normal = 1.0 / (1.0 + core::f64::consts::SQRT_2 * k + k * k);
         Self {
-            b0: (k * k * normal) as f32,
+            b0: (k * k * (1.0 + r) * normal) as f32,
+            b1: (2.0 * k * k * (1.0 - r) * normal) as f32,
             a1: (2.0 * (k * k - 1.0) * normal) as f32,
             a2: ((1.0 - core::f64::consts::SQRT_2 * k + k * k) * normal) as f32,
             delay: (core::f64::consts::FRAC_1_SQRT_2 / (k * rate)) as f32,
@@ -55,7 +66,7 @@ impl LowPass {
     pub fn take(&mut self, sample: &Vector3<f32>) -> Vector3<f32> {
         let weighed = sample * self.b0;
         let out = weighed + self.first;
-        self.first = weighed * 2.0 - out * self.a1 + self.second;
+        self.first = sample * self.b1 - out * self.a1 + self.second;
         self.second = weighed - out * self.a2;
         out
     }

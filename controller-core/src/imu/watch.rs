@@ -3,6 +3,7 @@
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two triples in a
 //! row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the truth is beyond.
 
+use crate::estimator::Clipped;
 use nalgebra::Vector3;
 
 /// Equal triples in a row after which a sensor is stuck: 20 ms at 1 kHz, as long as a silent one is flown.
@@ -74,7 +75,8 @@ impl Seen {
     fn see(&mut self, triple: &Vector3<f32>, range: f32) -> (bool, bool) {
         let count = |count: u8, more: bool| if more { count.saturating_add(1) } else { 0 };
         self.equal = count(self.equal, *triple == self.last);
-        self.saturated = count(self.saturated, triple.iter().any(|component| component.abs() >= FULL_SCALE * range));
+        let full_scale = FULL_SCALE * range;
+        self.saturated = count(self.saturated, triple.iter().any(|component| component.abs() >= full_scale));
         self.last = *triple;
         (self.equal >= STUCK_AFTER, self.saturated >= SATURATED_AFTER)
     }
@@ -93,6 +95,12 @@ impl Watch {
     #[must_use]
     pub fn new(ranges: Ranges) -> Self {
         Self { ranges, gyro: Seen::NOTHING, accelerometer: Seen::NOTHING }
+    }
+
+    /// Which sensor was at full scale in the last sample that it gave.
+    #[must_use]
+    pub fn clipped(&self) -> Clipped {
+        Clipped { gyro: self.gyro.saturated > 0, accelerometer: self.accelerometer.saturated > 0 }
     }
 
     /// The worst that can be said of the sensors, given one more sample, before calibration.

@@ -12,7 +12,7 @@ pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::flight::{
     Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Refusal, Request, Stamped,
     Velocity,
@@ -146,7 +146,14 @@ impl Handed {
 pub fn resting_imu(start: u64, end: u64, attitude: &Quaternion<f32>) -> Increment {
     let up = UnitQuaternion::new_normalize(*attitude).inverse_transform_vector(&Vector3::z());
     let delta_velocity = up * (9.81 * (end - start) as f32 * 1e-6);
-    Increment { start, end, delta_angle: Vector3::zeros(), delta_velocity, angular_velocity: Vector3::zeros() }
+    Increment {
+        start,
+        end,
+        delta_angle: Vector3::zeros(),
+        delta_velocity,
+        angular_velocity: Vector3::zeros(),
+        clipped: Clipped::NEITHER,
+    }
 }
 
 /// Everything as it should be for a vehicle at rest at the origin with `attitude`, after a period.
@@ -331,6 +338,7 @@ impl Flight {
             delta_angle: turned.scaled_axis().cast(),
             delta_velocity: attitude.inverse_transform_vector(&gained).cast(),
             angular_velocity: self.body.angular_velocity.cast(),
+            clipped: Clipped::NEITHER,
         }
     }
 

@@ -17,6 +17,7 @@
 
 use super::solution::{GRAVITY, solve};
 use crate::hardware::{Fault, RawImu, Unit};
+use crate::link::acknowledgement::Order;
 use crate::parameters::calibration;
 use crate::shared::{Event, Procedure, Reply, Severity, Shared};
 use controller_core::imu::Calibration;
@@ -24,7 +25,7 @@ use controller_core::imu::six_point::{SixPoint, SixPointError};
 use controller_core::imu::standstill::{Moved, Rest, Standstill};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use mavlink::dialects::common::{MavCmd, MavResult};
+use mavlink::dialects::common::MavResult;
 
 /// How long a sensor may need for a second's samples, us.
 const STANDSTILL_WITHIN: u64 = 5_000_000;
@@ -57,8 +58,8 @@ impl Findings {
 /// A calibration under way.
 struct Job {
     procedure: Procedure,
-    /// Who waits for the result, if anybody does: system and component.
-    asker: Option<(u8, u8)>,
+    /// The command that asked for it, if one did.
+    order: Option<Order>,
     /// When it has taken too long, us.
     until: u64,
     /// Of the first and of the second sensor.
@@ -71,10 +72,10 @@ struct Job {
 }
 
 impl Job {
-    fn new(procedure: Procedure, asker: Option<(u8, u8)>, now: u64) -> Self {
+    fn new(procedure: Procedure, order: Option<Order>, now: u64) -> Self {
         let within = if procedure == Procedure::SixSides { SIDE_WITHIN } else { STANDSTILL_WITHIN };
         let findings = Default::default();
-        Self { procedure, asker, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
+        Self { procedure, order, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
     }
 }
 
@@ -117,28 +118,28 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Takes up what was asked for, and gives up what may not go on.
     pub fn listen(&mut self, now: u64) {
-        while let Some((asked, sender)) = self.shared.calibrations.take() {
+        while let Some((asked, order)) = self.shared.calibrations.take() {
             let result = match asked {
                 None => {
                     self.fail("Calibration: ended by command");
                     MavResult::MAV_RESULT_ACCEPTED
                 }
-                Some(_) if self.job.as_ref().is_some_and(|job| job.asker.is_some()) => {
+                Some(_) if self.job.as_ref().is_some_and(|job| job.order.is_some()) => {
                     MavResult::MAV_RESULT_TEMPORARILY_REJECTED
                 }
                 Some(procedure) => {
-                    self.job = Some(Job::new(procedure, Some(sender), now));
+                    self.job = Some(Job::new(procedure, Some(order), now));
                     MavResult::MAV_RESULT_IN_PROGRESS
                 }
             };
-            self.answer(sender, result);
+            self.answer(order, result);
         }
         let Some(job) = &self.job else { return };
         if self.shared.is_armed() {
             self.fail("Calibration: ended by arming");
         } else if self.shared.hil.is_raised() {
             self.fail("Calibration: a simulator has the sensors");
-        } else if job.asker.is_some() && now >= job.until {
+        } else if job.order.is_some() && now >= job.until {
             self.fail("Calibration: took too long");
         }
     }
@@ -170,7 +171,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         match rest {
             Ok(_) => self.conclude(unit, &rests, sample.time),
             Err(moved) => {
-                if job.asker.is_some() && job.procedure != Procedure::SixSides {
+                if job.order.is_some() && job.procedure != Procedure::SixSides {
                     self.fail(moved);
                 }
                 false
@@ -209,7 +210,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
             }
         }
         if let Some(job) = self.job.take()
-            && let Some(asker) = job.asker
+            && let Some(order) = job.order
         {
             if job.standby.is_some() && found.contains(&None) {
                 self.shared.announce(Event::new(Severity::Warning, "Calibration: not of the IMU that stands by"));
@@ -220,7 +221,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 Procedure::Level => "Level calibrated",
             };
             self.shared.announce(Event::new(Severity::Information, words));
-            self.answer(asker, MavResult::MAV_RESULT_ACCEPTED);
+            self.answer(order, MavResult::MAV_RESULT_ACCEPTED);
         }
         true
     }
@@ -257,13 +258,13 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Ends what is under way, and says why to whoever asked for it.
     fn fail(&mut self, words: impl Display) {
-        if let Some(asker) = self.job.take().and_then(|job| job.asker) {
+        if let Some(order) = self.job.take().and_then(|job| job.order) {
             self.shared.announce(Event::new(Severity::Warning, words));
-            self.answer(asker, MavResult::MAV_RESULT_FAILED);
+            self.answer(order, MavResult::MAV_RESULT_FAILED);
         }
     }
 
-    fn answer(&self, sender: (u8, u8), result: MavResult) {
-        self.shared.reply(Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result, sender });
+    fn answer(&self, order: Order, result: MavResult) {
+        self.shared.reply(Reply::Command(order.answered(result)));
     }
 }

@@ -17,9 +17,6 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 /// How long a fault must have been away to be said again, us.
 const QUIET: u64 = 1_000_000;
 
-/// A simulator's sensor: the BMI088's filter, and ranges that nothing reaches.
-const SIMULATED: ImuParameters = ImuParameters { gyro_range: 1e6, accelerometer_range: 1e6, ..ImuParameters::BMI088 };
-
 /// A sensor's samples, as far as they have come.
 pub struct Flow<'a, M: RawMutex> {
     shared: &'a Shared<M>,
@@ -48,7 +45,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     /// # Errors
     /// None: the parameters are good.
     pub fn simulated(shared: &'a Shared<M>) -> Result<Self, ParameterError> {
-        Ok(Self { is_simulated: true, ..Self::new(shared, &SIMULATED, &Calibration::NONE)? })
+        Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::BMI088, &Calibration::NONE)? })
     }
 
     /// Corrects samples in another way from now on.

@@ -2,10 +2,11 @@
 
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
-use crate::support::receiver::{Fed, Local, report, texts};
+use crate::support::receiver::{Fed, Local, ordered, report, texts};
 use controller_core::flight::Mode;
 use firmware::hardware::Unit;
 use firmware::imu;
+use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::parameters::calibration;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::Name;
@@ -15,7 +16,7 @@ use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
 
 /// Whoever asks: system and component.
-const ASKER: (u8, u8) = (255, 190);
+const ASKER: Order = ordered(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION);
 
 /// Two sensors as wrong as data sheets allow.
 const FIRST: Wrong = Wrong {
@@ -39,7 +40,7 @@ fn sides() -> [Vector3<f32>; 6] {
 fn results(shared: &Local) -> Vec<MavResult> {
     let replies = std::iter::from_fn(|| shared.replies.take());
     let result = |reply| match reply {
-        Reply::Command { command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, result, sender: ASKER } => result,
+        Reply::Command(Acknowledgement { order: ASKER, result }) => result,
         other => panic!("{other:?}"),
     };
     replies.map(result).collect()

@@ -23,7 +23,7 @@ pub struct Moved {
     pub state: BodyState,
     /// Where it was on the way, at as many evenly spaced instants as were asked for; the last is the period's end.
     pub path: Vec<BodyState>,
-    /// What an accelerometer shows then, m/s^2, body frame; with it the mean of an impact on the way.
+    /// What an accelerometer shows, m/s^2, body frame of then: the mean over the way, impacts with it.
     pub specific_force: Vector3<f64>,
     /// The rotors' thrust then, N.
     pub thrust: f64,
@@ -41,6 +41,8 @@ pub struct HilVehicle {
     steps: u64,
     /// s.
     period: f64,
+    /// m/s^2.
+    gravity: f64,
     delay: u64,
     /// Plant steps since the start.
     now: u64,
@@ -60,7 +62,7 @@ impl HilVehicle {
             return Err(format!("rotors: a flight controller commands {MOTORS}, found {found}"));
         };
         let step = scenario.timing.step();
-        let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial);
+        let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial, step);
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
         let curves = rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
         Ok(Self {
@@ -70,6 +72,7 @@ impl HilVehicle {
             curves,
             steps: scenario.timing.steps_per_tick.into(),
             period: scenario.timing.period(),
+            gravity: configuration.vehicle().gravity.into(),
             delay: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
@@ -110,11 +113,8 @@ impl HilVehicle {
         }
         self.plant.check().map_err(|error| error.to_string())?;
         let state = *self.plant.state();
-        let mut specific_force = self.ground.specific_force(&state, thrust);
-        if touchdown.is_some() {
-            let stopped = (state.velocity - before) / self.period;
-            specific_force += UnitQuaternion::new_unchecked(state.attitude).inverse() * stopped;
-        }
+        let held = (state.velocity - before) / self.period + Vector3::z() * self.gravity;
+        let specific_force = UnitQuaternion::new_normalize(state.attitude).inverse_transform_vector(&held);
         Ok(Moved { state, path, specific_force, thrust, touchdown })
     }
 }

@@ -71,9 +71,13 @@ impl Commands {
             Ok(rotors.iter().zip(&allocation.thrusts).map(|(rotor, f)| f64::from(rotor.speed_at(*f))).collect())
         });
         let columns = rotors.iter().zip(rotors.effectiveness());
-        let ImuParameters { cutoff, rate, .. } = ImuParameters::BMI088;
-        let low_pass =
-            || (LowPass::new(cutoff.into(), rate.into()), (log.period * f64::from(rate)).round().max(1.0) as usize);
+        let ImuParameters { cutoff, stopped, rate, .. } = ImuParameters::BMI088;
+        let low_pass = || {
+            (
+                LowPass::new(cutoff.into(), stopped.into(), rate.into()),
+                (log.period * f64::from(rate)).round().max(1.0) as usize,
+            )
+        };
         Ok(Self {
             speeds: speeds.collect::<Result<_, String>>()?,
             columns: columns.map(|(rotor, column)| column * f64::from(rotor.thrust_coefficient)).collect(),

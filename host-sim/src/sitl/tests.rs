@@ -1,6 +1,9 @@
 use super::*;
 use controller_core::estimator::Fault as EstimatorFault;
-use mavlink::dialects::common::{COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavType};
+use mavlink::dialects::common::{
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use scenario::STUDY;
 use std::net::{Ipv4Addr, UdpSocket};
@@ -42,10 +45,14 @@ impl Flown {
         self.client.send_to(frame.raw_bytes(), (Ipv4Addr::LOCALHOST, self.local)).unwrap();
     }
 
+    fn ask(&mut self, command: MavCmd, [param1, param2]: [f32; 2]) {
+        let (target_system, target_component) = (1, 1);
+        let default = COMMAND_LONG_DATA::DEFAULT;
+        self.send(&COMMAND_LONG_DATA { command, param1, param2, target_system, target_component, ..default });
+    }
+
     fn command(&mut self, command: MavCmd, param1: f32) {
-        let data =
-            COMMAND_LONG_DATA { command, param1, target_system: 1, target_component: 1, ..COMMAND_LONG_DATA::DEFAULT };
-        self.send(&data);
+        self.ask(command, [param1, 0.0]);
         self.pass(0.1);
     }
 
@@ -136,6 +143,42 @@ fn wind_blows_in_it() {
         up.x
     };
     assert!(lean(&still).abs() < 0.01 && lean(&windy) < -0.02, "{} {}", lean(&still), lean(&windy));
+}
+
+/// Set down by setpoints while it leans into the wind: the legs it falls back onto turn it as its gyro feels, and its poses go on being
+/// believed.
+#[test]
+fn set_down_at_a_lean_it_keeps_its_pose() {
+    let mut flown = Flown::in_the_air(&format!("{STUDY}\n[wind]\nsteady = [6.0, 0.0, 0.0]\n"), &[]);
+    let down = SET_POSITION_TARGET_LOCAL_NED_DATA {
+        vz: 0.3,
+        // Velocity alone.
+        type_mask: PositionTargetTypemask::from_bits_retain(0b1101_1100_0111),
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        target_system: 1,
+        target_component: 1,
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
+    };
+    let tilt = |flown: &Flown| {
+        let attitude = nalgebra::UnitQuaternion::new_normalize(flown.sitl.world.state().attitude);
+        (attitude * nalgebra::Vector3::z()).z.clamp(-1.0, 1.0).acos().to_degrees()
+    };
+    let mut lean = 0.0;
+    for sent in 0..240 {
+        flown.send(&down);
+        if sent == 10 {
+            flown.ask(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0]);
+        }
+        if flown.sitl.world.state().position.z > 0.05 {
+            lean = tilt(&flown);
+        }
+        flown.pass(0.05);
+    }
+    assert!(lean > 10.0 && tilt(&flown) < 0.1, "{lean} and {} degrees", tilt(&flown));
+    let health = flown.sitl.shared.report.get().unwrap().value.health;
+    assert!(health.faults.worst().is_none() && health.pose_age.is_some_and(|age| age < 100_000), "{health:?}");
+    assert_eq!(flown.sitl.texts.borrow().last().unwrap().1, "Flying setpoints");
+    assert_eq!(flown.mode(), Mode::Flying);
 }
 
 #[test]

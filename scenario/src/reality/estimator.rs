@@ -91,8 +91,8 @@ impl Estimator {
 /// By how much the body rates that the law is told are late at most, s: by their low-pass, and by an increment that has just not ended.
 #[must_use]
 pub fn rates_delay() -> f64 {
-    let ImuParameters { cutoff, rate, .. } = ImuParameters::BMI088;
-    f64::from(LowPass::new(cutoff.into(), rate.into()).delay()) + INCREMENT as f64 * 1e-6
+    let ImuParameters { cutoff, stopped, rate, .. } = ImuParameters::BMI088;
+    f64::from(LowPass::new(cutoff.into(), stopped.into(), rate.into()).delay()) + INCREMENT as f64 * 1e-6
 }
 
 /// Reads `[estimator]`.

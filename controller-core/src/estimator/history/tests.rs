@@ -6,7 +6,7 @@ impl Increment {
         let seconds = (end - start) as f32 * 1e-6;
         let (delta_angle, straight) = (rate * seconds, force * seconds);
         let delta_velocity = straight + delta_angle.cross(&straight) * 0.5;
-        Self { start, end, delta_angle, delta_velocity, angular_velocity: *rate }
+        Self { start, end, delta_angle, delta_velocity, angular_velocity: *rate, clipped: Clipped::NEITHER }
     }
 }
 

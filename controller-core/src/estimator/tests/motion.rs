@@ -1,7 +1,9 @@
 //! Smooth motions with exact sensors, and an estimator that is told of them.
 
 extern crate std;
-use crate::estimator::{Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken};
+use crate::estimator::{
+    Clipped, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
+};
 use crate::flight::{Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::boxed::Box;
@@ -63,7 +65,14 @@ pub fn increment(path: Path, start: u64, end: u64, biases: &(Vector3<f64>, Vecto
     let single = |vector: &Vector3<f64>| vector.map(|x| x as f32);
     let angular_velocity = single(&(first.rate + biases.0));
     let delta_angle = single(&turned.scaled_axis());
-    Increment { start, end, delta_angle, delta_velocity: single(&velocity), angular_velocity }
+    Increment {
+        start,
+        end,
+        delta_angle,
+        delta_velocity: single(&velocity),
+        angular_velocity,
+        clipped: Clipped::NEITHER,
+    }
 }
 
 /// The exact pose at a time, us, moved by an offset (m) and a turn on the left.

@@ -83,7 +83,8 @@ impl<'m> Pilot<'m> {
             }
             Request::Land => {
                 let may = self.mode == Mode::Idling || self.mode.flies();
-                self.must_still_land = self.mode == Mode::Descending;
+                // If poses are lost in this tick, it is remembered.
+                self.must_still_land = self.mode.flies();
                 require(may, Refusal::NotInTheAir)
             }
         }

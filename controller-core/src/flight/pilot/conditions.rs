@@ -23,7 +23,7 @@ impl Pilot<'_> {
     ) -> Conditions {
         let granted = inputs.request.filter(|_| answer == Some(Ok(())));
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
-        // What was granted since goes before a landing that could not begin.
+        // What was granted since goes before a landing that could not go on.
         self.must_still_land &= granted.is_none_or(|request| request == Request::Land);
         let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now);
         let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
@@ -38,7 +38,7 @@ impl Pilot<'_> {
             .with(Condition::Requested, inputs.request.is_some())
             .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
             .with(Condition::HoldRequested, is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
-            .with(Condition::LandRequested, self.must_still_land || is(|request| *request == Request::Land))
+            .with(Condition::LandRequested, is(|request| *request == Request::Land))
             .with(Condition::SetpointsRequested, setpoints)
     }
 
@@ -72,7 +72,8 @@ impl Pilot<'_> {
             .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
             .with(Condition::ImuDoubtful, seen.imu_doubtful)
-            .with(Condition::PoseRegained, regained)
+            .with(Condition::PoseRegained, regained && !self.must_still_land)
+            .with(Condition::PoseRegainedToLand, regained && self.must_still_land)
             .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
             .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
             .with(Condition::GroundStationGone, self.is_silent(inputs, patience))

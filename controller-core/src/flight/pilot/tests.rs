@@ -6,7 +6,7 @@ use super::super::refusal::field;
 use super::super::rules::REFUSALS_MAX;
 use super::super::{Pose, Reason, Request, Stamped, Velocity};
 use super::*;
-use crate::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use crate::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use nalgebra::{Quaternion, Vector3};
 use std::boxed::Box;
 
@@ -17,8 +17,14 @@ const SETTLING: u64 = 160;
 fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, Outcome) {
     let (now, zero) = (number * PERIOD, Vector3::zeros());
     let delta_velocity = Vector3::new(0.0, 0.0, 9.81 * PERIOD as f32 * 1e-6);
-    let increment =
-        Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, angular_velocity: zero };
+    let increment = Increment {
+        start: now - PERIOD,
+        end: now,
+        delta_angle: zero,
+        delta_velocity,
+        angular_velocity: zero,
+        clipped: Clipped::NEITHER,
+    };
     let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
     let inputs = Inputs { increments: &[increment], poses: &[pose], request, ..quiet(now) };
@@ -174,7 +180,7 @@ fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
 }
 
 #[test]
-fn a_landing_asked_for_without_a_pose_is_still_wanted_when_the_pose_is_lost_again() {
+fn a_landing_is_still_wanted_whenever_the_pose_is_regained_until_somebody_holds() {
     let (mut pilot, last, broken) = armed();
     let mut found = Estimate { state: sound(&broken), ..broken };
     found.state.as_mut().unwrap().state.position.z = 0.2;
@@ -189,9 +195,16 @@ fn a_landing_asked_for_without_a_pose_is_still_wanted_when_the_pose_is_lost_agai
     assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
     assert_eq!(next(&mut pilot, &lost, Some(Request::Land)), None);
     for _ in 0..2 {
-        assert_eq!(next(&mut pilot, &found, None), Some((Mode::Holding, Reason::PoseRegained)));
+        assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandingResumed)));
         assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
     }
+    assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandingResumed)));
+    // Asked for in the very tick in which the pose is lost.
+    assert_eq!(next(&mut pilot, &found, Some(Request::Hold)), Some((Mode::Holding, Reason::HoldCommanded)));
+    assert_eq!(next(&mut pilot, &lost, Some(Request::Land)), Some((Mode::Descending, Reason::PoseLost)));
+    assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandingResumed)));
+    // Who holds no longer lands.
+    assert_eq!(next(&mut pilot, &found, Some(Request::Hold)), Some((Mode::Holding, Reason::HoldCommanded)));
+    assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
     assert_eq!(next(&mut pilot, &found, None), Some((Mode::Holding, Reason::PoseRegained)));
-    assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandCommanded)));
 }

@@ -29,7 +29,7 @@ listed! {
         SetpointsRequested,
         /// Holding, here or at a point, was requested and granted.
         HoldRequested,
-        /// Landing was requested and granted; without a pose, earlier.
+        /// Landing was requested and granted.
         LandRequested,
         /// Idling has lasted [`super::IDLING_MAX`].
         IdlingOver,
@@ -49,6 +49,8 @@ listed! {
         ImuDoubtful,
         /// Poses are believed again, and the governor has started from the estimate.
         PoseRegained,
+        /// The same, of a vehicle that was landing when it lost them, or has been told to land since.
+        PoseRegainedToLand,
         /// Descending has lasted [`super::DESCENDING_MAX`].
         DescendingOver,
         /// Nothing was heard from the ground station for [`super::GROUND_STATION_SILENCE_MAX`].

@@ -22,7 +22,7 @@ const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row 
 
 /// The rules. Within a mode, an upper row goes before a lower one.
 #[rustfmt::skip]
-pub const TABLE: [Row; 98] = {
+pub const TABLE: [Row; 99] = {
     use Condition::*;
     use Mode::*;
     [
@@ -132,6 +132,7 @@ pub const TABLE: [Row; 98] = {
         row(Descending, ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
         row(Descending, ImuDoubtful,         Stopped,    Reason::ImuDoubtful),
         row(Descending, PoseRegained,        Holding,    Reason::PoseRegained),
+        row(Descending, PoseRegainedToLand,  Landing,    Reason::LandingResumed),
         row(Descending, DescendingOver,      Stopped,    Reason::DescendingOver),
 
         row(Stopped,    Killed,              Stopped,    Reason::Killed),

@@ -185,15 +185,15 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
 }
 
 #[test]
-fn a_low_battery_is_told_once_and_again_when_that_came_to_nothing() {
+fn a_low_battery_is_told_until_it_is_acted_on() {
     let mut watch = Watch::default();
     let look = |watch: &mut Watch, now: u64| {
         let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
         watch.tick(Mode::Holding, None, None, FAR, &inputs).battery_low
     };
     assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_LASTING));
+    assert!(look(&mut watch, BATTERY_LASTING));
     watch.tell_low();
     assert!(!look(&mut watch, BATTERY_LASTING + PERIOD));
-    watch.tell_low_again();
-    assert!(look(&mut watch, BATTERY_LASTING + 2 * PERIOD));
+    assert!(!look(&mut watch, 9 * BATTERY_LASTING));
 }

@@ -11,10 +11,11 @@ fn increments(seconds: f64, mut at: impl FnMut(f64) -> (Vector3<f64>, Vector3<f6
     for n in 0..=(seconds * 1e3) as u64 {
         let (rate, force) = at(n as f64 * 1e-3);
         let (rate, force) = (rate.map(|x| x as f32), force.map(|x| x as f32));
+        let sample = Sample { time: n * 1_000, rate, force: Some(force), clipped: Clipped::NEITHER };
         if n == 0 {
-            integrator.begin(0, &rate, Some(&force));
+            integrator.begin(&sample);
         } else {
-            all.extend(integrator.take(n * 1_000, &rate, Some(&force), &rate, 5_000));
+            all.extend(integrator.take(&sample, &rate, 5_000));
         }
     }
     all
@@ -71,8 +72,9 @@ fn a_fast_turn_brings_the_force_into_the_frame_at_the_start() {
 fn a_force_that_is_missing_is_the_last_one() {
     let mut integrator = Integrator::EMPTY;
     let (zero, force) = (Vector3::zeros(), Vector3::new(0.0, 0.0, 9.81_f32));
-    integrator.begin(0, &zero, Some(&force));
-    let all: Vec<Increment> = (1..=5).filter_map(|n| integrator.take(n * 1_000, &zero, None, &zero, 5_000)).collect();
+    let sample = |n: u64, force| Sample { time: n * 1_000, rate: zero, force, clipped: Clipped::NEITHER };
+    integrator.begin(&sample(0, Some(force)));
+    let all: Vec<Increment> = (1..=5).filter_map(|n| integrator.take(&sample(n, None), &zero, 5_000)).collect();
     assert_eq!(all.len(), 1);
     assert!((all[0].delta_velocity - force * 0.005).norm() < 1e-7);
 }

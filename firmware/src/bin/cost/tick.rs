@@ -7,7 +7,7 @@ use crate::body;
 use crate::count::Cost;
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::{Estimator, Increment, PoseMeasurement, Settings};
+use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::flight::{FlightSettings, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::math;
@@ -20,7 +20,6 @@ use firmware::control::Control;
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
 use firmware::shared::{Asked, Shared};
-use mavlink::dialects::common::MavCmd;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
 
@@ -62,12 +61,12 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
         }
         shared.ground_station.put((), now);
         let asked = match number {
-            STANDING => Some((Request::Arm, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)),
-            FLYING => Some((Request::FlySetpoints, MavCmd::MAV_CMD_DO_SET_MODE)),
+            STANDING => Some(Request::Arm),
+            FLYING => Some(Request::FlySetpoints),
             _ => None,
         };
-        if let Some((request, command)) = asked {
-            let _ = shared.request(Asked { request, command: Some(command), sender: None });
+        if let Some(request) = asked {
+            let _ = shared.request(Asked { request, order: None });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {
@@ -130,6 +129,7 @@ impl Body {
                 delta_angle: (before.angular_velocity + self.state.angular_velocity) * (0.5 * seconds) + jitter,
                 delta_velocity: UnitQuaternion::new_unchecked(before.attitude).inverse() * gained,
                 angular_velocity: self.state.angular_velocity,
+                clipped: Clipped::NEITHER,
             });
         }
         self.past.rotate_left(1);

@@ -1,0 +1,53 @@
+//! What the last increments say of the present: the force that goes on acting, and a velocity that does not shake.
+//!
+//! Rotors that are out of balance shake the IMU at 70 to 130 Hz, some millimetres to and fro a second for each m/s^2. That is a true
+//! motion, but a law that looks at it 100 times a second takes it for a slow one. So it is told the mean of three velocities, v_0 at the
+//! end of the last increment, v_1 and v_2 one and two increments before; and because that is 5 ms late, what 5 ms of a force add to it,
+//! which is averaged over so long that it does not shake:
+//!
+//! ```text
+//! v_calm = (v_0 + 2 v_1 + v_2) / 4 + H (R f_slow - g e3) = v_0 - R (D - H f_slow)
+//! D = (3 d_0 + d_1) / 4      H = (3 h_0 + h_1) / 4
+//! f = (d_0 + d_1) / (h_0 + h_1)                              specific force: its mean, which goes on acting
+//! f_slow += h / 0.1 s (d / h - f_slow)                       at each increment, kept with the history
+//! ```
+//!
+//! | shaken at | mean of three velocities, cos^2(pi f h) | f, mean of 10 ms |
+//! |---|---|---|
+//! | 10 Hz | 0.98 | 0.98 |
+//! | 70 Hz | 0.21 | 0.37 |
+//! | 100 Hz | 0 | 0 |
+//! | 130 Hz | 0.21 | 0.20 |
+//!
+//! Where the force changes within a tenth of a second, v_calm is up to 5 ms late. That is less than the body rates are, for which the sampled
+//! loops allow. All d are turned into the frame at the end of the last increment, to first order in the turn.
+
+use super::history::Increment;
+use nalgebra::Vector3;
+
+/// Of the last two increments, in the body frame at their end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Present {
+    /// f, m/s^2.
+    pub force: Vector3<f32>,
+    /// D - H f_slow, m/s: what of the velocity is shaking.
+    pub shaking: Vector3<f32>,
+}
+
+impl Present {
+    /// By the last increment, the one before it, and f_slow with both. The first one alone is cut in half.
+    pub fn of(last: &Increment, before: Option<&Increment>, slow: &Vector3<f32>) -> Self {
+        let (newer, h_0) = (last.push_at_end(), last.seconds());
+        let Some(before) = before else {
+            return Self { force: newer / h_0, shaking: (newer - slow * h_0) * 0.5 };
+        };
+        let (older, h_1) = (last.turned_back(&before.push_at_end()), before.seconds());
+        Self {
+            force: (newer + older) / (h_0 + h_1),
+            shaking: (newer - slow * h_0) * 0.75 + (older - slow * h_1) * 0.25,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
