@@ -30,7 +30,7 @@
 //! for increment in new increments { estimator.imu(&increment) }
 //! for pose in new poses { report(estimator.pose(&pose, now)) }
 //! let health = estimator.health(now);                   // arming, coasting and levelling are decided from this
-//! if let Some(estimated) = estimator.state(now) { law.step(&estimated.state, …) }
+//! if let Some(estimated) = estimator.state(now, &newest_rate) { law.step(&estimated.state, …) }
 //! ```
 //!
 //! Without poses the state goes on, by IMU alone, for as long as anybody asks; [`health`](Estimator::health) says for how long
@@ -70,7 +70,7 @@ use checkpoints::Checkpoints;
 use filter::{Biases, Filter};
 use health::Statistics;
 use heapless::Vec;
-use history::History;
+use history::{History, is_measurable};
 use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
 use present::Present;
@@ -90,7 +90,7 @@ const WAITING: usize = 4;
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatedState {
-    /// For the law. The body rate is the low-passed one, less its bias; the velocity one that does not shake with the rotors.
+    /// For the law. The body rate is the one handed over, less its bias; the velocity one that does not shake with the rotors.
     pub state: State,
     /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
@@ -181,11 +181,12 @@ impl Estimator {
         verdict
     }
 
-    /// The state at `now`, us; none before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, and before it.
+    /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included. None before the
+    /// first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it, and with a rate that nobody can have measured.
     #[must_use]
-    pub fn state(&self, now: u64) -> Option<EstimatedState> {
+    pub fn state(&self, now: u64, rate: &Vector3<f32>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX && is_measurable(rate))?;
         let Present { force, shaking } = Present::of(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
@@ -200,7 +201,7 @@ impl Estimator {
         acceleration.z -= gravity;
         nominal.advance(&increment, gravity);
         let Nominal { position, velocity, attitude, gyro_bias, .. } = nominal;
-        let angular_velocity = last.angular_velocity - gyro_bias;
+        let angular_velocity = rate - gyro_bias;
         let state =
             State { position, velocity: velocity - rotated(&latest.attitude, &shaking), attitude, angular_velocity };
         Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps })

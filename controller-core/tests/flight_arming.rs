@@ -3,7 +3,7 @@
 mod flight;
 
 use controller_core::estimator::{Fault, Increment};
-use controller_core::flight::{Battery, Mode, MotorTest, Output, PERIOD, Refusal, Request};
+use controller_core::flight::{Battery, Mode, MotorTest, Output, PERIOD, Refusal, Request, Stamped};
 use controller_core::imu::ImuFault;
 use controller_core::prelude::*;
 use flight::{Flight, Handed, SETTLING, at_rest, at_rest_with, displaced, go_to, pilot, settled};
@@ -42,6 +42,11 @@ fn refuses_sensors(lie: impl FnOnce(&mut Flight), refusal: Refusal) {
     assert_eq!(outcome.answer, Some(Err(refusal)), "{:?}", outcome.health);
 }
 
+/// Another body rate at the next tick, rad/s.
+fn with_body_rate(rate: &Vector3<f32>) -> Handed {
+    Handed { body_rate: Some(Stamped { value: *rate, time: NOW }), ..at_rest(NOW) }
+}
+
 /// Every increment of the next tick changed.
 fn with_imu(change: impl FnMut(&mut Increment)) -> Handed {
     let mut handed = at_rest(NOW);
@@ -57,8 +62,8 @@ fn rolled(degrees: f32) -> Quaternion<f32> {
 
 #[test]
 fn arming_is_refused_without_fresh_measurements() {
-    let silent = |elapsed: u64| Handed { increments: vec![], poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
-    refuses(silent(20_001), Refusal::ImuStale);
+    let silent = |elapsed: u64| Handed { increments: vec![], body_rate: None, poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
+    refuses(silent(22_001), Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.imu = false, Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.pose = false, Refusal::Estimator(Fault::NotStarted));
     // Poses that break off: 300 ms later.
@@ -78,8 +83,9 @@ fn arming_is_refused_with_measurements_that_make_no_sense() {
         refuses_sensors(|flight| flight.imu = Box::new(move |imu| imu.delta_velocity.x = number), Refusal::ImuStale);
         // Only one of two.
         let mut once = at_rest(NOW);
-        once.increments[0].angular_velocity.x = number;
+        once.increments[0].delta_angle.x = number;
         refuses(once, not_started);
+        refuses(with_body_rate(&Vector3::new(number, 0.0, 0.0)), Refusal::ImuStale);
     }
     let mut early = at_rest(NOW);
     early.poses[0].time += 100_000;
@@ -134,7 +140,7 @@ fn arming_is_refused_while_the_vehicle_moves() {
         flight.inputs.request = Some(Request::Arm);
         assert_eq!(flight.tick().answer, Some(answer), "{speed} m/s");
     }
-    refuses(with_imu(|imu| imu.angular_velocity.z = 0.21), Refusal::Moving);
+    refuses(with_body_rate(&Vector3::new(0.0, 0.0, 0.21)), Refusal::Moving);
 }
 
 #[test]
@@ -172,15 +178,10 @@ fn arming_is_refused_where_the_accelerometer_says_that_up_is_elsewhere() {
 
 #[test]
 fn arming_is_refused_where_the_gyro_turns_or_is_biased_by_two_degrees_a_second() {
-    let turning = |rate: f32| {
-        move |imu: &mut Increment| {
-            imu.delta_angle.x += rate * imu.seconds();
-            imu.angular_velocity.x += rate;
-        }
-    };
-    refuses_sensors(|flight| flight.imu = Box::new(turning(10.0)), Refusal::Estimator(Fault::NotStarted));
-    refuses(with_imu(turning(10.0)), Refusal::Moving);
-    refuses_sensors(|flight| flight.imu = Box::new(turning(2_f32.to_radians())), Refusal::Estimator(Fault::GyroBias));
+    let turning = |rate: f32| Vector3::new(rate, 0.0, 0.0);
+    refuses_sensors(|flight| flight.gyro_bias = turning(10.0), Refusal::Estimator(Fault::NotStarted));
+    refuses(with_body_rate(&turning(10.0)), Refusal::Moving);
+    refuses_sensors(|flight| flight.gyro_bias = turning(2_f32.to_radians()), Refusal::Estimator(Fault::GyroBias));
 }
 
 #[test]

@@ -88,7 +88,11 @@ fn spoil(handed: &mut Handed, field: usize, number: f32) {
     let mut attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
     let imu = &mut handed.increments[1];
     match field {
-        0..3 => imu.angular_velocity[field] = number,
+        0..3 => {
+            let mut rate = Vector3::zeros();
+            rate[field] = number;
+            handed.body_rate = Some(Stamped { value: rate, time: handed.now });
+        }
         3..6 => imu.delta_velocity[field - 3] = number,
         6..9 => position[field - 6] = number,
         9..12 => velocity[field - 9] = number,
@@ -239,6 +243,7 @@ struct Judge {
     /// When the last IMU data and the last pose were true that a flight may be based on.
     imu: Option<u64>,
     pose: Option<u64>,
+    body_rate: Option<Stamped<Vector3<f32>>>,
     /// When the ground station was heard last.
     heard: Option<u64>,
     descending_since: Option<u64>,
@@ -255,6 +260,7 @@ impl Judge {
             until: start,
             imu: None,
             pose: None,
+            body_rate: None,
             heard: None,
             descending_since: None,
             idling_since: None,
@@ -269,6 +275,7 @@ impl Judge {
         let handed = Handed {
             now: self.now,
             increments: self.increments(arrival),
+            body_rate: self.body_rate(arrival),
             poses: self.pose(arrival).into_iter().collect(),
             ground_station: self.heard,
             request: arrival.request,
@@ -304,6 +311,17 @@ impl Judge {
             _ => {}
         }
         made
+    }
+
+    /// The newest that has come.
+    fn body_rate(&mut self, arrival: &Arrival) -> Option<Stamped<Vector3<f32>>> {
+        let value = match arrival.imu {
+            Fate::Late(_) | Fate::Lost => return self.body_rate,
+            Fate::Here => Vector3::zeros(),
+            Fate::Lies => Vector3::repeat(f32::NAN),
+        };
+        self.body_rate = Some(Stamped { value, time: self.now });
+        self.body_rate
     }
 
     fn pose(&mut self, arrival: &Arrival) -> Option<Stamped<PoseMeasurement>> {

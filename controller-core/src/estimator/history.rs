@@ -14,7 +14,7 @@ use heapless::Deque;
 use nalgebra::Vector3;
 
 /// How far beyond the last increment a state is extrapolated, and the longest increment, us.
-pub const EXTRAPOLATION_MAX: u64 = 20_000;
+pub const EXTRAPOLATION_MAX: u64 = 22_000;
 
 /// How long the slow force is averaged over, s.
 const SLOW: f32 = 0.1;
@@ -53,8 +53,6 @@ pub struct Increment {
     pub delta_angle: Vector3<f32>,
     /// d, the integral of the specific force, m/s, body frame at the start.
     pub delta_velocity: Vector3<f32>,
-    /// The body rate at the end as the law may have it: low-passed, rad/s, biases included.
-    pub angular_velocity: Vector3<f32>,
     /// What was at full scale meanwhile.
     pub clipped: Clipped,
 }
@@ -68,9 +66,7 @@ impl Increment {
 
     /// Whether it can be used: finite, and no longer than a gap that is bridged.
     pub(crate) fn is_usable(&self, longest: u64) -> bool {
-        let numbers = [&self.delta_angle, &self.delta_velocity, &self.angular_velocity];
-        // Finite, and far from where a square would not be.
-        let finite = numbers.iter().all(|vector| vector.iter().all(|component| component.abs() < 1e4));
+        let finite = is_measurable(&self.delta_angle) && is_measurable(&self.delta_velocity);
         finite && self.start < self.end && self.end - self.start <= longest
     }
 
@@ -99,6 +95,11 @@ impl Increment {
         let delta_velocity = self.delta_velocity * part - bent;
         Some(Self { start, end, delta_angle, delta_velocity, ..*self })
     }
+}
+
+/// Whether a vector can have been measured: finite, and far from where a square would not be.
+pub(super) fn is_measurable(vector: &Vector3<f32>) -> bool {
+    vector.iter().all(|component| component.abs() < 1e4)
 }
 
 /// f_slow of `present` after an increment, by what it was before, m/s^2.

@@ -5,7 +5,7 @@
 
 use super::exchange::Inputs;
 use super::rules::COASTING_MAX;
-use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Health, Rejected, Taken};
+use crate::estimator::{COASTING_AFTER, EXTRAPOLATION_MAX, EstimatedState, Estimator, Fault, Health, Rejected, Taken};
 use crate::measurement::is_fresh;
 use crate::state::State;
 use nalgebra::Quaternion;
@@ -80,7 +80,8 @@ impl<'m> Estimation<'m> {
             // That it has is counted with the other jumps.
             let _ = self.estimator.adopt();
         }
-        let (health, state) = (self.estimator.health(now), self.estimator.state(now));
+        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX, now));
+        let (health, state) = (self.estimator.health(now), rate.and_then(|rate| self.estimator.state(now, &rate.value)));
         let jumped = health.jumps != self.jumps;
         let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
         self.since = if steady { self.since.or(Some(now)) } else { None };

@@ -32,13 +32,16 @@ pub enum Battery {
     Critical,
 }
 
-/// What a tick is given: what has come since the last. Everything is handed over once, but for the ground station's time.
+/// What a tick is given: what has come since the last. Everything is handed over once, but for the newest
+/// body rate and the ground station's time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inputs<'a> {
     /// The vehicle's clock, us.
     pub now: u64,
     /// What the IMU did, each increment beginning where the last ended: two of 5 ms, where nothing is late.
     pub increments: &'a [Increment],
+    /// The newest body rate, low-passed, rad/s, as the sensor has it.
+    pub body_rate: Option<Stamped<Vector3<f32>>>,
     /// What is, or was within the last second, wrong with gyro or accelerometer.
     pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.

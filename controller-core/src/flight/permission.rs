@@ -63,7 +63,8 @@ pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result
     // Without an IMU nothing else can be well.
     require(!faults.contain(Fault::ImuStale), Refusal::ImuStale)?;
     faults.worst().map_or(Ok(()), |fault| Err(Refusal::Estimator(fault)))?;
-    let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::Estimator(Fault::NotStarted))?;
+    // With an estimate it is the body rate that is missing.
+    let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::ImuStale)?;
     let (speed, rate) = MOVING;
     // Written so that a number that is none is refused.
     let still = state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate;

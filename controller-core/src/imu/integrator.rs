@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 /// A sample that has been corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// When it was taken, us.
+    /// When what it shows was so, us.
     pub time: u64,
     /// Body rate, rad/s.
     pub rate: Vector3<f32>,
@@ -59,9 +59,8 @@ impl Integrator {
         *self = Self { last: Some(*sample), start: sample.time, ..Self::EMPTY };
     }
 
-    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. `smooth` is the body rate for the law. A force
-    /// that is missing is the last one.
-    pub fn take(&mut self, sample: &Sample, smooth: &Vector3<f32>, least: u64) -> Option<Increment> {
+    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. A force that is missing is the last one.
+    pub fn take(&mut self, sample: &Sample, least: u64) -> Option<Increment> {
         let (last, time) = (self.last?, sample.time);
         let before = last.force.unwrap_or_default();
         let force = sample.force.unwrap_or(before);
@@ -80,7 +79,6 @@ impl Integrator {
             end: time,
             delta_angle: self.angle,
             delta_velocity: self.velocity,
-            angular_velocity: *smooth,
             clipped: self.clipped,
         };
         *self = Self { last: self.last, start: time, ..Self::EMPTY };

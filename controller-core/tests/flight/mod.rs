@@ -91,6 +91,7 @@ pub fn pose(position: Vector3<f32>, attitude: Quaternion<f32>) -> PoseMeasuremen
 pub struct Handed {
     pub now: u64,
     pub increments: Vec<Increment>,
+    pub body_rate: Option<Stamped<Vector3<f32>>>,
     pub imu_fault: Option<ImuFault>,
     pub poses: Vec<Stamped<PoseMeasurement>>,
     pub ground_station: Option<u64>,
@@ -110,6 +111,7 @@ impl Handed {
         let Self {
             now,
             increments,
+            body_rate,
             imu_fault,
             poses,
             ground_station,
@@ -126,6 +128,7 @@ impl Handed {
         pilot.tick(&Inputs {
             now: *now,
             increments,
+            body_rate: *body_rate,
             imu_fault: *imu_fault,
             poses,
             ground_station: *ground_station,
@@ -146,14 +149,7 @@ impl Handed {
 pub fn resting_imu(start: u64, end: u64, attitude: &Quaternion<f32>) -> Increment {
     let up = UnitQuaternion::new_normalize(*attitude).inverse_transform_vector(&Vector3::z());
     let delta_velocity = up * (9.81 * (end - start) as f32 * 1e-6);
-    Increment {
-        start,
-        end,
-        delta_angle: Vector3::zeros(),
-        delta_velocity,
-        angular_velocity: Vector3::zeros(),
-        clipped: Clipped::NEITHER,
-    }
+    Increment { start, end, delta_angle: Vector3::zeros(), delta_velocity, clipped: Clipped::NEITHER }
 }
 
 /// Everything as it should be for a vehicle at rest at the origin with `attitude`, after a period.
@@ -162,6 +158,7 @@ pub fn at_rest_with(attitude: &Quaternion<f32>, now: u64) -> Handed {
     Handed {
         now,
         increments: halves.iter().map(|&(start, end)| resting_imu(start, end, attitude)).collect(),
+        body_rate: Some(Stamped { value: Vector3::zeros(), time: now }),
         poses: vec![Stamped { value: pose(Vector3::zeros(), *attitude), time: now }],
         ground_station: Some(now),
         ..Handed::default()
@@ -223,6 +220,8 @@ pub struct Flight {
     pub told: Told,
     /// What becomes of the IMU's increments.
     pub imu: Box<dyn FnMut(&mut Increment)>,
+    /// What the gyro shows beside the truth, rad/s.
+    pub gyro_bias: Vector3<f32>,
     /// Where the ground is, m: a body there does not fall, slide or tilt.
     pub ground: f64,
     /// Whether something carries its weight.
@@ -230,6 +229,7 @@ pub struct Flight {
     mixer: Mixer,
     certified: Certified,
     ground_station: Option<u64>,
+    body_rate: Option<Stamped<Vector3<f32>>>,
     increments: Vec<Increment>,
 }
 
@@ -245,11 +245,13 @@ impl Flight {
             inputs,
             told: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
             imu: Box::new(|_| {}),
+            gyro_bias: Vector3::zeros(),
             ground: GROUND,
             weightless: false,
             mixer: Mixer::new(&rotors()),
             certified: certified(),
             ground_station: None,
+            body_rate: None,
             increments: Vec::new(),
         }
     }
@@ -284,10 +286,14 @@ impl Flight {
     pub fn tick(&mut self) -> Outcome {
         let now = self.inputs.now;
         let mut increments = std::mem::take(&mut self.increments);
+        increments.iter_mut().for_each(|imu| imu.delta_angle += self.gyro_bias * imu.seconds());
         increments.iter_mut().for_each(&mut self.imu);
         if self.present.imu {
             self.inputs.increments = increments;
+            let body_rate = self.body.angular_velocity.cast() + self.gyro_bias;
+            self.body_rate = Some(Stamped { value: body_rate, time: now });
         }
+        self.inputs.body_rate = self.body_rate;
         if self.present.pose {
             self.inputs.poses = vec![(self.told)(&self.body, now)];
         }
@@ -337,7 +343,6 @@ impl Flight {
             end,
             delta_angle: turned.scaled_axis().cast(),
             delta_velocity: attitude.inverse_transform_vector(&gained).cast(),
-            angular_velocity: self.body.angular_velocity.cast(),
             clipped: Clipped::NEITHER,
         }
     }

@@ -9,7 +9,7 @@ const H: u64 = 5_000;
 fn increment(start: u64, delta_velocity: Vector3<f32>, delta_angle: Vector3<f32>) -> Increment {
     let end = start + H;
     let clipped = Clipped::NEITHER;
-    Increment { start, end, delta_angle, delta_velocity, angular_velocity: Vector3::zeros(), clipped }
+    Increment { start, end, delta_angle, delta_velocity, clipped }
 }
 
 /// The greatest velocity that is left, and f, of a body that is shaken across with this frequency, Hz, over those of the motion itself.

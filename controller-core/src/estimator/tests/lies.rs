@@ -46,7 +46,7 @@ fn those_who_know_better_follow_a_jump() {
     told(&mut rig, 0.7, lie);
     assert!(rig.estimator.adopt());
     assert!(!rig.estimator.adopt());
-    let position = rig.estimator.state(rig.now).unwrap().state.position.cast::<f64>();
+    let position = rig.state().unwrap().state.position.cast::<f64>();
     assert!((position - rig.truth(rig.now).position - offset).norm() < 2e-3);
     assert_eq!(rig.estimator.health(rig.now).jumps, 1);
     let made = |rig: &Rig, time| motion::pose(&rig.truth(time), &offset, &STRAIGHT);
@@ -126,13 +126,13 @@ fn however_uncertain_the_estimate_a_pose_metres_away_is_never_just_fused() {
     let mut rig = Rig::new(tumble);
     rig.fly(3_000_000, 20_000);
     (0..8_000).for_each(|_| rig.step());
-    let before = rig.estimator.state(rig.now).unwrap().state.position;
+    let before = rig.state().unwrap().state.position;
     // Five metres would be within the gate now.
     assert!(rig.estimator.health(rig.now).deviations.0 > 1.0);
     let away = before.cast::<f64>() - rig.truth(rig.now).position + Vector3::new(5.0, 0.0, 0.0);
     let pose = Stamped { value: motion::pose(&rig.truth(rig.now), &away, &STRAIGHT), time: rig.now };
     assert_eq!(rig.estimator.pose(&pose, rig.now), Err(Rejected::Position));
-    assert_eq!(rig.estimator.state(rig.now).unwrap().state.position, before);
+    assert_eq!(rig.state().unwrap().state.position, before);
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn a_body_lost_and_found_where_coasting_led_is_followed_and_one_elsewhere_is_not
             refound += u32::from(rig.fly_with(10_000, 20_000, made) == Some(Ok(Taken::Refound)));
         }
         assert_eq!((refound == 1, rig.estimator.health(rig.now).is_good()), (found, found), "{offset} m");
-        let position = rig.estimator.state(rig.now).unwrap().state.position.cast::<f64>();
+        let position = rig.state().unwrap().state.position.cast::<f64>();
         let expected = rig.truth(rig.now).position + if found { away } else { Vector3::zeros() };
         assert!((position - expected).norm() < 0.05);
     }

@@ -2,7 +2,7 @@
 
 extern crate std;
 use crate::estimator::{
-    Clipped, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
+    Clipped, EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
 };
 use crate::flight::{Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -53,7 +53,6 @@ pub fn tumble(t: f64) -> Truth {
 pub fn increment(path: Path, start: u64, end: u64, biases: &(Vector3<f64>, Vector3<f64>)) -> Increment {
     let (from, h, steps) = (start as f64 * 1e-6, (end - start) as f64 * 1e-6, 50);
     let step = h / f64::from(steps);
-    let first = path(from);
     let mut turned = UnitQuaternion::identity();
     let mut velocity = Vector3::zeros();
     for n in 0..steps {
@@ -63,14 +62,12 @@ pub fn increment(path: Path, start: u64, end: u64, biases: &(Vector3<f64>, Vecto
         turned *= UnitQuaternion::from_scaled_axis(rate * step);
     }
     let single = |vector: &Vector3<f64>| vector.map(|x| x as f32);
-    let angular_velocity = single(&(first.rate + biases.0));
     let delta_angle = single(&turned.scaled_axis());
     Increment {
         start,
         end,
         delta_angle,
         delta_velocity: single(&velocity),
-        angular_velocity,
         clipped: Clipped::NEITHER,
     }
 }
@@ -135,9 +132,19 @@ impl Rig {
         last
     }
 
+    /// The state now, with the true body rate.
+    pub fn state(&self) -> Option<EstimatedState> {
+        self.state_at(self.now)
+    }
+
+    /// The state at a time, us.
+    pub fn state_at(&self, time: u64) -> Option<EstimatedState> {
+        self.estimator.state(time, &(self.truth(time).rate + self.biases.0).map(|x| x as f32))
+    }
+
     /// Errors of position (m), velocity (m/s) and attitude (rad) now.
     pub fn errors(&self) -> (f64, f64, f64) {
-        let (state, truth) = (self.estimator.state(self.now).unwrap().state, self.truth(self.now));
+        let (state, truth) = (self.state().unwrap().state, self.truth(self.now));
         let attitude = UnitQuaternion::new_normalize(state.attitude.cast::<f64>());
         (
             (state.position.cast::<f64>() - truth.position).norm(),

@@ -45,7 +45,7 @@ fn poses_out_of_order_leave_the_same_bits_as_in_order() {
                 assert_eq!(rig.estimator.pose(&pose, rig.now), Ok(Taken::Fused), "{place}");
             }
         }
-        (*rig.estimator.filter().unwrap(), rig.estimator.state(rig.now), rig)
+        (*rig.estimator.filter().unwrap(), rig.state(), rig)
     };
     let (filter, state, rig) = run([0, 1, 2, 3, 4, 5]);
     rig.check("in order");
@@ -61,10 +61,10 @@ fn poses_out_of_order_leave_the_same_bits_as_in_order() {
 fn a_pose_that_is_too_late_among_others_is_refused_and_changes_nothing() {
     let mut rig = Rig::new(tumble);
     rig.fly(2_000_000, 20_000);
-    let (before, state) = (*rig.estimator.filter().unwrap(), rig.estimator.state(rig.now));
+    let (before, state) = (*rig.estimator.filter().unwrap(), rig.state());
     let late = exact(&rig, rig.now - 20_000 - 95_000);
     assert_eq!(rig.estimator.pose(&late, rig.now), Err(Rejected::TooOld));
-    assert_eq!((*rig.estimator.filter().unwrap(), rig.estimator.state(rig.now)), (before, state));
+    assert_eq!((*rig.estimator.filter().unwrap(), rig.state()), (before, state));
 }
 
 #[test]
@@ -98,14 +98,14 @@ fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
     assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
     // It has yet to be agreed with.
     assert_eq!(rig.estimator.health(rig.now).pose_age, Some(rig.now - believed));
-    let (state, truth) = (rig.estimator.state(rig.now).unwrap(), rig.truth(rig.now));
+    let (state, truth) = (rig.state().unwrap(), rig.truth(rig.now));
     let position = turn * truth.position + offset;
     assert!((state.state.position.cast::<f64>() - position).norm() < 2e-3);
     assert!((state.state.velocity.cast::<f64>() - turn * truth.velocity).norm() < 2e-2);
     assert_eq!(state.jumps, 1);
     assert_eq!(rig.fly_with(1_000_000, 5_000, made), Some(Ok(Taken::Fused)));
     assert_eq!(rig.estimator.health(rig.now).counts.1, 0);
-    assert_eq!(rig.estimator.state(rig.now).unwrap().jumps, 1);
+    assert_eq!(rig.state().unwrap().jumps, 1);
 }
 
 #[test]
@@ -116,11 +116,11 @@ fn a_pose_from_before_the_frame_moved_is_too_late() {
     let moved = motion::pose(&rig.truth(rig.now - 5_000), &away, &UnitQuaternion::identity()).reset_counter(1);
     let moved = Stamped { value: moved, time: rig.now - 5_000 };
     assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
-    let state = rig.estimator.state(rig.now);
+    let state = rig.state();
     // Between two that were fused before.
     let late = exact(&rig, rig.now - 25_000);
     assert_eq!(rig.estimator.pose(&late, rig.now), Err(Rejected::TooOld));
-    assert_eq!(rig.estimator.state(rig.now), state);
+    assert_eq!(rig.state(), state);
 }
 
 #[test]

@@ -22,12 +22,12 @@ fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, 
         end: now,
         delta_angle: zero,
         delta_velocity,
-        angular_velocity: zero,
         clipped: Clipped::NEITHER,
     };
     let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
-    let inputs = Inputs { increments: &[increment], poses: &[pose], request, ..quiet(now) };
+    let body_rate = Some(Stamped { value: zero, time: now });
+    let inputs = Inputs { increments: &[increment], body_rate, poses: &[pose], request, ..quiet(now) };
     let estimate = pilot.estimation.tick(&inputs, pilot.mode.is_armed(), pilot.is_airborne());
     let outcome = pilot.decide(&inputs, &estimate);
     (estimate, outcome)

@@ -15,7 +15,7 @@ fn increments(seconds: f64, mut at: impl FnMut(f64) -> (Vector3<f64>, Vector3<f6
         if n == 0 {
             integrator.begin(&sample);
         } else {
-            all.extend(integrator.take(&sample, &rate, 5_000));
+            all.extend(integrator.take(&sample, 5_000));
         }
     }
     all
@@ -74,7 +74,7 @@ fn a_force_that_is_missing_is_the_last_one() {
     let (zero, force) = (Vector3::zeros(), Vector3::new(0.0, 0.0, 9.81_f32));
     let sample = |n: u64, force| Sample { time: n * 1_000, rate: zero, force, clipped: Clipped::NEITHER };
     integrator.begin(&sample(0, Some(force)));
-    let all: Vec<Increment> = (1..=5).filter_map(|n| integrator.take(&sample(n, None), &zero, 5_000)).collect();
+    let all: Vec<Increment> = (1..=5).filter_map(|n| integrator.take(&sample(n, None), 5_000)).collect();
     assert_eq!(all.len(), 1);
     assert!((all[0].delta_velocity - force * 0.005).norm() < 1e-7);
 }
