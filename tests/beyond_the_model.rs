@@ -123,14 +123,8 @@ fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
         let (height, acceleration) = lifted(tick);
         let zero = Vector3::zeros();
         let delta_velocity = Vector3::new(0.0, 0.0, (9.81 + acceleration) * PERIOD as f32 * 1e-6);
-        let increment = Increment {
-            start: now - PERIOD,
-            end: now,
-            delta_angle: zero,
-            delta_velocity,
-            angular_velocity: zero,
-            clipped: Clipped::NEITHER,
-        };
+        let increment =
+            Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, clipped: Clipped::NEITHER };
         let position = Vector3::new(0.0, 0.0, height);
         let still = Velocity::World(Vector3::zeros());
         let pose = Pose::new(position, still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
@@ -138,6 +132,7 @@ fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
         let outcome = pilot.tick(&Inputs {
             now,
             increments: &[increment],
+            body_rate: Some(Stamped { value: zero, time: now }),
             poses: &[Stamped { value: PoseMeasurement::new(&pose), time: now }],
             ground_station: Some(now),
             request: match tick {

@@ -9,16 +9,15 @@
 //! attitude   -J^-1 r x U e(phi)                   rad, about the body's axes
 //! ```
 //!
-//! What the IMU says is changed by their derivatives. The motion itself is left as it is: these are micrometres. A frame bends, and turns a
+//! What the IMU feels is changed by their derivatives. The motion itself is left as it is: these are micrometres. A frame bends, and turns a
 //! part of every pull upwards. Like the rotors of a real vehicle these turn at slightly different speeds, and their pulls beat.
 //! `cargo test -p host-sim vibration -- --nocapture` prints the table that stands in `docs/measured.md`.
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{FlightSettings, ImuSample, Inputs, PERIOD, Pose, Reason, Request, Stamped};
-use controller_core::imu::ImuParameters;
-use host_sim::instruments::SAMPLE;
+use controller_core::flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
+use host_sim::instruments::{Felt, SAMPLE};
 use host_sim::piloted::{Meddler, PilotedVehicle, Place};
 use host_sim::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -125,30 +124,14 @@ impl Meddler for Unbalanced {
         }
     }
 
-    fn sample(&mut self, sample: ImuSample, _: u64) -> Option<ImuSample> {
+    fn feel(&mut self, felt: Felt, _: u64) -> Felt {
         let (force, rate, samples) = self.squares;
         self.squares = (force + self.force.norm_squared(), rate + self.rate.norm_squared(), samples + 1.0);
         let turned = UnitQuaternion::from_scaled_axis(-self.angle);
-        // What is at full scale already is there with more as well.
-        let shown = |before: Vector3<f32>, truth: Vector3<f64>, range: f32| {
-            before.zip_map(
-                &truth,
-                |before, truth| if before.abs() < range { (truth as f32).clamp(-range, range) } else { before },
-            )
-        };
-        let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
-        Some(ImuSample {
-            angular_velocity: shown(
-                sample.angular_velocity,
-                turned * sample.angular_velocity.cast() + self.rate,
-                gyro_range,
-            ),
-            specific_force: shown(
-                sample.specific_force,
-                turned * (sample.specific_force.cast() + self.force),
-                accelerometer_range,
-            ),
-        })
+        Felt {
+            angular_velocity: turned * felt.angular_velocity + self.rate,
+            specific_force: turned * (felt.specific_force + self.force),
+        }
     }
 
     fn pose(&mut self, pose: Stamped<Pose>, _: u64) -> Option<Stamped<PoseMeasurement>> {

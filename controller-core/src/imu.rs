@@ -92,7 +92,9 @@ impl ImuParameters {
         self.low_pass().delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
     }
 
-    fn low_pass(&self) -> LowPass {
+    /// The low-pass for the law's body rates.
+    #[must_use]
+    pub fn low_pass(&self) -> LowPass {
         LowPass::new(self.cutoff.into(), self.stopped.into(), self.rate.into())
     }
 }

@@ -28,6 +28,12 @@ pub struct Stamped<T> {
 }
 
 impl<T> Stamped<T> {
+    /// Something that follows from it, true at the same time.
+    #[must_use]
+    pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Stamped<U> {
+        Stamped { value: of(self.value), time: self.time }
+    }
+
     /// How old it is at `now`, us; zero for a time to come.
     #[must_use]
     pub fn age(&self, now: u64) -> u64 {

@@ -62,7 +62,8 @@ fn rolled(degrees: f32) -> Quaternion<f32> {
 
 #[test]
 fn arming_is_refused_without_fresh_measurements() {
-    let silent = |elapsed: u64| Handed { increments: vec![], body_rate: None, poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
+    let silent =
+        |elapsed: u64| Handed { increments: vec![], body_rate: None, poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
     refuses(silent(22_001), Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.imu = false, Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.pose = false, Refusal::Estimator(Fault::NotStarted));

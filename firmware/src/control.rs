@@ -137,6 +137,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
+            body_rate: self.shared.imu.get().map(|newest| newest.map(|sample| sample.angular_velocity)),
             imu_fault: self.shared.imu_fault.recent(IMU_FAULT_LASTING, now),
             ground_station: self.shared.ground_station.get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),

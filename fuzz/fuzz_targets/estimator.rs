@@ -91,7 +91,7 @@ fuzz_target!(|events: Vec<Event>| {
             Event::Wait(time) => now += u64::from(time),
         }
         let health = estimator.health(now);
-        if let Some(estimated) = estimator.state(now) {
+        if let Some(estimated) = conditioner.newest().and_then(|newest| estimator.state(now, &newest.value.angular_velocity)) {
             let state = &estimated.state;
             let numbers = [state.position, state.velocity, state.angular_velocity, estimated.acceleration];
             assert!(numbers.iter().all(|vector| vector.iter().all(|x| x.is_finite())), "{state:?} {health:?}");

@@ -101,7 +101,9 @@ impl Estimation {
     /// # Errors
     /// [`NoEstimate`].
     pub fn told(&mut self) -> Result<(State, bool), NoEstimate> {
-        let Some(estimated) = self.estimator.state(self.clock) else {
+        let newest = self.conditioner.newest();
+        let estimated = newest.and_then(|newest| self.estimator.state(self.clock, &newest.value.angular_velocity));
+        let Some(estimated) = estimated else {
             return Err(NoEstimate(self.estimator.health(self.clock).faults.worst()));
         };
         let jumped = estimated.jumps != self.jumps;

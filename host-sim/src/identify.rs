@@ -31,11 +31,11 @@ pub mod trials;
 pub mod ulog;
 
 use bench::Bench;
-use controller_core::imu::INCREMENT;
 use flight_log::{FlightLog, Source};
 use model::Model;
 use quantities::Quantities;
 use scenario::Scenario;
+use scenario::reality::estimator::IMU_RATE;
 
 /// What `log` and `bench` say of the vehicle whose model is `scenario`'s.
 ///
@@ -49,11 +49,11 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
     Quantities::combined(&fit, bench, configuration.vehicle(), late(log, scenario))
 }
 
-/// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a whole increment of the IMU, besides the
-/// low-pass that [`impulses`] knows.
+/// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a sample of the IMU, besides the
+/// low-passes that [`impulses`] knows.
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
-        Source::Estimator => INCREMENT as f64 * 1e-6,
+        Source::Estimator => 1.0 / IMU_RATE,
         Source::Sensors => scenario.input_delay(),
         Source::Truth => 0.0,
     }

@@ -10,7 +10,7 @@
 //! an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or changes in what they say.
 //! SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
 
-use crate::instruments::{Instruments, SAMPLE};
+use crate::instruments::{Felt, Instruments, SAMPLE};
 use crate::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use controller_core::certificate::certified::{Certified, Refused};
@@ -52,6 +52,11 @@ impl Place {
 pub trait Meddler {
     /// What becomes of the vehicle a millisecond on, at `time`, us, before its sensors look.
     fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
+
+    /// What the IMU feels at `time`, us, of what the body does.
+    fn feel(&mut self, felt: Felt, _time: u64) -> Felt {
+        felt
+    }
 
     /// What becomes of an IMU's sample that was taken at `time`, us; none: it does not come.
     fn sample(&mut self, sample: ImuSample, _time: u64) -> Option<ImuSample> {
@@ -117,6 +122,7 @@ pub struct PilotedVehicle<'m> {
     /// The part of its thrust that each rotor is left with.
     left: [f32; MOTORS],
     increments: Vec<Increment>,
+    body_rate: Option<Stamped<Vector3<f32>>>,
     poses: Vec<Stamped<PoseMeasurement>>,
 }
 
@@ -156,11 +162,12 @@ impl<'m> PilotedVehicle<'m> {
             acting: MotorCommand::Stop,
             left: [1.0; MOTORS],
             increments: Vec::new(),
+            body_rate: None,
             poses: Vec::new(),
         })
     }
 
-    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments and poses of that are
+    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments, body rate and poses of that are
     /// replaced by the vehicle's own. With what it decided comes what the motors are told from now on.
     ///
     /// # Errors
@@ -175,7 +182,13 @@ impl<'m> PilotedVehicle<'m> {
         for _ in 0..PERIOD / SAMPLE {
             self.pass(meddler)?;
         }
-        let inputs = Inputs { now: self.now, increments: &self.increments, poses: &self.poses, ..*given };
+        let inputs = Inputs {
+            now: self.now,
+            increments: &self.increments,
+            body_rate: self.body_rate,
+            poses: &self.poses,
+            ..*given
+        };
         let outcome = self.pilot.tick(&inputs);
         let command = self.outputs.command(&outcome.output, 1.0, IDLE);
         self.waiting.push_back((self.now + self.delay, command));
@@ -193,13 +206,16 @@ impl<'m> PilotedVehicle<'m> {
         }
         self.now += SAMPLE;
         meddler.act(&mut self.vehicle, self.now);
-        let sample = self.instruments.sample(self.vehicle.state(), self.now);
+        let sample = self.instruments.sample_of(self.vehicle.state(), self.now, |felt| meddler.feel(felt, self.now));
         if let Some(sample) = meddler.sample(sample, self.now) {
             let force = Some(&sample.specific_force);
             let taken = self.conditioner.sample(self.now, &sample.angular_velocity, force);
             // As the firmware's IMU task has it: a gyro that is stuck is none.
             let is_stuck = taken.fault == Some(ImuFault::GyroStuck);
-            self.increments.extend(taken.increment.filter(|_| !is_stuck));
+            if !is_stuck {
+                self.increments.extend(taken.increment);
+                self.body_rate = self.conditioner.newest().map(|newest| newest.map(|sample| sample.angular_velocity));
+            }
         }
         while let Some(pose) = self.instruments.arrived() {
             self.poses.extend(meddler.pose(pose, self.now));

@@ -7,6 +7,7 @@ use controller_core::estimator::filter::Filter;
 use controller_core::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
 use controller_core::flight::Stamped;
 use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use controller_core::state::State;
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
 use rand::Rng;
 use std::collections::VecDeque;
@@ -43,7 +44,7 @@ pub struct Shown {
 
 /// Flies `truth`, with poses of moments that `meddle` may have changed.
 pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, random: &mut impl Rng) -> Shown {
-    let mut conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).unwrap();
+    let mut conditioner = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE).unwrap();
     let mut estimator = Box::new(Estimator::new(&Settings::new(parameters).unwrap()));
     let mut imu = Imu::new(random);
     let mut biases = VecDeque::new();
@@ -70,7 +71,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
         if n < truth.counts_from {
             continue;
         }
-        let error = error(&estimator, moment, now);
+        let error = error(estimator.state(now, &rate).unwrap().state, moment);
         if n <= silent_from {
             if n % 500 == 0 {
                 shown.nees.push(nees(estimator.filter().unwrap(), then, &biases[0]));
@@ -88,8 +89,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
 }
 
 /// What the law would be told, less what is.
-fn error(estimator: &Estimator, moment: &Moment, now: u64) -> TickError {
-    let state = estimator.state(now).unwrap().state;
+fn error(state: State, moment: &Moment) -> TickError {
     let attitude = UnitQuaternion::new_normalize(state.attitude.cast::<f64>());
     TickError {
         position: (state.position.cast::<f64>() - moment.position).norm_squared(),

@@ -10,7 +10,7 @@ use mavlink::dialects::common::MavResult;
 const TICK: u64 = 10_000;
 
 /// How old a sample may be, us.
-const IMU_AGE_MAX: u64 = 20_000;
+const IMU_AGE_MAX: u64 = 22_000;
 
 #[test]
 fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_told_of_once() {

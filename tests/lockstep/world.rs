@@ -210,7 +210,7 @@ impl Imu for SimImu {
     }
 
     fn parameters(&self) -> ImuParameters {
-        ImuParameters::BMI088
+        ImuParameters::PROMPT
     }
 
     fn is_polled(&self) -> bool {

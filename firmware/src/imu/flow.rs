@@ -10,7 +10,6 @@
 use crate::hardware::RawImu;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::error::ParameterError;
-use controller_core::estimator::Increment;
 use controller_core::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
@@ -45,7 +44,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     /// # Errors
     /// None: the parameters are good.
     pub fn simulated(shared: &'a Shared<M>) -> Result<Self, ParameterError> {
-        Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::BMI088, &Calibration::NONE)? })
+        Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::PROMPT, &Calibration::NONE)? })
     }
 
     /// Corrects samples in another way from now on.
@@ -65,7 +64,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     pub fn take(&mut self, raw: &RawImu) {
         let before = self.conditioner.newest().map(|newest| newest.time);
         let force = raw.specific_force.as_ref();
-        let Conditioned { mut increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);
+        let Conditioned { increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);
         if let Some(fault) = fault {
             self.tell(fault, raw.time);
         }
@@ -78,7 +77,6 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         let is_slow = before.is_some_and(|before| raw.time - before >= INCREMENT);
         if self.is_simulated && is_slow {
             sample.angular_velocity = raw.angular_velocity;
-            increment = increment.map(|one| Increment { angular_velocity: raw.angular_velocity, ..one });
         }
         self.shared.imu.put(sample, newest.time);
         if let Some(increment) = increment {

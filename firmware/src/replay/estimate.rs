@@ -4,7 +4,7 @@
 //! force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
 
 use super::{PERIOD_US, RECORD, digest, state};
-use controller_core::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings};
+use controller_core::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use controller_core::flight::{Pose, Stamped, Velocity};
 use controller_core::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
@@ -35,7 +35,7 @@ impl Estimate {
     pub fn new() -> Option<Self> {
         let parameters = EstimatorParameters::BMI088;
         Some(Self {
-            conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).ok()?,
+            conditioner: Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE).ok()?,
             estimator: Estimator::new(&Settings::new(&parameters).ok()?),
             gravity: parameters.gravity,
             last: None,
@@ -62,7 +62,7 @@ impl Estimate {
             let taken = self.estimator.pose(&pose, self.now).is_ok();
             self.hash.update([u8::from(taken)]);
         }
-        if let Some(estimated) = self.estimator.state(self.now) {
+        if let Some(estimated) = self.estimated() {
             let State { position, velocity, attitude, angular_velocity } = estimated.state;
             self.add(position.as_slice());
             self.add(velocity.as_slice());
@@ -71,6 +71,10 @@ impl Estimate {
         }
         let (position, velocity, attitude) = self.estimator.health(self.now).deviations;
         self.add(&[position, velocity, attitude]);
+    }
+
+    fn estimated(&self) -> Option<EstimatedState> {
+        self.estimator.state(self.now, &self.conditioner.newest()?.value.angular_velocity)
     }
 
     /// The samples between two states.
@@ -96,6 +100,6 @@ impl Estimate {
     /// The number, as 64 hexadecimal digits; none if there has been no estimate at the end.
     #[must_use]
     pub fn digest(self) -> Option<heapless::String<64>> {
-        self.estimator.state(self.now).map(|_| digest(self.hash))
+        self.estimated().map(|_| digest(self.hash))
     }
 }

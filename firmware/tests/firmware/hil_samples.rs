@@ -84,7 +84,7 @@ impl Imu for Real<'_> {
     }
 
     fn parameters(&self) -> ImuParameters {
-        ImuParameters::BMI088
+        ImuParameters::PROMPT
     }
 
     fn is_polled(&self) -> bool {

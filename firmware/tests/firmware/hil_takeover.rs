@@ -27,7 +27,7 @@ impl Imu for Steady<'_> {
     }
 
     fn parameters(&self) -> ImuParameters {
-        ImuParameters::BMI088
+        ImuParameters::PROMPT
     }
 
     fn is_polled(&self) -> bool {
@@ -92,7 +92,6 @@ pub fn increment(now: u64) -> Increment {
         end: now,
         delta_angle: Vector3::zeros(),
         delta_velocity: Vector3::z() * 9.81 * 0.005,
-        angular_velocity: Vector3::zeros(),
         clipped: Clipped::NEITHER,
     }
 }

@@ -43,7 +43,7 @@ impl Imu for Sensor<'_> {
     }
 
     fn parameters(&self) -> ImuParameters {
-        ImuParameters::BMI088
+        ImuParameters::PROMPT
     }
 
     fn is_polled(&self) -> bool {

@@ -1,11 +1,10 @@
 use super::*;
-use controller_core::imu::INCREMENT;
 use nalgebra::{Quaternion, Vector3};
 
 #[test]
 fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
     const ACCELERATION: f64 = 1.0;
-    let text = format!("{}\n[estimator]\n", scenario::STUDY);
+    let text = format!("{}\n[estimator]\nimu_noise = 0.0\n", scenario::STUDY);
     let mut scenario = Scenario::parse(&text, "a test").unwrap();
     let turning = |seconds: f64| {
         let (sin, cos) = (0.25 * ACCELERATION * seconds * seconds).sin_cos();
@@ -29,7 +28,8 @@ fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
         }
     }
     let (late, counted) = (late / count, scenario.input_delay());
-    assert!(late < counted && late > counted - INCREMENT as f64 * 1e-6, "{late} s of {counted} s");
-    // More than the low-pass alone: this is what was missed once.
-    assert!(late > 6e-3, "{late}");
+    // Sampled at the ticks they are a sample less late than they may be; the estimator takes a tenth of a millisecond for a bias.
+    assert!(late < counted && late > counted - 1.25e-3, "{late} s of {counted} s");
+    // By the sensor's own filter as well: this is what was missed once.
+    assert!(late > 5e-3, "{late}");
 }

@@ -1,7 +1,7 @@
 //! What the vehicle's sensors say of the period that a command began.
 //!
 //! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses that arrive
-//! within the period, late and noisy. Elsewhere the sensors are exact: one sample and one pose, of the period's end. `[sensors]`
+//! within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end. `[sensors]`
 //! is not for here: it describes what a law is told that has no estimator.
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
@@ -31,7 +31,7 @@ impl Senses {
         let instruments = scenario.reality.estimator.map(|what| {
             let believed = what.believed(gravity);
             let deviations = (believed.position_noise, believed.attitude_noise);
-            (Instruments::new(&what, gravity.into(), Vector3::zeros(), 0), deviations)
+            (Instruments::new(&what, gravity.into(), Vector3::zeros(), 0).prompt(), deviations)
         });
         Self { period: scenario.timing.period_us, instruments }
     }

@@ -11,7 +11,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 /// How the state came about that a vehicle was told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// By the estimator: body rates are late by the low-pass of the gyro.
+    /// By the estimator: body rates are late by the low-passes of the gyro.
     Estimator,
     /// By a scenario's `[sensors]`.
     Sensors,

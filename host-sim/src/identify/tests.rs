@@ -122,7 +122,7 @@ fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
     let thrusts: Vec<_> = log.moments.iter().map(|moment| mixer.allocate(&moment.asked).unwrap().thrusts).collect();
     let (steps, late) = ((log.period / STEP).round() as usize, (delay / STEP).round() as usize);
     // The gyro's, at 1 kHz.
-    let mut low_pass = LowPass::new(60.0, 100.0, 1e3);
+    let (mut own, mut ours) = (LowPass::new(116.0, 500.0, 1e3), LowPass::new(60.0, 100.0, 1e3));
     let sample = (1e-3 / STEP).round() as usize;
     for (tick, impulse) in impulses.iter().enumerate() {
         let (mut thrust, mut torque, mut sampled) = (0.0, Vector3::zeros(), Vector3::zeros());
@@ -132,7 +132,7 @@ fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
             thrust += f * STEP;
             sampled += tau * STEP;
             if (step + 1) % sample == 0 {
-                torque += low_pass.take(&sampled.map(|torque: f64| torque as f32)).map(f64::from);
+                torque += ours.take(&own.take(&sampled.map(|torque: f64| torque as f32))).map(f64::from);
                 sampled = Vector3::zeros();
             }
         }

@@ -17,8 +17,8 @@ use toml_edit::{Array, DocumentMut, Table, value};
 /// The manoeuvre.
 pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
 
-/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most, s: the last whole
-/// increment of the IMU ended 4 ms ago, not 5 ms.
+/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most, s: the last sample of the
+/// IMU came now, not a millisecond ago.
 pub const RATES_YOUNGER: f64 = 0.001;
 
 /// What RotorPy says of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.

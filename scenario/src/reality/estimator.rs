@@ -19,8 +19,7 @@ use super::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use controller_core::estimator::EstimatorParameters;
-use controller_core::imu::low_pass::LowPass;
-use controller_core::imu::{INCREMENT, ImuParameters};
+use controller_core::imu::ImuParameters;
 
 /// Samples of the IMU each second.
 pub const IMU_RATE: f64 = 1e3;
@@ -88,11 +87,10 @@ impl Estimator {
     }
 }
 
-/// By how much the body rates that the law is told are late at most, s: by their low-pass, and by an increment that has just not ended.
+/// By how much the body rates that the law is told are late at most, s: [`ImuParameters::rates_late`].
 #[must_use]
 pub fn rates_delay() -> f64 {
-    let ImuParameters { cutoff, stopped, rate, .. } = ImuParameters::BMI088;
-    f64::from(LowPass::new(cutoff.into(), stopped.into(), rate.into()).delay()) + INCREMENT as f64 * 1e-6
+    ImuParameters::BMI088.rates_late().into()
 }
 
 /// Reads `[estimator]`.

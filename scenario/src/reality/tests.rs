@@ -278,7 +278,7 @@ fn an_estimator_has_defaults_and_its_delay_counts_in_the_loops() {
     assert_eq!((estimator.position_noise, estimator.attitude_noise), (1e-3, 0.3_f64.to_radians()));
     assert_eq!((estimator.dropout, estimator.outage, estimator.seed), (0.0, None, 0));
     assert!(plain.reality.is_model() && plain.reality.sections() == ["estimator"]);
-    assert!((8e-3..9e-3).contains(&plain.input_delay()), "{}", plain.input_delay());
+    assert!((6e-3..7e-3).contains(&plain.input_delay()), "{}", plain.input_delay());
     let roll = |scenario: &Scenario| scenario.loops().unwrap().reports()[0].margins.unwrap().delay;
     let lost = roll(&with("")) - roll(&plain);
     assert!((lost - plain.input_delay()).abs() < 1e-4, "{lost}");

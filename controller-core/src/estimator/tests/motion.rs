@@ -63,13 +63,7 @@ pub fn increment(path: Path, start: u64, end: u64, biases: &(Vector3<f64>, Vecto
     }
     let single = |vector: &Vector3<f64>| vector.map(|x| x as f32);
     let delta_angle = single(&turned.scaled_axis());
-    Increment {
-        start,
-        end,
-        delta_angle,
-        delta_velocity: single(&velocity),
-        clipped: Clipped::NEITHER,
-    }
+    Increment { start, end, delta_angle, delta_velocity: single(&velocity), clipped: Clipped::NEITHER }
 }
 
 /// The exact pose at a time, us, moved by an offset (m) and a turn on the left.

@@ -17,13 +17,8 @@ const SETTLING: u64 = 160;
 fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, Outcome) {
     let (now, zero) = (number * PERIOD, Vector3::zeros());
     let delta_velocity = Vector3::new(0.0, 0.0, 9.81 * PERIOD as f32 * 1e-6);
-    let increment = Increment {
-        start: now - PERIOD,
-        end: now,
-        delta_angle: zero,
-        delta_velocity,
-        clipped: Clipped::NEITHER,
-    };
+    let increment =
+        Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, clipped: Clipped::NEITHER };
     let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
     let body_rate = Some(Stamped { value: zero, time: now });

@@ -22,7 +22,7 @@ const RATE: f32 = 0.5;
 type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
 type Take = fn(&mut Estimator, &Increment);
 type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
-type Tell = fn(&Estimator, u64) -> Option<EstimatedState>;
+type Tell = fn(&Estimator, u64, &Vector3<f32>) -> Option<EstimatedState>;
 
 /// Every figure, as lines of the table; whether all could be measured.
 pub fn measure(counter: &Counter) -> bool {
@@ -54,7 +54,7 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies ten seconds, and prints what the poses cost; and `all` the rest if asked. False if a pose was not fused.
     fn fly(&mut self, stream: &Stream, all: bool) -> bool {
-        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE) else { return false };
+        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE) else { return false };
         *self.estimator = Estimator::new(&self.settings);
         let (sample, take): (Sample, Take) = (black_box(Conditioner::sample), black_box(Estimator::imu));
         let (fuse, tell): (Fuse, Tell) = (black_box(Estimator::pose), black_box(Estimator::state));
@@ -77,7 +77,7 @@ impl Flight<'_> {
                 Ok(_) => {}
                 Err(_) => return false,
             }
-            states.add(self.counter.short(|| black_box(tell(self.estimator, now))).0);
+            states.add(self.counter.short(|| black_box(tell(self.estimator, now, &rate))).0);
         }
         if all {
             samples.print("IMU sample");

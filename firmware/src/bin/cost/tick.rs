@@ -8,7 +8,9 @@ use crate::count::Cost;
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
-use controller_core::flight::{FlightSettings, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use controller_core::flight::{
+    FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
+};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::math;
 use controller_core::reference::Trajectory;
@@ -128,10 +130,11 @@ impl Body {
                 end,
                 delta_angle: (before.angular_velocity + self.state.angular_velocity) * (0.5 * seconds) + jitter,
                 delta_velocity: UnitQuaternion::new_unchecked(before.attitude).inverse() * gained,
-                angular_velocity: self.state.angular_velocity,
                 clipped: Clipped::NEITHER,
             });
         }
+        let sample = ImuSample { angular_velocity: self.state.angular_velocity, specific_force: Vector3::zeros() };
+        shared.imu.put(sample, now);
         self.past.rotate_left(1);
         if let Some(last) = self.past.last_mut() {
             *last = self.state;

@@ -2,7 +2,7 @@
 
 use super::receiver::Local;
 use controller_core::estimator::{Clipped, Increment, PoseMeasurement};
-use controller_core::flight::{Mode, PERIOD, Pose, Stamped, Velocity};
+use controller_core::flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::boot;
 use firmware::control::Control;
@@ -33,11 +33,12 @@ impl<'a> Desk<'a> {
                 end: start + PERIOD / 2,
                 delta_angle: zero,
                 delta_velocity: Vector3::new(0.0, 0.0, 9.81 * 5e-3),
-                angular_velocity: zero,
                 clipped: Clipped::NEITHER,
             });
         }
         self.now += PERIOD;
+        let sample = ImuSample { angular_velocity: zero, specific_force: Vector3::z() * 9.81 };
+        self.shared.imu.put(sample, self.now);
         let pose = Pose::new(zero, Velocity::World(zero), Quaternion::identity()).unwrap();
         self.shared.poses.put(Stamped { value: PoseMeasurement::new(&pose), time: self.now }).unwrap();
         self.control.tick(self.now)
