@@ -22,7 +22,7 @@
 //! counted in the margins of the sampled loops.
 //!
 //! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is over sooner than full scale
-//! is a fault, but its increment says so, for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`]
+//! is a fault, and the sensor's own filter hides its peak, but its increment says so, for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`]
 //! without samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so
 //! does the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
@@ -65,6 +65,9 @@ pub struct ImuParameters {
     pub gyro_range: f32,
     /// The accelerometer's full scale, m/s^2.
     pub accelerometer_range: f32,
+    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its full scale: its own filter
+    /// flattens a shock.
+    pub leap: f32,
     /// How late a sample is when it can be read, by the sensor's own filters, us.
     pub late: u64,
 }
@@ -73,23 +76,31 @@ impl ImuParameters {
     /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz that stops the rate of the ticks.
     ///
     /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order Butterworth
-    /// filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is not told apart.
+    /// filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is not told apart. From
+    /// rest to full scale within a millisecond it rises by 0.22 of that from one sample to the next, 52 m/s^2; some is left for shaking.
     pub const BMI088: Self = Self {
         rate: 1000.0,
         cutoff: 60.0,
         stopped: 100.0,
         gyro_range: 34.906_586,
         accelerometer_range: 235.36,
+        leap: 40.0,
         late: 1_940,
     };
 
     /// The same as simulators have it, without filters of its own.
-    pub const PROMPT: Self = Self { late: 0, ..Self::BMI088 };
+    pub const PROMPT: Self = Self { leap: f32::MAX, late: 0, ..Self::BMI088 };
 
     /// How late the law's body rates are at most, s, as long as they change slowly: by both filters, and by the time to the next sample.
     #[must_use]
     pub fn rates_late(&self) -> f32 {
         self.low_pass().delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
+    }
+
+    /// Where what it shows ends.
+    #[must_use]
+    pub fn ranges(&self) -> Ranges {
+        Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
     }
 
     /// The low-pass for the law's body rates.
@@ -132,6 +143,7 @@ impl Conditioner {
             (p.stopped, "imu.stopped"),
             (p.gyro_range, "imu.gyro_range"),
             (p.accelerometer_range, "imu.accelerometer_range"),
+            (p.leap, "imu.leap"),
         ] {
             require_positive(value, field)?;
         }
@@ -140,7 +152,7 @@ impl Conditioner {
         Ok(Self {
             late: p.late,
             calibration: *calibration,
-            watch: Watch::new(Ranges { gyro: p.gyro_range, accelerometer: p.accelerometer_range }),
+            watch: Watch::new(p.ranges()),
             low_pass: p.low_pass(),
             integrator: Integrator::EMPTY,
             newest: None,

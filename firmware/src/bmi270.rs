@@ -38,13 +38,15 @@ pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0
 /// m/s^2 in one count: 16 standard gravities in 2^15 counts.
 pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
 
-/// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth filter of 190 Hz.
+/// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth filter of 190 Hz, which rises
+/// by 0.27 of the full scale from one sample to the next.
 pub const PARAMETERS: ImuParameters = ImuParameters {
     rate: 800.0,
     cutoff: 60.0,
     stopped: 100.0,
     gyro_range: 34.906_586,
     accelerometer_range: 156.906_4,
+    leap: 33.0,
     late: 1_185,
 };
 

@@ -13,7 +13,7 @@
 //! ([`controller_core::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up anew.
 
 use crate::hardware::{Fault, Imu, RawImu, Unit};
-use controller_core::imu::watch::{Ranges, Watch};
+use controller_core::imu::watch::Watch;
 use controller_core::imu::{ImuFault, ImuParameters};
 
 /// Faults of the first in a row after which the second takes over: 10 ms at worst.
@@ -40,8 +40,7 @@ pub struct Redundant<First, Second> {
 impl<First: Imu, Second: Imu> Redundant<First, Second> {
     /// The first speaks.
     pub fn new(first: First, second: Second) -> Self {
-        let ImuParameters { gyro_range: gyro, accelerometer_range: accelerometer, .. } = first.parameters();
-        let watch = Watch::new(Ranges { gyro, accelerometer });
+        let watch = Watch::new(first.parameters().ranges());
         Self { first, second, unit: Unit::First, is_ready: false, watch, faults: 0, silent: 0 }
     }
 

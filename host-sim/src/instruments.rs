@@ -9,8 +9,8 @@
 //! 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
 //!
 //! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed decides
-//! everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor shows more than a BMI088's range: a hard
-//! touchdown's 50 g are 24 g to it.
+//! everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor feels or shows more than a BMI088's range: a hard
+//! touchdown's 50 g are 24 g to its filter, which makes 9 g of the millisecond that they last.
 
 use crate::sensors::{noise, single};
 use controller_core::estimator::EstimatorParameters;
@@ -149,11 +149,11 @@ impl Instruments {
         if (self.clock / SAMPLE).is_multiple_of(self.what.pose_every) {
             self.look(state, &attitude, time);
         }
-        let (mut rate, mut force) = (single(&rate), single(&force));
+        let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
+        let (mut rate, mut force) = (shown(&single(&rate), gyro_range), shown(&single(&force), accelerometer_range));
         if let Some([gyro, accelerometer]) = &mut self.filters {
             (rate, force) = (gyro.take(&rate), accelerometer.take(&force));
         }
-        let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
         ImuSample { angular_velocity: shown(&rate, gyro_range), specific_force: shown(&force, accelerometer_range) }
     }
 

@@ -2,6 +2,8 @@
 //!
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two triples in a
 //! row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the truth is beyond.
+//! So may a lesser one of the accelerometer that leaps: it is what the sensor's own filter
+//! leaves of a peak at full scale. Shaking is told from that by its slope, not by its size.
 
 use crate::estimator::Clipped;
 use nalgebra::Vector3;
@@ -58,6 +60,13 @@ pub struct Ranges {
     pub gyro: f32,
     /// The accelerometer's.
     pub accelerometer: f32,
+    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its range.
+    pub leap: f32,
+}
+
+/// Whether a component is at the end of a range.
+fn reaches(triple: &Vector3<f32>, range: f32) -> bool {
+    triple.iter().any(|component| component.abs() >= FULL_SCALE * range)
 }
 
 /// One of the two sensors.
@@ -75,8 +84,7 @@ impl Seen {
     fn see(&mut self, triple: &Vector3<f32>, range: f32) -> (bool, bool) {
         let count = |count: u8, more: bool| if more { count.saturating_add(1) } else { 0 };
         self.equal = count(self.equal, *triple == self.last);
-        let full_scale = FULL_SCALE * range;
-        self.saturated = count(self.saturated, triple.iter().any(|component| component.abs() >= full_scale));
+        self.saturated = count(self.saturated, reaches(triple, range));
         self.last = *triple;
         (self.equal >= STUCK_AFTER, self.saturated >= SATURATED_AFTER)
     }
@@ -88,19 +96,20 @@ pub struct Watch {
     ranges: Ranges,
     gyro: Seen,
     accelerometer: Seen,
+    leapt: bool,
 }
 
 impl Watch {
     /// Nothing seen yet.
     #[must_use]
     pub fn new(ranges: Ranges) -> Self {
-        Self { ranges, gyro: Seen::NOTHING, accelerometer: Seen::NOTHING }
+        Self { ranges, gyro: Seen::NOTHING, accelerometer: Seen::NOTHING, leapt: false }
     }
 
-    /// Which sensor was at full scale in the last sample that it gave.
+    /// Which sensor was at full scale in the last sample that it gave; the accelerometer maybe before its own filter.
     #[must_use]
     pub fn clipped(&self) -> Clipped {
-        Clipped { gyro: self.gyro.saturated > 0, accelerometer: self.accelerometer.saturated > 0 }
+        Clipped { gyro: self.gyro.saturated > 0, accelerometer: self.accelerometer.saturated > 0 || self.leapt }
     }
 
     /// The worst that can be said of the sensors, given one more sample, before calibration.
@@ -110,6 +119,8 @@ impl Watch {
             return Some(ImuFault::NotFinite);
         }
         let (gyro_stuck, gyro_saturated) = self.gyro.see(rate, self.ranges.gyro);
+        let last = self.accelerometer.last;
+        self.leapt = force.map_or(self.leapt, |force| reaches(&(force - last), self.ranges.leap));
         let (stuck, saturated) =
             force.map_or((false, false), |force| self.accelerometer.see(force, self.ranges.accelerometer));
         [

@@ -1,6 +1,7 @@
 use super::*;
+use crate::imu::low_pass::LowPass;
 
-const RANGES: Ranges = Ranges { gyro: 34.9, accelerometer: 235.0 };
+const RANGES: Ranges = Ranges { gyro: 34.9, accelerometer: 235.0, leap: 40.0 };
 
 /// Samples that jitter, as a sensor that works does.
 fn noisy(n: u32) -> (Vector3<f32>, Vector3<f32>) {
@@ -65,4 +66,29 @@ fn what_is_missing_or_no_number_is_said() {
 #[test]
 fn every_fault_fits_a_status_text() {
     assert!(ImuFault::ALL.iter().all(|fault| fault.text().len() <= crate::flight::reason::TEXT_MAX));
+}
+
+#[test]
+fn a_shock_is_told_by_its_leap_behind_the_sensors_own_filter_and_shaking_is_none() {
+    // What 145 Hz leave of a millisecond at full scale, and of one at three fifths of it.
+    for (felt, told) in [(235.0, true), (0.6 * 235.0, false)] {
+        let mut own = LowPass::new(145.0, 500.0, 1000.0);
+        let mut watch = Watch::new(RANGES);
+        let mut clipped = 0;
+        for n in 0..50 {
+            let (rate, force) = noisy(n);
+            let shown = own.take(&(force + Vector3::z() * if n == 20 { felt } else { 0.0 }));
+            assert_eq!(watch.see(&rate, Some(&shown)), None);
+            assert!(shown.norm() < 100.0);
+            clipped += u32::from(watch.clipped().accelerometer);
+        }
+        assert_eq!(clipped > 0, told, "{felt} m/s^2");
+    }
+    let mut watch = Watch::new(RANGES);
+    for n in 0..1_000 {
+        let (rate, force) = noisy(n);
+        let shaken = force + Vector3::x() * (60.0 * (n as f32 * 0.15 * core::f32::consts::PI).sin());
+        assert_eq!(watch.see(&rate, Some(&shaken)), None);
+        assert_eq!(watch.clipped(), Clipped::NEITHER, "{n}");
+    }
 }
