@@ -193,7 +193,7 @@ impl Estimator {
             start: last.end,
             end: last.end + ahead,
             delta_angle: last.delta_angle * (seconds / last.seconds()),
-            delta_velocity: force * seconds,
+            delta_velocity: self.history.slow_force() * seconds,
             ..*last
         };
         let (mut nominal, gravity) = (*latest, self.settings.parameters().gravity);
