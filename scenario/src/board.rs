@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn what_flies_on_a_desk_and_not_with_a_boards_late_rates_is_not_built() {
-        let lags = (30..60).map(|lag| format!("lag = 0.0{lag} "));
+        let lags = (30..90).map(|lag| format!("lag = 0.0{lag} "));
         let late = lags.filter(|lag| {
             let text = STUDY.replace("lag = 0.030 ", lag);
             let verdict = Verdict::of(&Scenario::parse(&text, "a test").unwrap()).unwrap();
