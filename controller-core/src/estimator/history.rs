@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 pub const EXTRAPOLATION_MAX: u64 = 22_000;
 
 /// How long the slow force is averaged over, s.
-const SLOW: f32 = 0.1;
+const SLOW: f32 = 0.05;
 
 /// Increments that are kept: 320 ms of them at 5 ms.
 pub const CAPACITY: usize = 64;
@@ -141,7 +141,7 @@ impl History {
         if self.increments.is_full() { self.increments.front() } else { None }
     }
 
-    /// The specific force averaged over a tenth of a second, m/s^2, in the body frame at the end of the newest increment.
+    /// The specific force averaged over a twentieth of a second, m/s^2, in the body frame at the end of the newest increment.
     pub fn slow_force(&self) -> &Vector3<f32> {
         &self.slow_force
     }

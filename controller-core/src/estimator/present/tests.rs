@@ -37,7 +37,7 @@ fn a_shaken_body_moves_and_accelerates_as_the_table_says() {
 }
 
 #[test]
-fn of_a_shaking_the_slow_force_keeps_less_than_a_fifteenth() {
+fn of_a_shaking_the_slow_force_keeps_less_than_a_twentieth() {
     for frequency in [70.0, 100.0, 130.0] {
         let speed = |time: u64| libm::sinf(TAU * frequency * time as f32 * 1e-6 + 0.5);
         let (mut slow, mut most) = (None, 0.0_f32);
@@ -46,7 +46,7 @@ fn of_a_shaking_the_slow_force_keeps_less_than_a_fifteenth() {
             slow = Some(slow_force(slow.as_ref(), &increment(start, push, Vector3::zeros())));
             most = if start > 1_000_000 { most.max(slow.unwrap().x.abs()) } else { 0.0 };
         }
-        assert!(most < TAU * frequency / 15.0, "{frequency} Hz: {most}");
+        assert!(most < TAU * frequency / 20.0, "{frequency} Hz: {most}");
     }
 }
 
@@ -62,10 +62,10 @@ fn a_steady_acceleration_shakes_nothing_and_is_told_in_full() {
 }
 
 #[test]
-fn a_force_that_begins_is_known_to_nine_tenths_after_a_quarter_of_a_second() {
+fn a_force_that_begins_is_known_to_nine_tenths_after_an_eighth_of_a_second() {
     let push = Vector3::z() * 5e-3;
     let begins = slow_force(None, &increment(0, Vector3::zeros(), Vector3::zeros()));
-    let known = (0..48).fold(begins, |slow, _| slow_force(Some(&slow), &increment(0, push, Vector3::zeros())));
+    let known = (0..24).fold(begins, |slow, _| slow_force(Some(&slow), &increment(0, push, Vector3::zeros())));
     assert!((0.9..0.93).contains(&known.z), "{known}");
 }
 
