@@ -5,6 +5,7 @@
 //! | [`flight_log`], [`ulog`] | what the vehicle knew in flight, from log.csv or from the firmware's recorder |
 //! | [`impulses`] | what the model's rotors gave between ticks, with a lag and a delay |
 //! | [`model`] | the rigid body that the log is held against |
+//! | [`hubs`] | what the air does at the rotors |
 //! | [`noise`] | what is left, made white |
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
@@ -20,6 +21,7 @@ pub mod bench;
 pub mod command;
 pub mod fit;
 pub mod flight_log;
+pub mod hubs;
 pub mod impulses;
 pub mod margins;
 pub mod model;

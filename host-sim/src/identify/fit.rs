@@ -36,6 +36,8 @@ const NOISE_STEPS: usize = 8;
 const MORE_NOISE_STEPS: usize = 20;
 /// The least part of a step that is taken.
 const SHORTEST_SHARE: f64 = 0.125;
+/// The longest step for an unknown, in what it may be off at the start: longer ones, from a start that is far off, end where no vehicle is.
+const LONGEST: f64 = 0.5;
 /// A step that ends the search, in standard uncertainties.
 const SETTLED: f64 = 0.1;
 
@@ -127,7 +129,8 @@ pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String>
         let turned = (0..UNKNOWNS).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
         share = if turned { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
         (last, is_near) = (moved, within(1.0));
-        unknowns += moved * share;
+        let widest = moved.component_div(&wide).amax();
+        unknowns += moved * f64::min(share, LONGEST / widest);
         let impulses = model.impulses(&unknowns);
         let left = seen(model.left(&unknowns, &impulses, &felt));
         let gusts = from_fn(|axis| {

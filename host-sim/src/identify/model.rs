@@ -5,21 +5,21 @@
 //! that moves steadily with w across:
 //!
 //! ```text
-//! v_c' = (c/m) f R e3 - g e3 - R diag(D/m) R' V + b                   v_c = v + R (omega x r_c)
+//! v_c' = ((c/m) f + l) R e3 - g e3 - R diag(D/m) R' V + b             v_c = v + R (omega x r_c)
 //! omega_i' = (c/J_i) (tau + a - r_c x h)_i + ((J_j - J_k)/J_i) omega_j omega_k - beta_i omega_i + e_i
-//! h = (m/c) R' (v_c' + g e3)                                           all forces act at the body's origin, but for
-//! a = gamma_d (tau_xy . V_b) e3 - gamma_z V_bz tau_xy + lambda J_0x omega_z V_bxy           V_b = R' V: what the air does at the hubs
+//! h = (m/c) R' (v_c' + g e3)                                           all forces act at the body's origin
+//! A = R' b - diag(D/m) R' V                                            but what the air does, for which a makes up
 //! ```
 //!
 //! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever share of it drag has: in h it
 //! is held while the unknowns move, and torques tell nothing of drag or thrust that forces do not. beta, and e about z alone, are what rotors in the air and unequal
-//! rotors may add: found, not reported. So is a: a rotor's drag goes with its own speed, so that rotors which turn unlike each other to tilt the vehicle are dragged unlike
-//! each other, and a rotor that moves into the wind as the vehicle yaws is lifted more than the one across from it (the equations of [`crate::reality::air`]). A steady torque about x or y is a centre of mass beside the origin: no flight near
+//! rotors may add: found, not reported. So are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is a centre of mass beside the origin: no flight near
 //! hover tells them apart. A steady vertical force is thrust: none is supposed.
 //!
 //! Both sides are integrated from tick to tick, never differentiated. What is left is the state told less the integral.
 
 use super::flight_log::{FlightLog, Moment};
+use super::hubs::{Hubs, Layout};
 use super::impulses::{Commands, Impulse};
 use controller_core::certificate::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
@@ -27,7 +27,7 @@ use nalgebra::{SVector, Vector3};
 /// How many unknowns there are.
 pub const UNKNOWNS: usize = 20;
 
-/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; gamma, s/m; lambda, 1/m.
+/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; gamma_z, gamma_d, s^2/m; lambda, 1/m.
 pub const STRENGTH: usize = 0;
 /// About x; y and z follow.
 pub const TURNING: usize = 1;
@@ -42,7 +42,7 @@ pub const DRAG: usize = 8;
 const WIND: usize = 11;
 const DAMPING: usize = 13;
 const YAWING: usize = 16;
-/// gamma_z, gamma_d, lambda.
+/// gamma_z; gamma_d and lambda follow.
 const HUBS: usize = 17;
 
 /// All unknowns.
@@ -66,6 +66,7 @@ pub struct Model<'a> {
     mass: f64,
     inertia: Vector3<f64>,
     gravity: f64,
+    layout: Layout,
     first: usize,
 }
 
@@ -75,7 +76,7 @@ pub struct Model<'a> {
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let wide =
-        [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 0.05, 0.03, 0.1];
+        [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 0.1, 0.1, 0.01];
     (start.into(), wide.into())
 }
 
@@ -91,6 +92,7 @@ impl<'a> Model<'a> {
             mass: vehicle.mass.into(),
             inertia: vehicle.inertia.map(f64::from),
             gravity: vehicle.gravity.into(),
+            layout: Layout::of(rotors),
             first: (UNKNOWN_START / log.period).round() as usize,
         })
     }
@@ -101,14 +103,12 @@ impl<'a> Model<'a> {
         self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
     }
 
-    /// What is left of each channel: told less integrated. `felt` is R' (v_c' + g e3) over each sample, m/s, body, as [`Self::felt`] has
-    /// it.
+    /// What is left of each channel: told less integrated. `felt` is as [`Self::felt`] has it.
     #[must_use]
-    pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Vector3<f64>]) -> Channels {
-        let Numbers { strength, turning, drag, centre, wind } = self.numbers(unknowns);
+    pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Felt]) -> Channels {
+        let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
         let damping = three(unknowns, DAMPING);
         let yawing = Vector3::new(0.0, 0.0, unknowns[YAWING]);
-        let hubs = Hubs { along: unknowns[HUBS], across: unknowns[HUBS + 1], lift: unknowns[HUBS + 2] };
         let of_one = turning.map(|turning| 1.0 / turning);
         let coupling = Vector3::new(of_one.y - of_one.z, of_one.z - of_one.x, of_one.x - of_one.y);
         let period = self.log.period;
@@ -126,11 +126,13 @@ impl<'a> Model<'a> {
             let up = (now.attitude * Vector3::z() + next.attitude * Vector3::z()) * 0.5;
             let airspeed = airspeed(pair, &wind);
             let dragged = now.attitude * -drag.component_mul(&airspeed);
-            velocity += up * (strength * impulse.thrust) + (dragged - Vector3::z() * self.gravity) * period;
-            let felt = felt.get(sample).copied().unwrap_or_else(|| Vector3::z() * (self.gravity * period));
+            let lifted = hubs.lifted(&self.layout, &airspeed) * period;
+            velocity += up * (strength * impulse.thrust + lifted) + (dragged - Vector3::z() * self.gravity) * period;
+            let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::calm(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
-            let at_hubs = hubs.of(impulse, &airspeed, omega.z * self.inertia.x * period);
-            let torque = impulse.torque + at_hubs - centre.cross(&(felt / strength));
+            let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
+                + hubs.unlike(impulse, &(felt.air / period));
+            let torque = impulse.torque + at_hubs - centre.cross(&(felt.whole / strength));
             let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
             rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));
             rates += (yawing - damping.component_mul(&omega)) * period;
@@ -140,13 +142,15 @@ impl<'a> Model<'a> {
 
     /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's axes.
     #[must_use]
-    pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Vector3<f64>> {
-        let Numbers { strength, drag, wind, .. } = self.numbers(unknowns);
+    pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Felt> {
+        let Numbers { strength, drag, wind, hubs, .. } = self.numbers(unknowns);
         let feel = |(sample, (pair, impulse)): (usize, (&[Moment], &Impulse))| {
             let gust = Vector3::from_fn(|axis, _| gusts[axis].get(sample).copied().unwrap_or(0.0));
             let gust = pair[0].attitude.inverse_transform_vector(&gust);
-            let dragged = -drag.component_mul(&airspeed(pair, &wind));
-            Vector3::z() * (strength * impulse.thrust) + (dragged + gust) * self.log.period
+            let airspeed = airspeed(pair, &wind);
+            let air = (gust - drag.component_mul(&airspeed)) * self.log.period;
+            let lifted = hubs.lifted(&self.layout, &airspeed) * self.log.period;
+            Felt { whole: Vector3::z() * (strength * impulse.thrust + lifted) + air, air }
         };
         self.steps(impulses).enumerate().map(feel).collect()
     }
@@ -184,6 +188,7 @@ impl<'a> Model<'a> {
             drag: three(unknowns, DRAG),
             centre: Vector3::new(unknowns[CENTRE], unknowns[CENTRE + 1], 0.0),
             wind: Vector3::new(unknowns[WIND], unknowns[WIND + 1], 0.0),
+            hubs: Hubs { along: unknowns[HUBS], across: unknowns[HUBS + 1], lift: unknowns[HUBS + 2] },
         }
     }
 }
@@ -195,6 +200,7 @@ struct Numbers {
     drag: Vector3<f64>,
     centre: Vector3<f64>,
     wind: Vector3<f64>,
+    hubs: Hubs,
 }
 
 fn three(unknowns: &Unknowns, at: usize) -> Vector3<f64> {
@@ -207,22 +213,18 @@ fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
     now.attitude.inverse_transform_vector(&((now.velocity + next.velocity) * 0.5 - wind))
 }
 
-/// What the air does at the rotors' hubs.
-struct Hubs {
-    /// gamma_z, s/m.
-    along: f64,
-    /// gamma_d, s/m.
-    across: f64,
-    /// lambda, 1/m.
-    lift: f64,
+/// What an accelerometer at the centre of mass feels over a sample, m/s, body.
+#[derive(Debug, Clone, Copy)]
+pub struct Felt {
+    /// R' (v_c' + g e3).
+    whole: Vector3<f64>,
+    /// A, of it what the air does.
+    air: Vector3<f64>,
 }
 
-impl Hubs {
-    /// Its impulse about the body's axes, N m s, at this airspeed, m/s; `turning` is J_0x omega_z over the sample.
-    fn of(&self, impulse: &Impulse, airspeed: &Vector3<f64>, turning: f64) -> Vector3<f64> {
-        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0);
-        let lifted = Vector3::new(airspeed.x, airspeed.y, 0.0) * (self.lift * turning);
-        let yawed = Vector3::z() * (self.across * tilting.dot(airspeed));
-        lifted + yawed - tilting * (self.along * airspeed.z)
+impl Felt {
+    /// A hover in still air.
+    fn calm(weight: f64) -> Self {
+        Self { whole: Vector3::z() * weight, air: Vector3::zeros() }
     }
 }

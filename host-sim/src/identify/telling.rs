@@ -2,7 +2,7 @@
 //!
 //! Three ways to be refused. A vehicle that was not *moved* is moved by its own noise alone, and noise that feeds back passes for knowledge:
 //! so body rates and speeds must have been there to begin with. A quantity whose interval is too wide is not known. And numbers that no one vehicle has
-//! are of none: bench and flight that contradict each other, rotors that are nothing like the file's.
+//! are of none: bench and flight that contradict each other, rotors that are nothing like the file's or answer before they are asked.
 
 use super::flight_log::FlightLog;
 use super::quantities::{COVERAGE, Quantities, Quantity};
@@ -80,6 +80,12 @@ pub fn unknown(told: &Quantities) -> Vec<String> {
              that mass and rotors are this vehicle's",
             short(scale)
         )];
+    }
+    if told.lag.interval[1] <= 0.0 {
+        return vec![
+            "lag: rotors would answer before they are asked: see that commands and body rates in the log are of the same ticks, or fly longer"
+                .to_owned(),
+        ];
     }
     let relative = |quantity: &Quantity| COVERAGE * quantity.uncertainty / quantity.value.abs();
     let absolute = |quantity: &Quantity| COVERAGE * quantity.uncertainty;
