@@ -20,7 +20,8 @@
 //! | 130 Hz | 0.21 | 0.20 | 0.03 |
 //!
 //! f must not carry the velocity on: in 6 ms it makes as much of it as the shaking itself is. Where the thrust changes within a twentieth of a second,
-//! v_calm is up to 12 ms late along it; across, R is that of now. The vertical loops bear five times as much. All d are turned into the frame at the end of the last increment, to first order in the turn.
+//! v_calm is up to 12 ms late along it; across, R is that of now. The vertical loops bear five times as much. All d are turned into the
+//! frame at the end of the last increment, to first order in the turn.
 
 use super::history::Increment;
 use nalgebra::Vector3;

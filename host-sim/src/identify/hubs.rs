@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! a = gamma_z A_z tau_xy - gamma_d (tau_xy . A) e3 - 2 (lambda m/c) omega_z sum (e3 x p_i)(e3 x p_i)' V_b        torque over c
-//! n lambda (V_bx^2 + V_by^2)                                                                            acceleration along e3
+//! l = n lambda (V_bx^2 + V_by^2)                                                       acceleration along e3
 //! ```
 //!
 //! *gamma*: a rotor's drag -w_i diag(k_d, k_d, k_z) V goes with its own speed, and rotors that tilt the vehicle, or hold a centre of mass that
@@ -54,7 +54,7 @@ pub struct Hubs {
 }
 
 impl Hubs {
-    /// n lambda |V_bxy|^2, m/s^2, at an airspeed in m/s.
+    /// l, m/s^2, at an airspeed in m/s.
     #[must_use]
     pub fn lifted(&self, layout: &Layout, airspeed: &Vector3<f64>) -> f64 {
         layout.count * self.lift * airspeed.xy().norm_squared()

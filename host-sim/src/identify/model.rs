@@ -126,8 +126,8 @@ impl<'a> Model<'a> {
             let up = (now.attitude * Vector3::z() + next.attitude * Vector3::z()) * 0.5;
             let airspeed = airspeed(pair, &wind);
             let dragged = now.attitude * -drag.component_mul(&airspeed);
-            let lifted = hubs.lifted(&self.layout, &airspeed) * period;
-            velocity += up * (strength * impulse.thrust + lifted) + (dragged - Vector3::z() * self.gravity) * period;
+            let carried = strength * impulse.thrust + hubs.lifted(&self.layout, &airspeed) * period;
+            velocity += up * carried + (dragged - Vector3::z() * self.gravity) * period;
             let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::calm(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
             let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
@@ -149,8 +149,8 @@ impl<'a> Model<'a> {
             let gust = pair[0].attitude.inverse_transform_vector(&gust);
             let airspeed = airspeed(pair, &wind);
             let air = (gust - drag.component_mul(&airspeed)) * self.log.period;
-            let lifted = hubs.lifted(&self.layout, &airspeed) * self.log.period;
-            Felt { whole: Vector3::z() * (strength * impulse.thrust + lifted) + air, air }
+            let carried = strength * impulse.thrust + hubs.lifted(&self.layout, &airspeed) * self.log.period;
+            Felt { whole: Vector3::z() * carried + air, air }
         };
         self.steps(impulses).enumerate().map(feel).collect()
     }

@@ -55,6 +55,12 @@ impl Noise {
                         Self { wander: (now.wander * factor).clamp(1e-3, 1e6), ..now },
                         Self { time: (now.time * factor).clamp(0.05, 20.0), ..now },
                         Self { walk: (now.walk * factor).clamp(1e-4, 1e3), ..now },
+                        // As much driven in a short time, for longer: along this the likelihood changes least.
+                        Self {
+                            wander: (now.wander * factor).clamp(1e-3, 1e6),
+                            time: (now.time * factor * factor).clamp(0.05, 20.0),
+                            ..now
+                        },
                     ];
                     for noise in tried {
                         let cost = noise.cost(residuals, period);

@@ -42,29 +42,33 @@ fn hover() -> String {
 #[test]
 fn four_vehicles_are_found_within_what_is_stated() {
     // Vehicles that are told rightly. How many of a hundred are not, the example `identify_coverage` counts.
-    each_is_found(Drag::Whole, [(HUMMINGBIRD, 1, None), (HUMMINGBIRD, 3, None), (STUDY, 1, None), (STUDY, 3, None)]);
+    each_is_found(
+        Drag::Whole,
+        0.05,
+        [(HUMMINGBIRD, 1, None), (HUMMINGBIRD, 3, None), (STUDY, 1, None), (STUDY, 3, None)],
+    );
 }
 
 #[test]
 fn vehicles_are_found_from_a_start_that_is_far_off() {
-    // With whole steps the search ends elsewhere, or not at all.
-    each_is_found(Drag::Whole, [(HUMMINGBIRD, 13, None), (STUDY, 15, None), (STUDY, 68, None)]);
+    // With whole steps the search ends elsewhere, or not at all. The first and the last fly in much wind.
+    each_is_found(Drag::Whole, 0.2, [(HUMMINGBIRD, 13, None), (STUDY, 15, None), (STUDY, 68, None)]);
 }
 
 #[test]
 fn vehicles_whose_rotors_the_air_pulls_at_are_found_though_their_centre_of_mass_is_off() {
     // By 5.6 and 5.8 mm, in gusts.
-    each_is_found(Drag::AtHubs, [(HUMMINGBIRD, 11, None), (HUMMINGBIRD, 15, None)]);
+    each_is_found(Drag::AtHubs, 0.1, [(HUMMINGBIRD, 11, None), (HUMMINGBIRD, 15, None)]);
 }
 
 #[test]
 fn vehicles_that_act_without_delay_are_found_within_what_is_stated() {
     // Their lag is more than lag and delay together come to, less what is counted for the rates.
-    each_is_found(Drag::Whole, [(HUMMINGBIRD, 1, Some(0.0)), (HUMMINGBIRD, 2, Some(0.0)), (STUDY, 1, Some(0.0))]);
+    each_is_found(Drag::Whole, 0.05, [(HUMMINGBIRD, 1, Some(0.0)), (HUMMINGBIRD, 2, Some(0.0)), (STUDY, 1, Some(0.0))]);
 }
 
-/// Vehicles like a file's, by seed and delay.
-fn each_is_found<const N: usize>(drag: Drag, runs: [(&str, u64, Option<f64>); N]) {
+/// Vehicles like a file's, by seed and delay, their inertia to so much of it.
+fn each_is_found<const N: usize>(drag: Drag, known: f64, runs: [(&str, u64, Option<f64>); N]) {
     runs.into_par_iter().for_each(|(file, seed, delay)| {
         let trial = Trial::flown(file, seed, drag, delay).unwrap();
         let log = FlightLog::from_csv(&trial.log).unwrap();
@@ -76,11 +80,7 @@ fn each_is_found<const N: usize>(drag: Drag, runs: [(&str, u64, Option<f64>); N]
         }
         // An interval that says nothing is no knowledge.
         let j = &told.inertia[0];
-        assert!(COVERAGE * j.uncertainty < 0.2 * j.value, "{j:?}");
-        // Rotors that answer before they are asked are no vehicle's.
-        let mut early = told.clone();
-        early.lag.interval = [0.0, 0.0];
-        assert!(telling::unknown(&early)[0].starts_with("lag: rotors would answer"));
+        assert!(COVERAGE * j.uncertainty < known * j.value, "{j:?}");
     });
 }
 

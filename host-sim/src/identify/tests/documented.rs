@@ -58,6 +58,14 @@ fn a_bench_that_contradicts_the_flight_is_refused_by_the_entry_that_deviates_mos
 }
 
 #[test]
+fn rotors_that_answer_before_they_are_asked_make_no_vehicle() {
+    let mut early = told("");
+    assert_eq!(telling::unknown(&early), Vec::<String>::new());
+    early.lag.interval = [0.0, 0.0];
+    assert!(telling::unknown(&early)[0].starts_with("lag: rotors would answer"));
+}
+
+#[test]
 fn thrust_that_nobody_asked_for_makes_no_vehicle() {
     let mut log = FLOWN.clone();
     log.moments.iter_mut().for_each(|moment| moment.asked.thrust = 0.0);
