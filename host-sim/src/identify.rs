@@ -3,6 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`flight_log`], [`ulog`] | what the vehicle knew in flight, from log.csv or from the firmware's recorder |
+//! | [`low_passes`] | what its body rates went through before, and the gyro's noise with them |
 //! | [`impulses`] | what the model's rotors gave between ticks, with a lag and a delay |
 //! | [`model`] | the rigid body that the log is held against |
 //! | [`hubs`] | what the air does at the rotors |
@@ -23,6 +24,7 @@ pub mod fit;
 pub mod flight_log;
 pub mod hubs;
 pub mod impulses;
+pub mod low_passes;
 pub mod margins;
 pub mod model;
 pub mod noise;
@@ -52,7 +54,7 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
 }
 
 /// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a sample of the IMU, besides the
-/// low-passes that [`impulses`] knows.
+/// [`low_passes`].
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
         Source::Estimator => 1.0 / IMU_RATE,

@@ -15,6 +15,7 @@
 //! summed over G blocks, times (G - 1) / G. It counts in full what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because
 //! a block pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
 //!
+//! Body rates are looked at as what their low-passes leave that is new at each tick ([`super::low_passes`]).
 //! Velocities are looked at ten times a second only. What they know, thrust over mass, drag and wind, is slow, and an estimator that carries
 //! them on between its own updates leaves marks from tick to tick that are no motion.
 
@@ -74,7 +75,10 @@ pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String>
     let every: [usize; CHANNELS] = from_fn(|channel| if channel < 3 { look } else { 1 });
     let periods = every.map(|every| every as f64 * period);
     let seen = |channels: Channels| -> Channels {
-        from_fn(|channel| channels[channel].iter().step_by(every[channel]).copied().collect())
+        from_fn(|channel| match model.low_passes() {
+            Some(low_passes) if channel >= 3 => low_passes.unforetold(&channels[channel]),
+            _ => channels[channel].iter().step_by(every[channel]).copied().collect(),
+        })
     };
     for step in 0..STEPS {
         let impulses = model.impulses(&unknowns);

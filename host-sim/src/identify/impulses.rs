@@ -11,15 +11,12 @@
 //! tau^2. So the unknowns are S, s, and u = tau^2, s^2. Noise may ask for u < 0: there the response is the reflection
 //! 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it afterwards.
 //!
-//! Body rates that low-passes told (the gyro's own and [`LowPass`], at the IMU's rate) are the integral of torques that went through the same
-//! low-passes: all are linear, so torques are passed through them here, and S is without their delay. Counted as a delay alone, their shape would be
-//! taken for lag.
+//! Body rates that [`LowPasses`] told are the integral of torques that went through the same: all are linear, so torques are passed through them here,
+//! and S is without their delay. Counted as a delay alone, their shape would be taken for lag.
 
-use super::flight_log::{FlightLog, Source};
-use crate::instruments::gyro_filter;
+use super::flight_log::FlightLog;
+use super::low_passes::LowPasses;
 use controller_core::allocation::{Mixer, Rotors};
-use controller_core::imu::ImuParameters;
-use controller_core::imu::low_pass::LowPass;
 use nalgebra::{Vector3, Vector4};
 
 /// The shortest lag that is told from none, s.
@@ -34,8 +31,8 @@ pub struct Commands {
     columns: Vec<Vector4<f64>>,
     /// s.
     period: f64,
-    /// Of the body rates told, and how often in a period they were run.
-    low_passes: Option<([LowPass; 2], usize)>,
+    /// Of the body rates told.
+    low_passes: Option<LowPasses>,
 }
 
 /// A part of a period.
@@ -73,15 +70,18 @@ impl Commands {
             Ok(rotors.iter().zip(&allocation.thrusts).map(|(rotor, f)| f64::from(rotor.speed_at(*f))).collect())
         });
         let columns = rotors.iter().zip(rotors.effectiveness());
-        let imu = ImuParameters::BMI088;
-        let low_passes =
-            || ([gyro_filter(), imu.low_pass()], (log.period * f64::from(imu.rate)).round().max(1.0) as usize);
         Ok(Self {
             speeds: speeds.collect::<Result<_, String>>()?,
             columns: columns.map(|(rotor, column)| column * f64::from(rotor.thrust_coefficient)).collect(),
             period: log.period,
-            low_passes: (log.source == Source::Estimator).then(low_passes),
+            low_passes: LowPasses::of(log),
         })
+    }
+
+    /// What the log's body rates went through.
+    #[must_use]
+    pub fn low_passes(&self) -> Option<&LowPasses> {
+        self.low_passes.as_ref()
     }
 
     /// What the rotors gave from each tick to the next, with the whole delay S and u, the squared lag.
@@ -102,7 +102,7 @@ impl Commands {
         let lag = lag.max(SHORTEST);
         let ticks = ((whole - lag) / self.period).floor();
         let spans = self.spans(whole - lag - ticks * self.period, lag);
-        let mut low_passes = self.low_passes.as_ref().map(|(low_passes, _)| low_passes.clone());
+        let mut low_passes = self.low_passes.clone();
         let last = self.speeds.len().saturating_sub(1);
         let command = |tick: usize, more: f64| &self.speeds[((tick as f64 - ticks - more).max(0.0) as usize).min(last)];
         let mut speeds = self.speeds.first().cloned().unwrap_or_default();
@@ -123,7 +123,7 @@ impl Commands {
                 sampled += Vector3::new(sum.y, sum.z, sum.w);
                 if *is_sampled {
                     given.torque += match &mut low_passes {
-                        Some([own, ours]) => ours.take(&own.take(&sampled.map(|torque| torque as f32))).map(f64::from),
+                        Some(low_passes) => low_passes.take(&sampled),
                         None => sampled,
                     };
                     sampled = Vector3::zeros();
@@ -136,7 +136,7 @@ impl Commands {
 
     /// The parts of a period in which newer commands arrive `late` after its beginning.
     fn spans(&self, late: f64, lag: f64) -> Vec<Span> {
-        let samples = self.low_passes.as_ref().map_or(1, |(_, samples)| *samples);
+        let samples = self.low_passes.as_ref().map_or(1, LowPasses::samples);
         let ends = (1..=samples).map(|sample| (self.period * sample as f64 / samples as f64, true));
         let mut ends: Vec<(f64, bool)> = ends.chain([(late, false)]).collect();
         ends.sort_by(|one, other| one.0.total_cmp(&other.0));

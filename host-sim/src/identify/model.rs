@@ -21,6 +21,7 @@
 use super::flight_log::{FlightLog, Moment};
 use super::hubs::{Hubs, Layout};
 use super::impulses::{Commands, Impulse};
+use super::low_passes::LowPasses;
 use controller_core::certificate::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
 
@@ -101,6 +102,12 @@ impl<'a> Model<'a> {
     #[must_use]
     pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {
         self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
+    }
+
+    /// What the log's body rates went through.
+    #[must_use]
+    pub fn low_passes(&self) -> Option<&LowPasses> {
+        self.commands.low_passes()
     }
 
     /// What is left of each channel: told less integrated. `felt` is as [`Self::felt`] has it.
