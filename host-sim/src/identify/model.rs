@@ -28,7 +28,7 @@ use nalgebra::{SVector, Vector3};
 /// How many unknowns there are.
 pub const UNKNOWNS: usize = 20;
 
-/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; gamma_z, gamma_d, s^2/m; lambda, 1/m.
+/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; kappa_z, kappa_d; lambda, 1/m.
 pub const STRENGTH: usize = 0;
 /// About x; y and z follow.
 pub const TURNING: usize = 1;
@@ -43,7 +43,7 @@ pub const DRAG: usize = 8;
 const WIND: usize = 11;
 const DAMPING: usize = 13;
 const YAWING: usize = 16;
-/// gamma_z; gamma_d and lambda follow.
+/// kappa_z; kappa_d and lambda follow.
 const HUBS: usize = 17;
 
 /// All unknowns.
@@ -77,7 +77,7 @@ pub struct Model<'a> {
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let wide =
-        [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 0.1, 0.1, 0.01];
+        [0.5, 0.5, 0.5, 0.5, 0.05, 1e-3, 0.03, 0.03, 0.7, 0.7, 0.7, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 2.0, 2.0, 0.01];
     (start.into(), wide.into())
 }
 
@@ -133,12 +133,13 @@ impl<'a> Model<'a> {
             let up = (now.attitude * Vector3::z() + next.attitude * Vector3::z()) * 0.5;
             let airspeed = airspeed(pair, &wind);
             let dragged = now.attitude * -drag.component_mul(&airspeed);
-            let carried = strength * impulse.thrust + hubs.lifted(&self.layout, &airspeed) * period;
-            velocity += up * carried + (dragged - Vector3::z() * self.gravity) * period;
+            let carried = strength * impulse.thrust;
+            velocity += up * (carried + hubs.lifted(&self.layout, &airspeed) * period)
+                + (dragged - Vector3::z() * self.gravity) * period;
             let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::calm(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
             let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
-                + hubs.unlike(impulse, &(felt.air / period));
+                + hubs.unlike(impulse, carried / period, &(felt.air / period));
             let torque = impulse.torque + at_hubs - centre.cross(&(felt.whole / strength));
             let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
             rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));

@@ -57,8 +57,8 @@ fn vehicles_are_found_from_a_start_that_is_far_off() {
 
 #[test]
 fn vehicles_whose_rotors_the_air_pulls_at_are_found_though_their_centre_of_mass_is_off() {
-    // By 5.6 and 5.8 mm, in gusts.
-    each_is_found(Drag::AtHubs, 0.1, [(HUMMINGBIRD, 11, None), (HUMMINGBIRD, 15, None)]);
+    // By 5.6, 4.9 and 5.6 mm, in gusts; the second in a wind that presses it down.
+    each_is_found(Drag::AtHubs, 0.1, [(HUMMINGBIRD, 11, None), (HUMMINGBIRD, 14, None), (HUMMINGBIRD, 15, None)]);
 }
 
 #[test]
