@@ -7,6 +7,7 @@
 
 #[path = "../../../tests/support/body.rs"]
 mod body;
+pub mod outputs;
 
 pub use body::Body;
 use controller_core::allocation::{Mixer, QuadX, Rotors};

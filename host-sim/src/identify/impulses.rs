@@ -32,7 +32,7 @@ pub struct Commands {
     /// s.
     period: f64,
     /// Of the body rates told.
-    low_passes: Option<LowPasses>,
+    pub(super) low_passes: Option<LowPasses>,
 }
 
 /// A part of a period.
@@ -76,12 +76,6 @@ impl Commands {
             period: log.period,
             low_passes: LowPasses::of(log),
         })
-    }
-
-    /// What the log's body rates went through.
-    #[must_use]
-    pub fn low_passes(&self) -> Option<&LowPasses> {
-        self.low_passes.as_ref()
     }
 
     /// What the rotors gave from each tick to the next, with the whole delay S and u, the squared lag.

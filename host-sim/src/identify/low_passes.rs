@@ -20,7 +20,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 /// From how many samples the next is foretold.
 const FORETELLING: usize = 3;
-/// Samples of the IMU after which nothing is left of an impulse.
+/// Samples of the IMU after an impulse; nothing is left of it then.
 const LONGEST: usize = 1000;
 
 /// The two low-passes, in the order they are passed.
@@ -44,8 +44,8 @@ impl LowPasses {
     fn new(passes: [LowPass; 2], samples: usize) -> Self {
         let mut new = Self { passes, samples, foretelling: SVector::zeros() };
         let mut at_rest = new.clone();
-        let impulse = (0..LONGEST).map(|sample| if sample == 0 { 1.0 } else { 0.0 });
-        let response: Vec<f64> = impulse.map(|torque| at_rest.take(&Vector3::repeat(torque)).x).collect();
+        let impulse = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, LONGEST));
+        let response: Vec<f64> = impulse.map(|sample| at_rest.take(&Vector3::repeat(sample)).x).collect();
         let together =
             |ticks: usize| response.iter().zip(response.iter().skip(ticks * samples)).map(|(a, b)| a * b).sum::<f64>();
         let rho = SMatrix::<f64, FORETELLING, FORETELLING>::from_fn(|i, j| together(i.abs_diff(j)));

@@ -107,7 +107,7 @@ impl<'a> Model<'a> {
     /// What the log's body rates went through.
     #[must_use]
     pub fn low_passes(&self) -> Option<&LowPasses> {
-        self.commands.low_passes()
+        self.commands.low_passes.as_ref()
     }
 
     /// What is left of each channel: told less integrated. `felt` is as [`Self::felt`] has it.
