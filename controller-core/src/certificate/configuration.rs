@@ -63,7 +63,7 @@ impl Configuration {
     /// The extended law for `vehicle`, to fly references within `bounds`.
     ///
     /// # Errors
-    /// If a bound is not finite or negative, or M_z- + D_z >= g - K_a3, where the law is undefined.
+    /// If a bound is not finite or negative, or A_- >= g - K_a3, where the law is undefined.
     pub fn extended(
         vehicle: Vehicle,
         limits: Limits,
@@ -83,7 +83,7 @@ impl Configuration {
         let room = vehicle.gravity - bounds.vertical_acceleration;
         let (least, field) = match &law {
             LawParameters::Paper(PaperLaw { gains, .. }) => (gains.m_p, "gains.m_p"),
-            LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.greatest_fall(), "gains.m_down"),
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.a_down, "gains.a_down"),
         };
         require(least < room, field, Reason::NotBelow(room))?;
         Ok(Self { vehicle, limits, law, bounds, rotors: None })
@@ -127,7 +127,7 @@ impl Configuration {
     pub fn greatest_fall(&self) -> f32 {
         match &self.law {
             LawParameters::Paper(PaperLaw { gains, .. }) => gains.m_p,
-            LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.greatest_fall(),
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.a_down,
         }
     }
 

@@ -1,8 +1,9 @@
 //! What the extended law remembers from one tick to the next.
 
 use super::actuators::ActuatorState;
-use super::force::ForceEstimate;
 use super::heading::HeadingLag;
+use super::net::Net;
+use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::position::FilterState;
 use crate::vehicle::Vehicle;
@@ -11,17 +12,20 @@ use nalgebra::{Vector3, Vector4};
 /// What the law knows beyond its filters and its lift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
-    /// The force per mass.
-    pub force: ForceEstimate,
+    /// zeta, the averaged force per mass, m/s^2, world frame, before it is cut to its levels.
+    pub force: Vector3<f32>,
     /// The averaged torque bias, N m, body frame, before it is cut to its level.
     pub torque: Vector3<f32>,
     /// What the rotors deliver of what is commanded.
-    pub scale: f32,
+    pub scale: ScaleEstimate,
 }
 
 impl Estimates {
-    /// Nothing known.
-    pub const NONE: Self = Self { force: ForceEstimate::NONE, torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+    /// Nothing known, under `gravity`, m/s^2.
+    #[must_use]
+    pub fn none(gravity: f32) -> Self {
+        Self { force: Vector3::zeros(), torque: Vector3::zeros(), scale: ScaleEstimate::none(gravity) }
+    }
 }
 
 /// The last tick, as far as the estimates need it.
@@ -31,6 +35,8 @@ pub(super) struct Last {
     /// R e3.
     pub thrust_axis: Vector3<f32>,
     pub angular_velocity: Vector3<f32>,
+    /// R~^T omega_d', rad/s^2.
+    pub wanted: Vector3<f32>,
 }
 
 /// Everything the law remembers from one tick to the next.
@@ -44,6 +50,8 @@ pub struct Memory {
     pub heading: Option<HeadingLag>,
     /// The estimates.
     pub estimates: Estimates,
+    /// The net.
+    pub net: Net,
     /// Ticks for which the estimates are still held.
     pub(super) held: u32,
     pub(super) last: Option<Last>,
@@ -55,12 +63,13 @@ pub struct Memory {
 impl Memory {
     /// A memory of `estimates` and nothing else.
     pub(super) fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Self {
-        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale, 0.0, 0.0, 0.0);
+        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale.scale, 0.0, 0.0, 0.0);
         Self {
             filter: FilterState::ZERO,
             lift: None,
             heading: None,
             estimates,
+            net: Net::FRESH,
             held: 0,
             last: None,
             actuators: ActuatorState::steady(hover),
