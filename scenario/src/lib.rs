@@ -26,6 +26,7 @@ pub mod bounds;
 pub mod campaign;
 pub mod extended;
 pub mod file;
+pub mod inertia;
 pub mod initial;
 pub mod reality;
 pub mod reference;

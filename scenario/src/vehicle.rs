@@ -4,6 +4,7 @@
 //! option of the paper's law: see [`controller_core::projection`].
 
 use crate::extended::read_extended;
+use crate::inertia;
 use crate::section::{FieldError, Section};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -67,13 +68,14 @@ fn is_extended(root: &Section) -> Result<bool, FieldError> {
 fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
     let section = root.section("vehicle")?;
     section.allow(&["mass", "inertia", "gravity"])?;
-    let parameters = VehicleParameters {
-        mass: section.number("mass")? as f32,
-        inertia: section.vector("inertia")?.map(|moment| moment as f32),
-        gravity: section.number("gravity")? as f32,
-    };
-    let vehicle = Vehicle::new(parameters).map_err(|error| root.refused(&error))?;
-    let VehicleParameters { mass, gravity, .. } = *vehicle;
+    let mass = section.number("mass")? as f32;
+    let moments = inertia::read(&section, "inertia")?;
+    let gravity = section.number("gravity")? as f32;
+    let parameters = VehicleParameters { mass, inertia: moments.map(|moment| moment as f32), gravity };
+    let vehicle = Vehicle::new(parameters).map_err(|error| {
+        let impossible = inertia::impossible("vehicle.inertia", &moments, &error);
+        impossible.unwrap_or_else(|| root.refused(&error))
+    })?;
     if !(mass * gravity).is_finite() {
         let problem =
             format!("must have a weight, with vehicle.gravity = {gravity}, within {:e} N, found {mass:e}", f32::MAX);
