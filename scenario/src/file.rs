@@ -114,8 +114,11 @@ impl Scenario {
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
-        let configuration = vehicle::read_configuration(root, &bounds, actuators, timing.period())?;
-        let configuration = actuation::read_rotors(root, configuration)?;
+        let vehicle = vehicle::read_vehicle(root)?;
+        let rotors = actuation::read_rotors(root, &vehicle)?;
+        let limits = vehicle::read_limits(root, &vehicle, rotors.as_ref())?;
+        let model = (vehicle, limits, rotors);
+        let configuration = vehicle::read_configuration(root, model, &bounds, actuators, timing.period())?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;

@@ -142,11 +142,7 @@ impl Configuration {
     /// # Errors
     /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it.
     pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
-        let hover = self.vehicle.mass * self.vehicle.gravity;
-        let greatest: f32 = rotors.iter().map(|rotor| rotor.thrust_max).sum();
-        let least: f32 = rotors.iter().map(|rotor| rotor.thrust_min).sum();
-        require(greatest > hover, "rotors.speed", Reason::NotAbove(hover))?;
-        require(least < hover, "rotors.speed", Reason::NotBelow(hover))?;
+        rotors.check_hover(self.vehicle.mass * self.vehicle.gravity)?;
         if let LawParameters::Extended(_) = self.law {
             // Its thrust floor lifts every rotor: a rotor that thrust does not reach cannot be lifted by it.
             let lifted = rotors.pseudo_inverse().iter().all(|row| row.x > 0.0);
