@@ -7,12 +7,15 @@
 //! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]), the paper's where it is left out and there are
 //! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
 
+use crate::bounds::read_bounds;
 use crate::extended::read_extended;
 use crate::inertia;
+use crate::reality::drag;
 use crate::section::{FieldError, Section};
 use controller_core::allocation::{Rotors, greatest_torques};
-use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
+use controller_core::certificate::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
+use controller_core::extended::defaults::{self, Airframe};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
@@ -21,8 +24,8 @@ use nalgebra::Vector3;
 /// Gravity where the file leaves it out, m/s^2.
 const DEFAULT_GRAVITY: f64 = 9.81;
 
-/// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and references within
-/// `bounds`. The extended law's estimates count on rotors that respond as `actuators` says.
+/// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its references; its own reference is
+/// within `own`. The extended law's estimates count on rotors that respond as `actuators` says.
 ///
 /// # Errors
 /// Names the field that is missing, of another law, or leaves the law undefined: M_p >= g - K_a3; `rotors.position` if
@@ -30,21 +33,34 @@ const DEFAULT_GRAVITY: f64 = 9.81;
 pub fn read_configuration(
     root: &Section,
     (vehicle, limits, rotors): (Vehicle, Limits, Option<Rotors>),
-    bounds: &ReferenceBounds,
+    own: &ReferenceBounds,
     actuators: ActuatorParameters,
     period: f64,
 ) -> Result<Configuration, FieldError> {
-    let configuration = match (named_law(root)?, root.has("gains")) {
-        (None | Some(LawName::Extended), false) => Configuration::extended(vehicle, limits, default_law()?, *bounds),
-        (Some(LawName::Extended), true) => {
-            let law = read_extended(root, &vehicle, actuators, period)?;
-            Configuration::extended(vehicle, limits, law, *bounds)
+    let name = match named_law(root)? {
+        None if root.has("gains") => LawName::Paper,
+        None => LawName::Extended,
+        Some(name) => name,
+    };
+    let (configuration, bounds) = match name {
+        LawName::Extended => {
+            let drag = known_drag(root, &vehicle, rotors.as_ref())?;
+            let period = period as f32;
+            let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
+            let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
+            let law = read_extended(root, &airframe)?;
+            let bounds = read_bounds(root, own, || defaults::reference_bounds(&airframe, &law.parameters))?;
+            (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
         }
-        (None | Some(LawName::Paper), _) if root.has("estimates") => {
+        LawName::Paper if root.has("estimates") => {
             let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
             return Err(FieldError::new("estimates", problem));
         }
-        (None | Some(LawName::Paper), _) => Configuration::new(vehicle, limits, read_gains(root, &vehicle)?, *bounds),
+        LawName::Paper => {
+            let gains = read_gains(root, &vehicle)?;
+            let bounds = read_bounds(root, own, || ReferenceBounds::REST)?;
+            (Configuration::new(vehicle, limits, gains, bounds), bounds)
+        }
     };
     let configuration = configuration.map_err(|error| {
         let refused = root.refused(&error);
@@ -103,9 +119,15 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
     }
 }
 
-/// The law of a file without `[gains]` that does not name the paper's. There is none yet: the section must be there.
-fn default_law() -> Result<ExtendedLaw, FieldError> {
-    Err(FieldError::new("gains", "missing, must be a section"))
+/// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.
+fn known_drag(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Result<f32, FieldError> {
+    let Some(drag) = drag::read(root, rotors.is_some())? else { return Ok(0.0) };
+    let turning: f64 = rotors.map_or(0.0, |rotors| {
+        let each = f64::from(vehicle.mass * vehicle.gravity) / rotors.len() as f64;
+        rotors.iter().map(|rotor| (each / f64::from(rotor.thrust_coefficient)).sqrt()).sum()
+    });
+    let linear = 0.5 * (drag.linear.x + drag.linear.y);
+    Ok(((linear + drag.rotor_across * turning) / f64::from(vehicle.mass)) as f32)
 }
 
 /// Reads `[vehicle]`.

@@ -16,11 +16,11 @@ use super::attitude::{AttitudeLaw, Late};
 use super::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
 use super::force::ForceObserver;
 use super::heading::{self, HeadingLag};
-use super::memory::{Estimates, Last, Memory};
+use super::memory::{Averages, Estimates, Last, Memory};
 use super::parameters::Extended;
 use super::position::PositionLaw;
 use super::thrust_range::ThrustRange;
-use super::thrust_scale::{ScaleEstimate, ThrustScale};
+use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
 use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
@@ -90,14 +90,6 @@ pub struct Controller {
     memory: Memory,
 }
 
-/// What a tick has learnt, before it is remembered.
-#[derive(Debug, Clone, Copy)]
-struct Learnt {
-    force: Vector3<f32>,
-    scale: ScaleEstimate,
-    torque: Vector3<f32>,
-}
-
 impl Controller {
     /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
     /// (0, 0.1].
@@ -154,7 +146,7 @@ impl Controller {
             range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
-            memory: Memory::fresh(vehicle, Estimates::none(vehicle.gravity)),
+            memory: Memory::fresh(vehicle, Averages::hovering(Vector3::zeros(), 1.0, vehicle.gravity)),
         })
     }
 
@@ -168,16 +160,16 @@ impl Controller {
 
     /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
     pub fn reset(&mut self) {
-        self.memory = Memory::fresh(&self.vehicle, Estimates::none(self.vehicle.gravity));
+        let averages = Averages::hovering(Vector3::zeros(), 1.0, self.vehicle.gravity);
+        self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
     /// The same with what has been estimated of the vehicle itself kept, torque and thrust scale: how a flight goes on without a
     /// pose. The force is forgotten: it came from velocities that are no longer known.
     pub fn restart(&mut self) {
-        let gravity = self.vehicle.gravity;
-        let scale = ScaleEstimate::at(self.memory.estimates.scale.scale, gravity);
-        let estimates = Estimates { scale, torque: self.memory.estimates.torque, ..Estimates::none(gravity) };
-        self.memory = Memory::fresh(&self.vehicle, estimates);
+        let Averages { torque, scale, .. } = self.memory.averages;
+        let averages = Averages::hovering(torque, scale.scale, self.vehicle.gravity);
+        self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on
@@ -189,7 +181,7 @@ impl Controller {
     /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided by it.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
-        self.memory.estimates.scale.scale
+        self.memory.averages.scale.scale
     }
 
     /// Changes the time to the next step, s, and from there on.
@@ -211,9 +203,9 @@ impl Controller {
     /// What has been estimated; force and torque bias as far as they are believed.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
-        let Estimates { force, torque, scale } = &self.memory.estimates;
+        let Averages { force, torque, scale } = &self.memory.averages;
         let Learning { force: observer, torque: bias, .. } = &self.learning;
-        Estimates { force: observer.believed(force), torque: bias.estimate(torque), scale: *scale }
+        Estimates { force: observer.believed(force), torque: bias.estimate(torque), scale: scale.scale }
     }
 
     /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
@@ -291,7 +283,7 @@ impl Controller {
             }
         };
         self.memory.filter = self.position.advance(&filter, &drive);
-        self.memory.estimates = Estimates { force: learnt.force, torque: learnt.torque, scale: learnt.scale };
+        self.memory.averages = learnt;
         let turning = heading::turning(&lag, &papers, &self.parameters, self.period);
         self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
         self.memory.lift = Some(lifted.lift);
@@ -350,20 +342,20 @@ impl Controller {
         self.memory.last.as_ref().filter(|_| self.memory.held == 0)
     }
 
-    /// The estimates with what happened since the last tick.
-    fn learnt(&self, state: &State, axis: &Vector3<f32>) -> Learnt {
-        let Memory { estimates, acted, .. } = &self.memory;
+    /// The averages with what happened since the last tick.
+    fn learnt(&self, state: &State, axis: &Vector3<f32>) -> Averages {
+        let Memory { averages, acted, .. } = &self.memory;
         let Some(last) = self.last() else {
-            return Learnt { force: estimates.force, scale: estimates.scale, torque: estimates.torque };
+            return *averages;
         };
         let Learning { force: observer, torque: bias, scale: learner } = &self.learning;
         let made = observer.observed([&last.velocity, &state.velocity]);
         let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
-        let scale = learner.learnt(&estimates.scale, &made, &commanded);
-        let force = observer.averaged(&estimates.force, &(made - commanded * scale.scale));
+        let scale = learner.learnt(&averages.scale, &made, &commanded);
+        let force = observer.averaged(&averages.force, &(made - commanded * scale.scale));
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
         let torque = bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
-        Learnt { force, scale, torque: bias.averaged(&estimates.torque, &torque) }
+        Averages { force, scale, torque: bias.averaged(&averages.torque, &torque) }
     }
 
     /// What is under way to the vehicle, for the thrust scale and torque bias at hand.

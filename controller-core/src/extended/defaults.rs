@@ -103,11 +103,7 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
     let yaw_stiffness = 0.25 * w * eta / (1.0 + eta);
     let yaw_damping = 3.2 * math::sqrt_f64(yaw_stiffness * j.z);
 
-    let used = (1.0 - THRUST_LEFT) / mass;
-    let [each, taken] = budget.ceiling;
-    let limit = f64::from(limits.thrust_max);
-    let greatest = lesser_f64(each - taken, limit) * used;
-    let weakest = lesser_f64(SCALE[0] * each - taken, limit) * used;
+    let [weakest, greatest] = held(&budget, airframe, [SCALE[0], 1.0]);
     let a_down = FALL * gravity;
     // The least lift within the cone at the greatest |u|.
     let cosine = lesser_f64(1.05 * (gravity - a_down) / greatest, 1.0);
@@ -117,7 +113,7 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
     let a_across = lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent);
     let force_across = lesser_f64(0.58 * a_across, 0.85 * level(weakest));
     let up = 0.7 * a_down;
-    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.98 * (weakest - gravity)), 0.0);
+    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.9 * (weakest - gravity)), 0.0);
 
     let k_f = lesser_f64(0.75 * w_a, 100.0);
     let k_v = lesser_f64(8.0, 0.41 * w_a);
@@ -160,6 +156,14 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
         scale_rate: 0.3,
         ..n.parameters()
     }
+}
+
+/// The acceleration that the rotors hold near the target where they deliver these shares of what is commanded, m/s^2.
+fn held<const N: usize>(budget: &TorqueBudget, airframe: &Airframe, scales: [f64; N]) -> [f64; N] {
+    let [each, taken] = budget.ceiling;
+    let limit = f64::from(airframe.limits.thrust_max);
+    let used = (1.0 - THRUST_LEFT) / f64::from(airframe.vehicle.mass);
+    scales.map(|scale| lesser_f64(scale * each - taken, limit) * used)
 }
 
 /// The numbers that the budget reads.
@@ -222,6 +226,8 @@ impl Numbers {
 #[must_use]
 pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
     let p = parameters;
+    let budget = TorqueBudget::new(p, airframe.vehicle, airframe.limits, airframe.rotors);
+    let [weakest] = held(&budget, airframe, [f64::from(p.scale_least)]);
     let [gravity, across, down, up, rate, reserve, yaw_rate, yaw_acceleration] = [
         airframe.vehicle.gravity,
         p.a_across,
@@ -234,7 +240,8 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     ]
     .map(f64::from);
     let horizontal = lesser_f64(3.0, 0.2 * across);
-    let vertical = lesser_f64(1.0, 0.15 * lesser_f64(down, across));
+    let spare = 0.9 * (weakest - gravity - f64::from(p.force_down));
+    let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
     // What the net leaves of Omega and alpha_0, with the least |u|.
     let net = net_level(p, airframe.vehicle.gravity);
     let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);

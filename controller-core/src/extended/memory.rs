@@ -9,22 +9,39 @@ use crate::position::FilterState;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector3, Vector4};
 
-/// What the law knows beyond its filters and its lift.
+/// What is estimated, as far as it is believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
-    /// zeta, the averaged force per mass, m/s^2, world frame, before it is cut to its levels.
+    /// d, the force per mass, m/s^2, world frame.
     pub force: Vector3<f32>,
-    /// The averaged torque bias, N m, body frame, before it is cut to its level.
+    /// The torque bias, N m, body frame.
     pub torque: Vector3<f32>,
     /// What the rotors deliver of what is commanded.
-    pub scale: ScaleEstimate,
+    pub scale: f32,
 }
 
 impl Estimates {
-    /// Nothing known, under `gravity`, m/s^2.
+    /// Nothing known.
+    pub const NONE: Self =
+        Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+}
+
+/// What the law has averaged, before it is cut to its levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Averages {
+    /// zeta, the force per mass, m/s^2, world frame.
+    pub force: Vector3<f32>,
+    /// The torque bias, N m, body frame.
+    pub torque: Vector3<f32>,
+    /// The thrust scale, with what it is learnt from.
+    pub scale: ScaleEstimate,
+}
+
+impl Averages {
+    /// Of a vehicle of which torque bias and thrust scale are known, hovering under `gravity`, m/s^2.
     #[must_use]
-    pub fn none(gravity: f32) -> Self {
-        Self { force: Vector3::zeros(), torque: Vector3::zeros(), scale: ScaleEstimate::none(gravity) }
+    pub fn hovering(torque: Vector3<f32>, scale: f32, gravity: f32) -> Self {
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale, gravity) }
     }
 }
 
@@ -48,8 +65,8 @@ pub struct Memory {
     pub lift: Option<Lift>,
     /// The heading's lag; none before the first step.
     pub heading: Option<HeadingLag>,
-    /// The estimates.
-    pub estimates: Estimates,
+    /// What the estimates are made of.
+    pub averages: Averages,
     /// The net.
     pub net: Net,
     /// Ticks for which the estimates are still held.
@@ -61,14 +78,14 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// A memory of `estimates` and nothing else.
-    pub(super) fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Self {
-        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale.scale, 0.0, 0.0, 0.0);
+    /// A memory of `averages` and nothing else.
+    pub(super) fn fresh(vehicle: &Vehicle, averages: Averages) -> Self {
+        let hover = Vector4::new(vehicle.mass * vehicle.gravity / averages.scale.scale, 0.0, 0.0, 0.0);
         Self {
             filter: FilterState::ZERO,
             lift: None,
             heading: None,
-            estimates,
+            averages,
             net: Net::FRESH,
             held: 0,
             last: None,

@@ -29,12 +29,6 @@ pub struct ScaleEstimate {
 }
 
 impl ScaleEstimate {
-    /// Nothing known, hovering under `gravity`, m/s^2.
-    #[must_use]
-    pub fn none(gravity: f32) -> Self {
-        Self::at(1.0, gravity)
-    }
-
     /// The scale known, hovering under `gravity`, m/s^2.
     #[must_use]
     pub fn at(scale: f32, gravity: f32) -> Self {
