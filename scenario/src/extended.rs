@@ -11,7 +11,7 @@ use crate::section::{FieldError, Section};
 use controller_core::certificate::configuration::ExtendedLaw;
 use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
 use controller_core::extended::controller::Controller;
-use controller_core::extended::defaults::{self, Airframe};
+use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 use std::fmt::Write;
 
@@ -20,17 +20,19 @@ use std::fmt::Write;
 /// # Errors
 /// Names the field that is unknown or refused.
 pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw, FieldError> {
-    let mut values = defaults::constants(airframe).values();
+    let mut given = NOTHING_GIVEN;
     for name in ["gains", "estimates"] {
         let Some(section) = root.optional_section(name)? else { continue };
-        let constants = ExtendedParameters::TABLE.iter().zip(&mut values).filter(|(constant, _)| constant.section == name);
-        let keys: Vec<&str> = ExtendedParameters::TABLE.iter().filter(|c| c.section == name).map(|c| c.key).collect();
+        let of_section = || ExtendedParameters::TABLE.iter().zip(0..).filter(|(constant, _)| constant.section == name);
+        let keys: Vec<&str> = of_section().map(|(constant, _)| constant.key).collect();
         section.allow(&keys)?;
-        for (constant, value) in constants {
-            *value = section.number_or(constant.key, f64::from(*value))? as f32;
+        for (constant, place) in of_section().filter(|(constant, _)| section.has(constant.key)) {
+            let value = section.number(constant.key)? as f32;
+            constant.range.check(value, constant.path).map_err(|error| root.refused(&error))?;
+            given[place] = Some(value);
         }
     }
-    let parameters = ExtendedParameters::from_values(values);
+    let parameters = defaults::constants(airframe, &given);
     let parameters = Extended::new(parameters, airframe.vehicle).map_err(|error| root.refused(&error))?;
     Controller::check_period(&parameters, airframe.period).map_err(|error| root.refused(&error))?;
     check_delay(root, &airframe.actuators, f64::from(airframe.period))?;

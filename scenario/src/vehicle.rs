@@ -13,7 +13,9 @@ use crate::inertia;
 use crate::reality::drag;
 use crate::section::{FieldError, Section};
 use controller_core::allocation::{Rotors, greatest_torques};
+use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::{self, Airframe};
 use controller_core::gains::{GainParameters, Gains};
@@ -49,7 +51,13 @@ pub fn read_configuration(
             let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
             let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
             let law = read_extended(root, &airframe)?;
-            let bounds = read_bounds(root, own, || defaults::reference_bounds(&airframe, &law.parameters))?;
+            let bounds = read_bounds(root, own, || {
+                let most = defaults::reference_bounds(&airframe, &law.parameters);
+                flyable(most, |bounds| {
+                    let configuration = Configuration::extended(*vehicle, *limits, law, bounds)?;
+                    rotors.map_or(Ok(configuration.clone()), |rotors| configuration.with_rotors(rotors.clone()))
+                })
+            })?;
             (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
         }
         LawName::Paper if root.has("estimates") => {
@@ -117,6 +125,32 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
             Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}")))
         }
     }
+}
+
+/// As much of `most` as certifies in steps of a tenth: what the formulas leave out, of headings that turn while the vehicle tilts. All of it where even
+/// a hundredth does not, so that the certificate says why.
+fn flyable(
+    most: ReferenceBounds,
+    configuration: impl Fn(ReferenceBounds) -> Result<Configuration, ParameterError>,
+) -> ReferenceBounds {
+    let mut bounds = most;
+    for _ in 0..44 {
+        let certificate = configuration(bounds).and_then(|configuration| Certificate::new(&configuration));
+        if certificate.is_ok_and(|certificate| certificate.holds()) {
+            return bounds;
+        }
+        let less = |bound: f32| 0.9 * bound;
+        bounds = ReferenceBounds {
+            horizontal_acceleration: less(bounds.horizontal_acceleration),
+            vertical_acceleration: less(bounds.vertical_acceleration),
+            jerk: less(bounds.jerk),
+            snap: less(bounds.snap),
+            heading_rate: less(bounds.heading_rate),
+            heading_second_derivative: less(bounds.heading_second_derivative),
+            ..bounds
+        };
+    }
+    most
 }
 
 /// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.

@@ -5,11 +5,11 @@
 //! | A_- < g - K_a3 | T1: u_z > 0, the law is defined |
 //! | (with d up to its levels) m \|g e3 + p_d'' - d\| < what torques near the target leave of the rotors' thrust | A1: near the target the thrust is not cut |
 //! | \|omega_d12\| < Omega, \|omega'_d12\| < alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
-//! | \|w*_3\| < W_max, \|w*_3'\| < A for the reference, with d up to its levels | A1: the heading arrives |
-//! | N_0 + L (alpha_0 + W_max Omega) < (1 - mu) m n | G: near the target the thrust is not raised |
+//! | \|w*_3\| < W_max, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
+//! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
 //! | qbar < eta, 2 qbar M_t < w eta_t sqrt(1 - qbar^2) | E: the only equilibrium of the attitude is the target |
 //! | \|P\| < M_all | D: damping always has a share |
-//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 + W_max Omega | T2: roll, pitch and yaw within the limits; R: every rotor within its range |
+//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range |
 //!
 //! Everything else about commands holds by construction ([`crate::extended`]): a tick spends what is there.
 
@@ -76,11 +76,6 @@ impl ExtendedCertificate {
     }
 }
 
-/// How fast the frame may turn whatever there is: alpha_0, with what the heading's rate adds, rad/s^2.
-fn reserve(parameters: &Extended) -> f64 {
-    f64::from(parameters.turn_reserve) + f64::from(parameters.yaw_rate) * f64::from(parameters.turn_rate)
-}
-
 /// The reference with its drag, and room for it.
 fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> [Inequality; 6] {
     let (vehicle, bounds) = (configuration.vehicle(), configuration.bounds());
@@ -103,8 +98,8 @@ fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &To
     let least = gravity - vertical - up - net;
     let rate = jerk / least * raised;
     let acceleration = (snap / least + 2.0 * rate * rate) * raised;
-    let ([most_rate, most], turning) = ([p.turn_rate, p.turn_reserve].map(f64::from), reserve(p));
-    let floor = (budget.floor + budget.floor_per_acceleration * turning) * raised;
+    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(f64::from);
+    let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
     let weakest = (1.0 - THRUST_LEFT) * mass * (gravity - vertical - up);
     [
         Inequality::new("T1 fall A_- < g - K_a3", "m/s^2", f64::from(p.a_down), gravity - vertical),
@@ -135,7 +130,7 @@ fn with_drag(bounds: &ReferenceBounds, drag: f32) -> ReferenceBounds {
 fn heading(configuration: &Configuration, parameters: &Extended) -> [Inequality; 2] {
     let reference = with_drag(configuration.bounds(), parameters.drag_across);
     let forced = ReferenceBounds {
-        horizontal_acceleration: reference.horizontal_acceleration + parameters.force_across,
+        horizontal_acceleration: reference.horizontal_acceleration + parameters.force_heading,
         ..reference
     };
     let gravity = f64::from(configuration.vehicle().gravity) - f64::from(parameters.force_up);
@@ -190,7 +185,7 @@ fn torques(parameters: &Extended, budget: &TorqueBudget) -> impl Iterator<Item =
     const NAMES: [&str; 3] = ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range"];
     const UNITS: [&str; 3] = ["N m", "N m", "N"];
     let reserves: Vec<[f64; 2], 3> =
-        collected(budget.reserves(f64::from(parameters.m_all), reserve(parameters)));
+        collected(budget.reserves(f64::from(parameters.m_all), f64::from(parameters.turn_reserve)));
     reserves.into_iter().zip(NAMES).zip(UNITS).map(|(([required, available], name), unit)| {
         Inequality::new(name, unit, required * (1.0 + ARITHMETIC_ALLOWANCE), available)
     })
@@ -201,7 +196,7 @@ fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueB
     let p = parameters;
     let raised = 1.0 + ARITHMETIC_ALLOWANCE;
     let [tilt_inertia, yaw_inertia] = budget.inertia;
-    let turning = math::greater_f64(reserve(p), f64::from(p.turn_acceleration));
+    let turning = f64::from(p.turn_acceleration);
     let (mut tilt, mut yaw) = (f64::from(p.m_all) + tilt_inertia * turning, yaw_inertia * turning);
     for row in &budget.rows {
         if row.tilt > 0.0 {

@@ -131,7 +131,8 @@ impl ActuatorModel {
             lag: parameters.lag,
             late: late as f32,
             period: period as f32,
-            end: response(end), mean: response(mean),
+            end: response(end),
+            mean: response(mean),
         })
     }
 

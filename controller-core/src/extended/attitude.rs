@@ -147,7 +147,12 @@ impl AttitudeLaw {
 
     /// tau: J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d less the feedback. `rate` and `acceleration` are R~^T omega_d and R~^T omega_d'.
     #[must_use]
-    pub fn torque(&self, feedback: &AttitudeFeedback, rate: &Vector3<f32>, acceleration: &Vector3<f32>) -> Vector3<f32> {
+    pub fn torque(
+        &self,
+        feedback: &AttitudeFeedback,
+        rate: &Vector3<f32>,
+        acceleration: &Vector3<f32>,
+    ) -> Vector3<f32> {
         self.inertia.component_mul(acceleration)
             + self.differences.component_mul(&rate.yzx()).component_mul(&rate.zxy())
             - feedback.potential

@@ -20,7 +20,7 @@
 //! |omega'_12| <= alpha = min( alpha_max, ((1 - mu) m n - N_0) / L, min over rows (R - t |tau_fb|) / (t J_max + y J_33 sin theta) )
 //! ```
 //!
-//! and with alpha_0 + W_max Omega at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
+//! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
 
 use super::parameters::ExtendedParameters;
 use crate::allocation::Rotors;
@@ -133,9 +133,9 @@ impl TorqueBudget {
     /// angle: what is needed and what there is.
     pub fn reserves(&self, feedback: f64, acceleration: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
         let [tilt, yaw] = self.inertia;
-        self.rows.iter().map(move |row| {
-            [row.tilt * (feedback + tilt * acceleration) + row.yaw * yaw * acceleration, row.room]
-        })
+        self.rows
+            .iter()
+            .map(move |row| [row.tilt * (feedback + tilt * acceleration) + row.yaw * yaw * acceleration, row.room])
     }
 
     /// The greatest feedback about the tilt's axes with which every row has room for `acceleration`, N m.

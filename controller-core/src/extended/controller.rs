@@ -262,7 +262,7 @@ impl Controller {
             &turn,
             &Circumstances {
                 budget: self.budget.acceleration(turn.magnitude, torques.tilt(), sine_of_tilt(&error)),
-                yaw_rate: velocity.z.abs(),
+                yaw_rate: velocity.z,
                 up: desired.up(),
                 greatest,
                 vertical: [filter.filtered.z, feedback.rate.z, wanted.z],

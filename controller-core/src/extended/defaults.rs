@@ -7,7 +7,7 @@
 //! | w_a, bandwidth of the tilt, rad/s | min(15, 0.3 / (h/2 + 0.15 T)) |
 //! | M_all | what the rows of the budget leave: see [`constants`] |
 //! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 2.1 w_a J |
-//! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), 0.4 M_all |
+//! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), as much as keeps \|P\| below 0.93 M_all |
 //! | r_0 | M_all / (12 J w_a^2): beyond it M_all brakes along a parabola |
 //! | alpha_max, alpha_0 | 0.75 M_all / J, 0.15 M_all / J or less where yaw is weak |
 //! | Omega | between 2.5 and 5 rad/s, 0.07 of what the rotors give / J |
@@ -44,6 +44,8 @@ pub struct Airframe<'a> {
     pub drag: f32,
 }
 
+/// The least eta: above qbar, which delta makes.
+const ETA_LEAST: f64 = 0.03;
 /// eta_t.
 const ETA_T: f64 = 0.5;
 /// delta, alpha, c_1 and c_2.
@@ -52,10 +54,22 @@ const SHARED: [f32; 4] = [0.02, 0.25, 9.0, 6.0];
 const SCALE: [f64; 2] = [0.9, 1.15];
 /// A vehicle that falls with this acceleration still has thrust to turn, m/s^2; in shares of g.
 const FALL: f64 = 0.54;
+/// Vertical acceleration of references that the thrust floor leaves room for, m/s^2.
+const FALL_LEAST: f64 = 1.0;
 
-/// The constants for `airframe`.
+/// Constants that somebody chose, in the table's order; the others follow from them.
+pub type Given = [Option<f32>; ExtendedParameters::COUNT];
+
+/// Nothing chosen.
+pub const NOTHING_GIVEN: Given = [None; ExtendedParameters::COUNT];
+
+/// The constants for `airframe`, those that are `given` as they are.
 #[must_use]
-pub fn constants(airframe: &Airframe) -> ExtendedParameters {
+pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
+    let or = |key: &str, formula: f64| {
+        let chosen = ExtendedParameters::TABLE.iter().zip(given).find(|(constant, _)| constant.key == key);
+        chosen.and_then(|(_, value)| *value).map_or(formula, f64::from)
+    };
     let Airframe { vehicle, limits, rotors, actuators, period, drag } = *airframe;
     let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(f64::from);
     let j = vehicle.inertia.map(f64::from);
@@ -64,25 +78,30 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
     let w_a = lesser_f64(15.0, 0.3 / (0.5 * f64::from(period) + 0.15 * late));
 
     // What the rotors give, with constants that take nothing of it.
-    let bare = Numbers { scale: SCALE, floor_margin: 1e-3 * mass * gravity, ..Numbers::NOTHING };
-    let given = TorqueBudget::new(&bare.parameters(), vehicle, limits, rotors);
+    let scale = [or("scale_least", SCALE[0]), or("scale_greatest", SCALE[1])];
+    let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
+    let bare = Numbers { scale, floor_margin, ..Numbers::NOTHING };
+    let free = TorqueBudget::new(&bare.parameters(), vehicle, limits, rotors);
     let most = |of: fn(&super::budget::Row) -> f64| {
-        let rows = given.rows.iter().filter(|row| of(row) > 0.0).map(|row| row.room / of(row));
+        let rows = free.rows.iter().filter(|row| of(row) > 0.0).map(|row| row.room / of(row));
         rows.fold(f64::INFINITY, lesser_f64)
     };
     let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
 
+    // Yaw torque raises the thrust floor, by half a row's y for each N m.
+    let raised = free.rows.iter().filter(|row| row.tilt > 0.0).map(|row| 0.5 * row.yaw).fold(1e-12, greater_f64);
+    let light = lesser_f64(0.07 * yaw_most, 0.15 * mass * gravity / raised);
     let nimble = tilt_most / greatest_inertia;
-    let turn_rate = (0.07 * nimble).clamp(2.0, 5.0);
-    let yaw_rate = lesser_f64(2.5, 0.1 * nimble / turn_rate);
+    let turn_rate = or("turn_rate", (0.07 * nimble).clamp(2.0, 5.0));
+    let yaw_rate = or("yaw_rate", 2.5);
     let yaw_feedback = 0.065 * yaw_most;
     let mut n = Numbers {
         turn_rate,
         yaw_rate,
-        yaw_acceleration: lesser_f64(0.05 * yaw_most / j.z, 20.0),
-        torque_tilt: 0.03 * tilt_most,
-        torque_yaw: 0.04 * yaw_most,
-        m_omega_z: 0.5 * yaw_feedback,
+        yaw_acceleration: or("yaw_acceleration", lesser_f64(light / j.z, 20.0)),
+        torque_tilt: or("torque_tilt", 0.03 * tilt_most),
+        torque_yaw: or("torque_yaw", 0.04 * yaw_most),
+        m_omega_z: or("m_omega_z", 0.5 * yaw_feedback),
         w_eta: yaw_feedback,
         ..bare
     };
@@ -91,37 +110,44 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
     let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
     let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
     let weak = joint.map(|row| 0.28 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.15, lesser_f64);
-    let steady = yaw_rate * turn_rate;
+    let a_down = or("a_down", FALL * gravity);
+    let up = or("force_up", 0.4 * a_down);
+    // The thrust floor with the frame turning at alpha_0 stays below the least thrust near the target.
+    let floor = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST) - budget.floor;
+    let lifted = 0.9 * floor / greater_f64(budget.floor_per_acceleration, 1e-12);
+    let reserve = |m_all: f64| or("turn_reserve", lesser_f64(weak * m_all / greatest_inertia, lifted));
     let mut m_all = 0.0;
     for _ in 0..20 {
-        m_all = greater_f64(0.98 * budget.feedback(weak * m_all / greatest_inertia + steady), 0.02 * tilt_most);
+        m_all = greater_f64(0.98 * budget.feedback(reserve(m_all)), 0.02 * tilt_most);
     }
+    let m_all = or("m_all", m_all);
     let stiffness = tilt_inertia * w_a * w_a;
-    let w = lesser_f64(1.45 * m_all, 3.2 * stiffness);
-    let eta = (n.w_eta / w).clamp(0.03, 0.5);
+    let w = or("w", lesser_f64(lesser_f64(1.45 * m_all, 3.2 * stiffness), n.w_eta / ETA_LEAST));
+    let eta = or("eta", (n.w_eta / w).clamp(ETA_LEAST, 0.5));
+    // The potential is greatest where the tilt's own part falls: three places of r tell.
+    let own = [(0.15, 0.885), (0.35, 0.82), (0.45, 0.66)].map(|(of_w, of_level)| (0.93 * m_all - of_w * w) / of_level);
+    let m_t = own.into_iter().fold(m_all, lesser_f64);
     n = Numbers { m_all, w, eta, ..n };
     let yaw_stiffness = 0.25 * w * eta / (1.0 + eta);
     let yaw_damping = 3.2 * math::sqrt_f64(yaw_stiffness * j.z);
 
-    let [weakest, greatest] = held(&budget, airframe, [SCALE[0], 1.0]);
-    let a_down = FALL * gravity;
+    let [weakest, greatest] = held(&budget, airframe, [scale[0], 1.0]);
     // The least lift within the cone at the greatest |u|.
     let cosine = lesser_f64(1.05 * (gravity - a_down) / greatest, 1.0);
     let steepest = math::sqrt_of_rounded(1.0 - cosine * cosine) / cosine;
     let tangent = lesser_f64(lesser_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
     let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
-    let a_across = lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent);
-    let force_across = lesser_f64(0.58 * a_across, 0.85 * level(weakest));
-    let up = 0.7 * a_down;
-    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.9 * (weakest - gravity)), 0.0);
+    let a_across = or("a_across", lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent));
+    let force_across = or("force_across", lesser_f64(0.58 * a_across, 0.85 * level(weakest)));
+    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
 
-    let k_f = lesser_f64(0.75 * w_a, 100.0);
-    let k_v = lesser_f64(8.0, 0.41 * w_a);
+    let k_f = or("k_f", lesser_f64(0.75 * w_a, 100.0));
+    let k_v = or("k_v_across", lesser_f64(8.0, 0.41 * w_a));
     let k_p = 0.42 * k_v * k_v;
     let follow = lesser_f64(23.0, 1.55 * w_a);
     let single = |value: f64| value as f32;
     let [delta, alpha, c_1, c_2] = SHARED;
-    ExtendedParameters {
+    let formulas = ExtendedParameters {
         k_p_across: single(k_p),
         k_p_vertical: single(1.3 * k_p),
         k_v_across: single(k_v),
@@ -135,9 +161,9 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
         v_up: 3.7,
         v_down: 2.7,
         turn_acceleration: single(0.75 * m_all / greatest_inertia),
-        turn_reserve: single(weak * m_all / greatest_inertia),
+        turn_reserve: single(reserve(m_all)),
         k_t: single(greater_f64((stiffness - 0.25 * w) * 2.0 * math::hypot(1.0, ETA_T), 1e-6)),
-        m_t: single(0.4 * m_all),
+        m_t: single(m_t),
         eta_t: single(ETA_T),
         k_omega_t: single(2.1 * w_a * tilt_inertia),
         r_0: single((m_all / (12.0 * stiffness)).clamp(1e-3, 1e3)),
@@ -147,6 +173,7 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
         c_1,
         c_2,
         force_across: single(force_across),
+        force_heading: single(lesser_f64(force_across, 2.5)),
         force_up: single(up),
         force_down: single(force_down),
         force_bandwidth_across: single(follow),
@@ -155,7 +182,12 @@ pub fn constants(airframe: &Airframe) -> ExtendedParameters {
         torque_bandwidth: 3.0,
         scale_rate: 0.3,
         ..n.parameters()
+    };
+    let mut values = formulas.values();
+    for (value, given) in values.iter_mut().zip(given) {
+        *value = given.unwrap_or(*value);
     }
+    ExtendedParameters::from_values(values)
 }
 
 /// The acceleration that the rotors hold near the target where they deliver these shares of what is commanded, m/s^2.
@@ -239,8 +271,9 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
         p.yaw_acceleration,
     ]
     .map(f64::from);
-    let horizontal = lesser_f64(3.0, 0.2 * across);
-    let spare = 0.9 * (weakest - gravity - f64::from(p.force_down));
+    let held_beyond = weakest - gravity;
+    let horizontal = lesser_f64(lesser_f64(3.0, 0.2 * across), math::sqrt_of_rounded(0.1 * gravity * held_beyond));
+    let spare = 0.5 * (held_beyond - f64::from(p.force_down));
     let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
     // What the net leaves of Omega and alpha_0, with the least |u|.
     let net = net_level(p, airframe.vehicle.gravity);
@@ -250,7 +283,7 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     let turned = (jerk + 2.0 * k_f * net) / least;
     let snap = 0.8 * ((reserve - 2.0 * turned * turned) * least - 2.0 * k_f * (k_s + k_f) * net);
     // The heading of a tilted frame turns faster by 1 / cos of its tilt.
-    let tilt = math::hypot(1.0, (f64::from(p.force_across) + horizontal) / (gravity - up));
+    let tilt = math::hypot(1.0, (f64::from(p.force_heading) + horizontal) / (gravity - up));
     let single = |value: f64| greater_f64(value, 0.0) as f32;
     ReferenceBounds {
         horizontal_speed: 5.0,

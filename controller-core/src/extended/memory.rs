@@ -22,8 +22,7 @@ pub struct Estimates {
 
 impl Estimates {
     /// Nothing known.
-    pub const NONE: Self =
-        Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+    pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
 }
 
 /// What the law has averaged, before it is cut to its levels.

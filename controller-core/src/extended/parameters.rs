@@ -74,6 +74,8 @@ constants! {
         gains.floor_margin: Range::POSITIVE, FIXED;
         /// D_h, m/s^2: greatest estimate of the force per mass across.
         estimates.force_across: Range::LEVEL, SEARCHED;
+        /// F_h, m/s^2: force across in which the heading is proven to arrive.
+        estimates.force_heading: Range::LEVEL, FIXED;
         /// D_z+, m/s^2: greatest estimate upwards.
         estimates.force_up: Range::LEVEL, FIXED;
         /// D_z-, m/s^2: greatest estimate downwards.

@@ -156,19 +156,26 @@ impl PositionLaw {
     }
 
     /// ubar.
-    fn saturated(&self, [z_1, z_2]: [&Vector3<f32>; 2], force: &Vector3<f32>, greatest: f32, most: f32) -> Vector3<f32> {
+    fn saturated(
+        &self,
+        [z_1, z_2]: [&Vector3<f32>; 2],
+        force: &Vector3<f32>,
+        greatest: f32,
+        most: f32,
+    ) -> Vector3<f32> {
         // Above the reference the vehicle descends.
         let descent = if z_1.z > 0.0 { &self.approach_down } else { &self.approach_up };
         let vertical = (z_2.z + z_1.z * descent.factor(z_1.z * z_1.z)) * self.k_v_vertical;
         let level = if vertical > 0.0 { self.a_down - force.z } else { greatest - self.gravity + force.z };
-        let vertical = -vertical * unit_factor(math::lesser(math::greater(level, LEVEL_LEAST), most), vertical * vertical) - force.z;
+        let vertical = -vertical
+            * unit_factor(math::lesser(math::greater(level, LEVEL_LEAST), most), vertical * vertical)
+            - force.z;
 
         let lift = self.gravity + vertical;
         let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
         let reach = math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left));
         let (across, wind) = (z_1.xy(), force.xy());
-        let wanted =
-            (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
+        let wanted = (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
         let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
         let level = math::lesser(level, most);
         let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
-//! | \|q\| <= alpha - \|W\| \|p\|, at least alpha_0 | the budget ([`super::budget`]) |
+//! | \|q + W (p_2, -p_1)\| <= alpha, at least alpha_0 | omega'_d12 and the budget ([`super::budget`]); W turns p in the frame's axes, not its length |
 //! | \|p + h q\| <= Omega | |
 //! | (p + h q) . z >= -(alpha_0 / Omega) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U |
@@ -43,7 +43,7 @@ pub struct TurningLimit {
 pub struct Circumstances {
     /// alpha, rad/s^2, as the budget has it.
     pub budget: f32,
-    /// |W|, rad/s.
+    /// W, rad/s.
     pub yaw_rate: f32,
     /// e3 in the axes of the desired frame.
     pub up: Vector3<f32>,
@@ -83,15 +83,20 @@ impl TurningLimit {
     pub fn limited(&self, turn: &Turn, circumstances: &Circumstances) -> Limited {
         let Circumstances { budget, yaw_rate, up, greatest, vertical: [c, c_rate, c_wanted] } = *circumstances;
         let Turn { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = *turn;
-        let speed = math::sqrt(rate.norm_squared());
-        let most = math::greater(budget - yaw_rate * speed, self.reserve);
-        let mut q = shortened(wanted, most);
-        let next = rate + q * self.period;
+        let next = rate + wanted * self.period;
+        let mut q = wanted;
         if next.norm_squared() > self.rate * self.rate {
             cold_path();
             q = (shortened(next, self.rate) - rate) / self.period;
         }
+        let most = math::greater(budget, self.reserve);
         q = self.kept_in_cone(q, &rate, &up, most);
+        let carried = Vector2::new(rate.y, -rate.x) * yaw_rate;
+        let whole = q + carried;
+        if whole.norm_squared() > most * most {
+            cold_path();
+            q = shortened(whole, most) - carried;
+        }
 
         let tangential = (q - wanted) * magnitude;
         let mut along = 0.0;
@@ -112,7 +117,7 @@ impl TurningLimit {
         Limited { acceleration: q, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
     }
 
-    /// `q` with so much towards the vertical that rho stays in its cone, at most `most` long.
+    /// `q` with so much towards the vertical, at most `most`, that rho stays in its cone.
     fn kept_in_cone(&self, q: Vector2<f32>, rate: &Vector2<f32>, up: &Vector3<f32>, most: f32) -> Vector2<f32> {
         let z = up.xy();
         let rising = (rate + q * self.period).dot(&z);
@@ -124,7 +129,7 @@ impl TurningLimit {
         // Beyond the cone's edge by rounding alone: z is as long as the sine of the cone's angle.
         let square = math::greater(z.norm_squared(), 1e-6);
         let inwards = z * ((least - rising) / (square * self.period));
-        shortened(q + shortened(inwards, most), most)
+        shortened(q, most) + shortened(inwards, most)
     }
 }
 

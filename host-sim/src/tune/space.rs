@@ -38,7 +38,9 @@ impl Space {
                 let floor = thrust_floor.map_or(0.5, |floor| floor / self.configuration.least_thrust());
                 logarithms(&[g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor])
             }
-            LawParameters::Extended(law) => logarithms(&searched(&law.parameters).map(|named| named.2).collect::<Vec<_>>()),
+            LawParameters::Extended(law) => {
+                logarithms(&searched(&law.parameters).map(|named| named.2).collect::<Vec<_>>())
+            }
         }
     }
 
@@ -49,7 +51,8 @@ impl Space {
             LawParameters::Paper(law) => self.papers(law, point),
             LawParameters::Extended(law) => {
                 let mut values = law.parameters.values();
-                let searched = values.iter_mut().zip(&ExtendedParameters::TABLE).filter(|(_, constant)| constant.searched);
+                let searched =
+                    values.iter_mut().zip(&ExtendedParameters::TABLE).filter(|(_, constant)| constant.searched);
                 for ((value, _), x) in searched.zip(point) {
                     *value = x.exp() as f32;
                 }
