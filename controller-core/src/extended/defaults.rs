@@ -4,7 +4,7 @@
 //!
 //! | what | formula |
 //! |---|---|
-//! | w_a, bandwidth of the tilt, rad/s | min(12.5, 1.5 sqrt(g / r), 0.3 / (h/2 + T/4)), r = 2 sqrt(J / m) |
+//! | w_a, bandwidth of the tilt, rad/s | min(12.5, 1.44 sqrt(g / r), 0.3 / (h/2 + T/4)), r = 2 sqrt(J / m) |
 //! | M_all | what the rows of the budget leave: see [`constants`] |
 //! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 1.7 w_a J |
 //! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), as much as keeps \|P\| below 0.93 M_all |
@@ -13,7 +13,8 @@
 //! | Omega | between 2.5 and 5 rad/s, 0.08 of what the rotors give / J |
 //! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 1.6 w_a |
 //! | k_v, k_p across; vertical | 0.54 w_a, 0.435 k_v^2; 1.4 and 1.96 times that |
-//! | A_h, gamma | 0.8 of the thrust held level; 75 degrees or what the least lift allows |
+//! | A_h, gamma | what the thrust leaves beside 0.7 of the weight; 75 degrees or what the least lift allows |
+//! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
 //! | D_h | 0.8 A_h, or 0.85 of what the weakest thrust holds |
 //! | L across; vertical | 1.1 w_a; 1.33 times that |
 //! | yaw: feedback, A, bias | 4, 5 and 4 % of the greatest yaw torque |
@@ -77,7 +78,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let late = f64::from(actuators.lag) + f64::from(actuators.delay);
     let left = 0.5 * f64::from(period) + 0.25 * late;
     let size = 2.0 * math::sqrt_f64(tilt_inertia / mass);
-    let w_a = [12.5, 1.5 * math::sqrt_f64(gravity / size), 0.3 / left].into_iter().fold(f64::INFINITY, lesser_f64);
+    let w_a = [12.5, 1.44 * math::sqrt_f64(gravity / size), 0.3 / left].into_iter().fold(f64::INFINITY, lesser_f64);
 
     // What the rotors give, with constants that take nothing of it.
     let scale = [or("scale_least", SCALE[0]), or("scale_greatest", SCALE[1])];
@@ -140,7 +141,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let steepest = math::sqrt_of_rounded(1.0 - cosine * cosine) / cosine;
     let tangent = lesser_f64(lesser_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
     let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
-    let a_across = or("a_across", lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent));
+    let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
+    let a_across = or("a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
     let force_across = or("force_across", lesser_f64(0.8 * a_across, 0.85 * level(weakest)));
     let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
 
@@ -161,8 +163,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         a_across: single(a_across),
         a_down: single(a_down),
         tilt_max: single(math::atan(tangent)),
-        v_across: 7.0,
-        v_up: 6.0,
+        v_across: single(lesser_f64(1.6 * math::sqrt_f64(a_across), 9.0)),
+        v_up: 4.2,
         v_down: 3.5,
         turn_acceleration: single(0.9 * m_all / greatest_inertia),
         turn_reserve: single(reserve(m_all)),
