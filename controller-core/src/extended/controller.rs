@@ -18,7 +18,7 @@ use super::force::ForceObserver;
 use super::heading::{self, HeadingLag};
 use super::memory::{Averages, Estimates, Last, Memory};
 use super::parameters::Extended;
-use super::position::PositionLaw;
+use super::position::{Filters, PositionLaw};
 use super::thrust_range::ThrustRange;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
@@ -32,7 +32,7 @@ use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::math;
 use crate::path_lifting;
-use crate::position::{FilterState, FilterTransition};
+use crate::position::FilterTransition;
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
@@ -234,12 +234,11 @@ impl Controller {
         let bias = self.learning.torque.estimate(&learnt.torque);
 
         let mut net = self.memory.net;
-        let filter =
-            if net.catches() { FilterState { filtered: -force, intermediate: -force } } else { self.memory.filter };
+        let filters = if net.catches() { Filters::at(-force) } else { self.memory.filters };
         let [each, taken, most] = self.greatest;
         let greatest = math::lesser(scale * each - taken, most);
-        let feedback = self.position.feedback(state, reference, &filter, &force, greatest, net.is_caught());
-        let command = self.acceleration_command(reference, &filter);
+        let feedback = self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught());
+        let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position.k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
         let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
@@ -265,7 +264,7 @@ impl Controller {
                 yaw_rate: velocity.z,
                 up: desired.up(),
                 greatest,
-                vertical: [filter.filtered.z, feedback.rate.z, wanted.z],
+                vertical: [filters.command.z, feedback.rate.z, wanted.z],
             },
         );
         let papers = desired.motion_of(&turn.rate, &limited.acceleration, &reference.heading);
@@ -282,7 +281,7 @@ impl Controller {
                 feedback.drive + desired.turned(&change) * (1.0 / self.position.k_f())
             }
         };
-        self.memory.filter = self.position.advance(&filter, &drive);
+        self.memory.filters = self.position.advance(&filters, &feedback.smoothed, &drive);
         self.memory.averages = learnt;
         let turning = heading::turning(&lag, &papers, &self.parameters, self.period);
         self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
@@ -321,8 +320,8 @@ impl Controller {
             z_1: feedback.z_1,
             z_2: feedback.z_2,
             feedback: feedback.feedback,
-            filtered: filter.filtered,
-            intermediate: filter.intermediate,
+            filtered: filters.command,
+            intermediate: filters.intermediate,
             acceleration_command: command,
             desired_attitude: desired.attitude(),
             desired_angular_velocity: turning.velocity,
@@ -367,8 +366,8 @@ impl Controller {
     }
 
     /// u = c + g e3 + p_d'' + kappa p_d'.
-    fn acceleration_command(&self, reference: &Reference, filter: &FilterState) -> Vector3<f32> {
-        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered;
+    fn acceleration_command(&self, reference: &Reference, c: &Vector3<f32>) -> Vector3<f32> {
+        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + c;
         command.z += self.vehicle.gravity;
         command
     }
