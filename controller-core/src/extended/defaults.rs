@@ -11,7 +11,7 @@
 //! | r_0 | M_all / (12 J w_a^2): beyond it M_all brakes along a parabola |
 //! | alpha_max, alpha_0 | 0.75 M_all / J, 0.15 M_all / J or less where yaw is weak |
 //! | Omega | between 2 and 5 rad/s, 0.07 of what the rotors give / J |
-//! | k_f, k_s | 0.75 w_a, 4 k_f |
+//! | k_f, k_s, k_d | 0.75 w_a, 2 k_f, 2.5 w_a |
 //! | k_v, k_p across; vertical | min(8, 0.41 w_a), 0.42 k_v^2; 1.2 and 1.3 times that |
 //! | A_h, gamma | 0.8 of the thrust held level; 75 degrees or what the least lift allows |
 //! | D_h | 0.58 A_h, or 0.85 of what the weakest thrust holds |
