@@ -14,8 +14,8 @@
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across has what the vertical leaves |
 //! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
 //!
-//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, whatever d is, and every level is as wide as that
-//! allows. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
+//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide as that allows. Where d
+//! leaves less than the least level, 0.3 m/s^2, that stands, and ubar may be outside; u itself is bounded by [`super::turning`]. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
 //! of its argument.
 
 use super::parameters::ExtendedParameters;

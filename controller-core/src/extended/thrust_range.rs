@@ -1,4 +1,4 @@
-//! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 6 of
+//! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 8 of
 //! `docs/extended-law.md`.
 //!
 //! Rotor i is asked for f_i = b_T,i T + b_tau,i . tau, with (b_T,i, b_tau,i) its row of B+. So it is within its range as long as T is

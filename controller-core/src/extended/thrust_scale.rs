@@ -1,11 +1,12 @@
-//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 7 of `docs/extended-law.md`.
+//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 9 of `docs/extended-law.md`.
 //!
 //! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from what varies alone. With
 //! y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
 //! y - ybar = s (f - fbar) for any constant force,   s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
 //!
-//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are commanded f / s.
+//! So |s - s*| never rises while force and scale are constant, once the averages have forgotten how they began, and s stands
+//! still where thrust does. Rotors are commanded f / s.
 
 use super::parameters::ExtendedParameters;
 use crate::math;
