@@ -88,19 +88,28 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     };
     let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
 
-    // Yaw torque raises the thrust floor, by half a row's y for each N m.
-    let raised = free.rows.iter().filter(|row| row.tilt > 0.0).map(|row| 0.5 * row.yaw).fold(1e-12, greater_f64);
-    let light = lesser_f64(0.07 * yaw_most, 0.15 * mass * gravity / raised);
+    // The least thrust near the target must hold the idling rotors and what these torques raise the thrust floor by.
+    let a_down = or("a_down", FALL * gravity);
+    let up = or("force_up", 0.4 * a_down);
+    let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
+    let raised = |by: Numbers| TorqueBudget::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
+    let by_tilt = raised(Numbers { torque_tilt: 1.0, ..bare });
+    let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
+    let light = lesser_f64(0.07 * yaw_most, 0.15 * mass * gravity / by_yaw);
+    let all = 0.03 * tilt_most * by_tilt + (0.04 * yaw_most + light) * by_yaw;
+    let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));
     let nimble = tilt_most / greatest_inertia;
-    let turn_rate = or("turn_rate", (0.07 * nimble).clamp(2.0, 5.0));
-    let yaw_rate = or("yaw_rate", 2.5);
+    // The gyroscopic torque about z takes half of the yaw torque at most.
+    let product = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
+    let turn_rate = or("turn_rate", lesser_f64((0.07 * nimble).clamp(2.0, 5.0), math::sqrt_f64(0.6 * product)));
+    let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.4 * product)));
     let yaw_feedback = 0.065 * yaw_most;
     let mut n = Numbers {
         turn_rate,
         yaw_rate,
-        yaw_acceleration: or("yaw_acceleration", lesser_f64(light / j.z, 20.0)),
-        torque_tilt: or("torque_tilt", 0.03 * tilt_most),
-        torque_yaw: or("torque_yaw", 0.04 * yaw_most),
+        yaw_acceleration: or("yaw_acceleration", lesser_f64(spared * light / j.z, 20.0)),
+        torque_tilt: or("torque_tilt", 0.03 * spared * tilt_most),
+        torque_yaw: or("torque_yaw", 0.04 * spared * yaw_most),
         m_omega_z: or("m_omega_z", 0.5 * yaw_feedback),
         w_eta: yaw_feedback,
         ..bare
@@ -110,11 +119,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
     let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
     let weak = joint.map(|row| 0.28 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.15, lesser_f64);
-    let a_down = or("a_down", FALL * gravity);
-    let up = or("force_up", 0.4 * a_down);
     // The thrust floor with the frame turning at alpha_0 stays below the least thrust near the target.
-    let floor = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST) - budget.floor;
-    let lifted = 0.9 * floor / greater_f64(budget.floor_per_acceleration, 1e-12);
+    let lifted = 0.9 * (least - budget.floor) / greater_f64(budget.floor_per_acceleration, 1e-12);
     let reserve = |m_all: f64| or("turn_reserve", lesser_f64(weak * m_all / greatest_inertia, lifted));
     let mut m_all = 0.0;
     for _ in 0..20 {
@@ -184,8 +190,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         ..n.parameters()
     };
     let mut values = formulas.values();
-    for (value, given) in values.iter_mut().zip(given) {
-        *value = given.unwrap_or(*value);
+    for ((value, given), constant) in values.iter_mut().zip(given).zip(&ExtendedParameters::TABLE) {
+        *value = given.unwrap_or(value.clamp(constant.range.least, constant.range.greatest));
     }
     ExtendedParameters::from_values(values)
 }
