@@ -65,7 +65,6 @@ pub struct Controller {
     limits: Limits,
     law: ExtendedLaw,
     rotors: Option<Rotors>,
-    parameters: Extended,
     period: f32,
     per_mass: f32,
     switching_scalar: f32,
@@ -130,7 +129,6 @@ impl Controller {
             limits: *limits,
             law: *law,
             rotors: rotors.cloned(),
-            parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
             switching_scalar: path_lifting::switching_scalar(parameters.delta),
@@ -245,7 +243,7 @@ impl Controller {
         let desired = DesiredAttitude::new(&command, &reference.heading);
         let turn = desired.turn(&jerk, &snap);
         let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
-        let lag = self.memory.heading.unwrap_or_else(|| HeadingLag::none(yaw_rate, &self.parameters));
+        let lag = self.memory.heading.unwrap_or_else(|| HeadingLag::none(yaw_rate, &self.law.parameters));
         let velocity = heading::velocity(&lag, &Vector3::new(-turn.rate.y, turn.rate.x, yaw_rate));
 
         let error = lag.turned_back(&desired.error(&state.attitude));
@@ -254,7 +252,7 @@ impl Controller {
         let (projected, projected_rate) =
             self.attitude.projected(&error, &angular_velocity_error, &self.late(scale, &bias));
         let lifted =
-            path_lifting::lift(self.memory.lift.as_ref(), &projected, self.switching_scalar, self.parameters.alpha);
+            path_lifting::lift(self.memory.lift.as_ref(), &projected, self.switching_scalar, self.law.parameters.alpha);
         let torques = self.attitude.feedback(&lifted.quaternion, &projected_rate);
 
         let limited = self.turning.limited(
@@ -283,7 +281,7 @@ impl Controller {
         };
         self.memory.filters = self.position.advance(&filters, &feedback.smoothed, &drive);
         self.memory.averages = learnt;
-        let turning = heading::turning(&lag, &papers, &self.parameters, self.period);
+        let turning = heading::turning(&lag, &papers, &self.law.parameters, self.period);
         self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
         self.memory.lift = Some(lifted.lift);
 
@@ -374,7 +372,7 @@ impl Controller {
 
     /// A derivative of the reference with the drag that the one below it makes.
     fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
-        let drag = self.parameters.drag_across;
+        let drag = self.law.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
     }
 

@@ -15,7 +15,7 @@
 //! | k_v, k_p across; vertical | 0.54 w_a, 0.435 k_v^2; 1.4 and 1.96 times that |
 //! | A_h, gamma | what the thrust leaves beside 0.7 of the weight; 75 degrees or what the least lift allows |
 //! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
-//! | D_h | 0.8 A_h, or 0.85 of what the weakest thrust holds |
+//! | D_h | 0.8 A_h, or 0.8 of what the weakest thrust holds, without the drag at 5 m/s |
 //! | L across; vertical | 1.1 w_a; 1.33 times that |
 //! | yaw: feedback, A, bias | 4, 5 and 4 % of the greatest yaw torque |
 
@@ -91,20 +91,31 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     };
     let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
 
-    // Torque raises the thrust floor: about yaw by half a row's y for each N m, about tilt by a row's t for both axes.
-    let raised = free.rows.iter().filter(|row| row.tilt > 0.0).map(|row| 0.5 * row.yaw).fold(1e-12, greater_f64);
-    let tilted = free.rows.iter().filter(|row| row.yaw > 0.0).map(|row| row.tilt).fold(1e-12, greater_f64);
-    let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / raised);
+    // The least thrust near the target must hold the idling rotors and what these torques raise the thrust floor by.
+    let a_down = or("a_down", FALL * gravity);
+    let up = or("force_up", 0.33 * a_down);
+    let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
+    let raised = |by: Numbers| TorqueBudget::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
+    let by_tilt = raised(Numbers { torque_tilt: 1.0, ..bare });
+    let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
+    let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / by_yaw);
+    let by_tilt = greater_f64(by_tilt, 1e-12);
+    let bias_tilt = lesser_f64(0.035 * tilt_most, 0.1 * mass * gravity / by_tilt);
+    let bias_yaw = lesser_f64(0.04 * yaw_most, 0.06 * mass * gravity / by_yaw);
+    let all = bias_tilt * by_tilt + (bias_yaw + light) * by_yaw;
+    let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));
     let nimble = tilt_most / greatest_inertia;
-    let turn_rate = or("turn_rate", (0.08 * nimble).clamp(2.5, 5.0));
-    let yaw_rate = or("yaw_rate", 2.5);
+    // The gyroscopic torque about z takes half of the yaw torque at most.
+    let product = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
+    let turn_rate = or("turn_rate", lesser_f64((0.08 * nimble).clamp(2.5, 5.0), math::sqrt_f64(0.6 * product)));
+    let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.4 * product)));
     let yaw_feedback = 0.04 * yaw_most;
     let mut n = Numbers {
         turn_rate,
         yaw_rate,
-        yaw_acceleration: or("yaw_acceleration", lesser_f64(light / j.z, 20.0)),
-        torque_tilt: or("torque_tilt", lesser_f64(0.035 * tilt_most, 0.1 * mass * gravity / tilted)),
-        torque_yaw: or("torque_yaw", lesser_f64(0.04 * yaw_most, 0.06 * mass * gravity / raised)),
+        yaw_acceleration: or("yaw_acceleration", lesser_f64(spared * light / j.z, 20.0)),
+        torque_tilt: or("torque_tilt", spared * bias_tilt),
+        torque_yaw: or("torque_yaw", spared * bias_yaw),
         m_omega_z: or("m_omega_z", 0.5 * yaw_feedback),
         w_eta: yaw_feedback,
         ..bare
@@ -114,11 +125,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
     let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
     let weak = joint.map(|row| 0.26 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.14, lesser_f64);
-    let a_down = or("a_down", FALL * gravity);
-    let up = or("force_up", 0.33 * a_down);
     // The thrust floor with the frame turning at alpha_0 stays below the least thrust near the target.
-    let floor = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST) - budget.floor;
-    let lifted = 0.9 * floor / greater_f64(budget.floor_per_acceleration, 1e-12);
+    let lifted = 0.9 * (least - budget.floor) / greater_f64(budget.floor_per_acceleration, 1e-12);
     let reserve = |m_all: f64| or("turn_reserve", lesser_f64(weak * m_all / greatest_inertia, lifted));
     let mut m_all = 0.0;
     for _ in 0..20 {
@@ -143,7 +151,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
     let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
     let a_across = or("a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
-    let force_across = or("force_across", lesser_f64(0.8 * a_across, 0.85 * level(weakest)));
+    let force_across = or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.8 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
     let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
 
     let k_f = or("k_f", 1.12 * w_a);
@@ -190,8 +198,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         ..n.parameters()
     };
     let mut values = formulas.values();
-    for (value, given) in values.iter_mut().zip(given) {
-        *value = given.unwrap_or(*value);
+    for ((value, given), constant) in values.iter_mut().zip(given).zip(&ExtendedParameters::TABLE) {
+        *value = given.unwrap_or(value.clamp(constant.range.least, constant.range.greatest));
     }
     ExtendedParameters::from_values(values)
 }
