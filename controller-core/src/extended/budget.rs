@@ -23,8 +23,8 @@
 //! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
 
 use super::parameters::ExtendedParameters;
-use crate::allocation::{Rotors, collected};
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::{Limits, Vehicle};
 use heapless::Vec;
