@@ -46,6 +46,7 @@ pub fn read_configuration(
     };
     let (configuration, bounds) = match name {
         LawName::Extended => {
+            rotors.iter().try_for_each(check_lifted)?;
             let drag = known_drag(root, &vehicle, rotors.as_ref())?;
             let period = period as f32;
             let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
@@ -86,25 +87,20 @@ pub fn read_configuration(
         _ => configuration,
     };
     match rotors {
-        Some(rotors) => mounted(configuration, rotors),
+        Some(rotors) => configuration.with_rotors(rotors).map_err(|error| root.refused(&error)),
         None => Ok(configuration),
     }
 }
 
-/// Carries `configuration` to its rotors.
-fn mounted(configuration: Configuration, rotors: Rotors) -> Result<Configuration, FieldError> {
-    let unlifted = rotors.pseudo_inverse().iter().position(|row| row.x <= 0.0);
-    configuration.with_rotors(rotors).map_err(|error| {
-        let problem = match unlifted {
-            Some(index) => format!(
-                "leaves rotor {} without a share of the thrust, which the extended law needs: the centre of mass, \
-                 from which positions count, must lie well amid the rotors",
-                index + 1
-            ),
-            None => error.reason.to_string(),
-        };
-        FieldError::new(error.field, problem)
-    })
+/// Refuses rotors that thrust alone would not lift, from which no constants of the extended law follow.
+fn check_lifted(rotors: &Rotors) -> Result<(), FieldError> {
+    let Some(index) = rotors.pseudo_inverse().iter().position(|row| row.x <= 0.0) else { return Ok(()) };
+    let problem = format!(
+        "leaves rotor {} without a share of the thrust, which the extended law needs: the centre of mass, \
+         from which positions count, must lie well amid the rotors",
+        index + 1
+    );
+    Err(FieldError::new("rotors.position", problem))
 }
 
 /// The laws that a file can name.

@@ -23,8 +23,8 @@
 //! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
 
 use super::parameters::ExtendedParameters;
-use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::{Limits, Vehicle};
 use heapless::Vec;
@@ -45,6 +45,13 @@ pub struct Row {
     pub yaw: f64,
     /// R without the fixed parts.
     pub room: f64,
+}
+
+impl Row {
+    /// Whether `other` holds wherever this row does: it costs no more of its room.
+    fn covers(&self, other: &Self) -> bool {
+        other.tilt * self.room <= self.tilt * other.room && other.yaw * self.room <= self.yaw * other.room
+    }
 }
 
 /// Everything about the budget that does not change from tick to tick, in double precision.
@@ -167,10 +174,10 @@ fn least_range(shares: &[Share], [least_scale, greatest_scale]: [f64; 2], margin
 }
 
 /// The budget as a tick spends it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TurningBudget {
-    /// t, y and R of each row; rows that are not there never bind.
-    rows: [[f32; 3]; 3],
+    /// t, y and R of each row that can bind.
+    rows: Vec<[f32; 3], 3>,
     inertia: [f32; 2],
     /// (1 - mu) m / L, per s^2/m, and N_0 / L, rad/s^2.
     thrust: f32,
@@ -182,13 +189,15 @@ impl TurningBudget {
     /// Of `budget` for a vehicle of `mass`, kg, and at most `most`, rad/s^2.
     #[must_use]
     pub fn new(budget: &TorqueBudget, mass: f32, most: f32) -> Self {
-        let mut rows = [[0.0, 1.0, f32::MAX]; 3];
-        for (kept, row) in rows.iter_mut().zip(&budget.rows) {
-            *kept = [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
-        }
+        let rotors = budget.rows.get(2);
+        let binding = budget.rows.iter().enumerate().filter(|(place, row)| {
+            let covered = rotors.is_some_and(|rotors| rotors.covers(row));
+            *place == 2 || !covered
+        });
+        let rounded = |row: &Row| [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
         let per_acceleration = math::greater_f64(budget.floor_per_acceleration, 1e-12);
         Self {
-            rows,
+            rows: collected(binding.map(|(_, row)| rounded(row))),
             inertia: budget.inertia.map(|x| x as f32),
             thrust: ((1.0 - THRUST_LEFT) * f64::from(mass) / per_acceleration) as f32,
             floor: (budget.floor / per_acceleration) as f32,

@@ -289,11 +289,7 @@ impl Controller {
         let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
-        net.observe(
-            [feedback.z_1.norm_squared(), feedback.z_2.norm_squared()],
-            limited.change.is_some() || thrust < along,
-            self.period,
-        );
+        net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
 
         if let Some(changed) = self.changed {
             cold_path();

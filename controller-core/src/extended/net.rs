@@ -13,6 +13,9 @@
 //!
 //! So a flight changes over at most once for each time that it is away from its target.
 
+use core::hint::cold_path;
+use nalgebra::Vector3;
+
 /// The time of changed drives after which the net is used, s.
 pub const PATIENCE: f32 = 60.0;
 
@@ -56,9 +59,14 @@ impl Net {
         catches
     }
 
-    /// A tick of `period`, s: `squares` are |z_1|^2 and |z_2|^2; `limited`, whether drive or thrust was changed.
-    pub fn observe(&mut self, [z_1, z_2]: [f32; 2], limited: bool, period: f32) {
-        if z_1 < NEAR * NEAR && z_2 < NEAR * NEAR {
+    /// A tick of `period`, s, at z_1, m, and z_2, m/s; `limited`, whether drive or thrust was changed.
+    pub fn observe(&mut self, z_1: &Vector3<f32>, z_2: &Vector3<f32>, limited: bool, period: f32) {
+        // Nearly every tick there is nothing to count and nothing to end.
+        if !limited && !self.caught && self.acted == 0.0 {
+            return;
+        }
+        cold_path();
+        if z_1.norm_squared() < NEAR * NEAR && z_2.norm_squared() < NEAR * NEAR {
             (self.acted, self.caught) = (0.0, false);
         } else if limited {
             self.acted += period;
