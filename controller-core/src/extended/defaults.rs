@@ -151,7 +151,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
     let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
     let a_across = or("a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
-    let force_across = or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.8 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
+    let force_across =
+        or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.8 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
     let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
 
     let k_f = or("k_f", 1.12 * w_a);

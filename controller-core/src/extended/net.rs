@@ -8,16 +8,20 @@
 //!
 //! | state | counts | leaves |
 //! |---|---|---|
-//! | own level | time with a changed drive or a cut thrust; from zero again near the target | to the net after [`PATIENCE`] |
+//! | own level | time with a changed drive or a cut thrust, less a twentieth of the time without; from zero again near the target | to the net after [`PATIENCE`] |
 //! | the net | nothing | to its own level near the target |
 //!
 //! So a flight changes over at most once for each time that it is away from its target.
 
+use crate::math;
 use core::hint::cold_path;
 use nalgebra::Vector3;
 
 /// The time of changed drives after which the net is used, s.
 pub const PATIENCE: f32 = 60.0;
+
+/// The part of a silent time that is taken off what was counted: in gusts the limiter acts now and then, and the own level is wanted.
+const FORGIVEN: f32 = 0.05;
 
 /// Near the target: |z_1|, m, and |z_2|, m/s.
 const NEAR: f32 = 0.05;
@@ -70,6 +74,8 @@ impl Net {
             (self.acted, self.caught) = (0.0, false);
         } else if limited {
             self.acted += period;
+        } else {
+            self.acted = math::greater(self.acted - FORGIVEN * period, 0.0);
         }
     }
 }
