@@ -12,7 +12,8 @@
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
 //! - [`mixer`]: wrench to rotor thrusts; what does not fit is given up, yaw first, then thrust, roll and pitch last;
 //! - [`minimum_norm`]: its first step, B+ w, which is all that a certified flight needs;
-//! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks;
+//! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks, and for
+//!   [`greatest_torques`];
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
 //! - [`support`]: which thrusts a whole set of wrenches can ask of each rotor: the certificate's last link.
 
@@ -23,6 +24,7 @@ pub mod minimum_norm;
 pub mod mixer;
 pub mod support;
 
+pub use attainable::greatest_torques;
 pub use curve::{Battery, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
 pub use minimum_norm::{MinimumNorm, Thrusts};

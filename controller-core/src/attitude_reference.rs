@@ -93,6 +93,21 @@ impl AngularMotion {
     }
 }
 
+/// How the thrust direction turns, axes of the desired frame without heading's turn: rho' and rho'' across rho.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// p, rad/s.
+    pub rate: Vector2<f32>,
+    /// q, rad/s^2.
+    pub acceleration: Vector2<f32>,
+    /// n, m/s^2.
+    pub magnitude: f32,
+    /// r = n', m/s^3.
+    pub radial_rate: f32,
+    /// rho . u'', m/s^4.
+    pub radial_acceleration: f32,
+}
+
 /// R_d by its three angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesiredAttitude {
@@ -173,21 +188,67 @@ impl DesiredAttitude {
         command_acceleration: &Vector3<f32>,
         heading: &Heading,
     ) -> AngularMotion {
-        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
-        let (yaw_rate, yaw_acceleration) = (heading.rate(), heading.acceleration());
+        let turn = self.turn(command_rate, command_acceleration);
+        self.motion_of(&turn.rate, &turn.acceleration, heading)
+    }
+
+    /// How rho turns where the command moves by u' and u''.
+    #[inline(always)]
+    #[must_use]
+    pub fn turn(&self, command_rate: &Vector3<f32>, command_acceleration: &Vector3<f32>) -> Turn {
         let rate = self.turned_back(command_rate);
         let acceleration = self.turned_back(command_acceleration);
         let double_magnitude_rate = rate.z + rate.z;
+        let p = rate.xy() * self.inverse_magnitude;
+        Turn {
+            rate: p,
+            acceleration: (acceleration.xy() - p * double_magnitude_rate) * self.inverse_magnitude,
+            magnitude: self.magnitude,
+            radial_rate: rate.z,
+            radial_acceleration: acceleration.z,
+        }
+    }
 
-        let x = -rate.y * self.inverse_magnitude;
-        let y = rate.x * self.inverse_magnitude;
-        let z = (yaw_rate * cos_theta - y * sin_phi) * self.roll_secant;
-        let x_rate = y * z - (acceleration.y + double_magnitude_rate * x) * self.inverse_magnitude;
-        let y_rate = (acceleration.x - double_magnitude_rate * y) * self.inverse_magnitude - x * z;
+    /// The third component of omega_d where rho turns by `rate`, p.
+    #[inline(always)]
+    #[must_use]
+    pub fn yaw_rate(&self, rate: &Vector2<f32>, heading: &Heading) -> f32 {
+        (heading.rate() * self.pitch.x - rate.x * self.roll.y) * self.roll_secant
+    }
+
+    /// omega_d and omega_d' where rho turns by p = `rate` and q = `acceleration`; `heading` as before.
+    #[inline(always)]
+    #[must_use]
+    pub fn motion_of(&self, rate: &Vector2<f32>, acceleration: &Vector2<f32>, heading: &Heading) -> AngularMotion {
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
+        let (yaw_rate, yaw_acceleration) = (heading.rate(), heading.acceleration());
+        let x = -rate.y;
+        let y = rate.x;
+        let z = self.yaw_rate(rate, heading);
+        let x_rate = y * z - acceleration.y;
+        let y_rate = acceleration.x - x * z;
         let theta_rate = y * cos_phi - z * sin_phi;
         let turning = x + (yaw_rate + yaw_rate) * sin_theta;
         let z_rate = (yaw_acceleration * cos_theta - y_rate * sin_phi - theta_rate * turning) * self.roll_secant;
         AngularMotion { velocity: Vector3::new(x, y, z), acceleration: Vector3::new(x_rate, y_rate, z_rate) }
+    }
+
+    /// e3 in the axes of the desired frame: R_d^T e3.
+    #[inline(always)]
+    #[must_use]
+    pub fn up(&self) -> Vector3<f32> {
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
+        Vector3::new(-sin_theta, sin_phi * cos_theta, cos_phi * cos_theta)
+    }
+
+    /// R_d v.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
+        let (y, along) = (cos_phi * v.y - sin_phi * v.z, sin_phi * v.y + cos_phi * v.z);
+        let (x, z) = (cos_theta * v.x + sin_theta * along, cos_theta * along - sin_theta * v.x);
+        Vector3::new(self.yaw.x * x - self.yaw.y * y, self.yaw.y * x + self.yaw.x * y, z)
     }
 
     /// R_d^T v.

@@ -6,33 +6,42 @@
 //!
 //! | module | what | derived in `docs/extended-law.md` |
 //! |---|---|---|
-//! | [`position`] | gains, filters and levels axis by axis, a radial level across, a capped approach speed | 1 |
-//! | [`force`] | an estimate of the force the model does not know, as a bounded, twice differentiable part of u | 2 |
-//! | [`heading`] | the desired frame may lag in heading, so that yaw is asked for no more than it has | 3 |
-//! | [`saturation`] | the saturation that all feedback passes | 1 |
-//! | [`attitude`] | separate levels for tilt and yaw | 4 |
-//! | [`torque_bias`] | an estimate of a constant torque | 5 |
-//! | [`thrust_floor`] | a least thrust that follows the torque, so that no rotor is asked for less than it can give | 6 |
-//! | [`thrust_scale`] | an estimate of what the rotors deliver of what is commanded | 7 |
-//! | [`actuators`] | what the rotors were commanded, through their lag and delay: what the estimates compare with | 8 |
+//! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; a capped approach speed | 1 |
+//! | [`force`] | an estimate of the force the model does not know | 2 |
+//! | [`turning`] | the thrust direction turns as fast as the vehicle can follow | 3 |
+//! | [`budget`] | how fast that is: the thrust and torque at hand | 4 |
+//! | [`heading`] | the desired frame may lag in heading, so that yaw is asked for no more than it has | 5 |
+//! | [`attitude`] | levels for tilt and yaw; damping takes what the potential leaves; errors projected over the rotors' lag | 6 |
+//! | [`torque_bias`] | an estimate of a constant torque | 7 |
+//! | [`thrust_range`] | a least and a greatest thrust that follow the torque | 8 |
+//! | [`thrust_scale`] | an estimate of what the rotors deliver of what is commanded | 9 |
+//! | [`actuators`] | what the rotors were commanded, through their lag and delay: what the estimates compare with | 10 |
+//! | [`net`] | proven gains, if a flight does not arrive with the own ones | 13 |
+//! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`memory`] | what it remembers from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
-//! | [`parameters`] | all of its constants, validated | |
+//! | [`constants`], [`parameters`] | all of its constants, declared once, validated | |
+//! | [`defaults`] | every constant from a vehicle's numbers | 14 |
 //!
 //! Each estimate has a level; a level of zero turns it off.
 
 pub mod actuators;
 pub mod attitude;
+pub mod budget;
+pub mod constants;
 pub mod controller;
+pub mod defaults;
 pub mod force;
 pub mod heading;
 pub mod memory;
+pub mod net;
 pub mod parameters;
 pub mod position;
 pub mod saturation;
-pub mod thrust_floor;
+pub mod thrust_range;
 pub mod thrust_scale;
 pub mod torque_bias;
+pub mod turning;
 
 #[cfg(test)]
 pub(crate) mod example;

@@ -44,7 +44,7 @@ impl Law {
                 Self::Paper(controller::Controller::build(*vehicle, law.gains, law.thrust_floor, period)?)
             }
             LawParameters::Extended(law) => {
-                Self::Extended(extended::controller::Controller::build(vehicle, law, configuration.rotors(), period)?)
+                Self::Extended(extended::controller::Controller::of(configuration, law, period)?)
             }
         })
     }

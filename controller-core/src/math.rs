@@ -14,7 +14,7 @@
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 
 use core::hint::cold_path;
-pub use libm::{exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64, tan};
+pub use libm::{atan, exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64, tan};
 use nalgebra::Vector3;
 
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the
@@ -62,6 +62,12 @@ pub fn within_rate(acceleration: f32, rate: f32, level: f32, period: f32) -> f32
 #[must_use]
 pub fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
+}
+
+/// The lesser of two numbers; the first where they cannot be compared.
+#[must_use]
+pub fn lesser(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
 }
 
 /// The greater of two numbers; none if one of them is none. For proofs, where what is no number must not pass for the lesser one.

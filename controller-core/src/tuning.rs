@@ -113,16 +113,15 @@ impl Factors {
             }
             LawParameters::Extended(ExtendedLaw { parameters, actuators }) => {
                 let mut constants = **parameters;
-                let (attitude, position) = (&mut constants.attitude, &mut constants.position);
                 for (gain, factor) in [
-                    (&mut attitude.w, self.attitude),
-                    (&mut attitude.k_t, self.attitude),
-                    (&mut attitude.k_omega_t, self.rate),
-                    (&mut attitude.k_omega_z, self.rate),
-                    (&mut position.k_p_across, self.position_across),
-                    (&mut position.k_v_across, self.velocity_across),
-                    (&mut position.k_p_vertical, self.position_vertical),
-                    (&mut position.k_v_vertical, self.velocity_vertical),
+                    (&mut constants.w, self.attitude),
+                    (&mut constants.k_t, self.attitude),
+                    (&mut constants.k_omega_t, self.rate),
+                    (&mut constants.k_omega_z, self.rate),
+                    (&mut constants.k_p_across, self.position_across),
+                    (&mut constants.k_v_across, self.velocity_across),
+                    (&mut constants.k_p_vertical, self.position_vertical),
+                    (&mut constants.k_v_vertical, self.velocity_vertical),
                 ] {
                     *gain = factor.of(*gain);
                 }

@@ -88,9 +88,7 @@ fn law_source(law: &LawParameters) -> String {
         LawParameters::Extended(ExtendedLaw { parameters, actuators }) => format!(
             "    use controller_core::certificate::configuration::ExtendedLaw;
     use controller_core::extended::actuators::ActuatorParameters;
-    use controller_core::extended::parameters::{{
-        AttitudeParameters, EstimateParameters, Extended, ExtendedParameters, HeadingParameters, PositionParameters,
-    }};
+    use controller_core::extended::parameters::{{Extended, ExtendedParameters}};
     let parameters = Extended::new({:?}, &vehicle)?;
     let law = ExtendedLaw {{ parameters, actuators: {actuators:?} }};
     Configuration::extended(vehicle, limits, law, bounds)?.with_rotors(rotors)

@@ -8,8 +8,7 @@ mod blame;
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::extended::ExtendedCertificate;
-use controller_core::certificate::extended::bounds::ExtendedBounds;
+use controller_core::certificate::extended::{ExtendedBounds, ExtendedCertificate};
 use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
 use controller_core::certificate::paper::PaperCertificate;
@@ -69,7 +68,7 @@ fn extended(certificate: &ExtendedCertificate) -> String {
     let ExtendedBounds { rates: [rate, swing], thrust, torque, .. } = &certificate.bounds;
     aligned(&rows)
         + &format!(
-            "rotors: beyond hovering. Across the thrust axis |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in \
+            "Across the thrust axis |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in \
              [{}, {}] N, torques {}, {}, {} N m\n",
             short(*rate),
             short(*swing),

@@ -14,7 +14,6 @@
 use crate::flight;
 use controller_core::certificate::configuration::LawParameters;
 use controller_core::error::ParameterError;
-use controller_core::extended::force::ForceGenerator;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
@@ -76,8 +75,6 @@ pub struct LawServer {
     law: Law,
     /// The reference's a_z must stay above this, m/s^2.
     least_vertical_acceleration: f64,
-    /// The file's greater bandwidth of a force estimate, 1/s; none where none is estimated.
-    bandwidth: Option<f32>,
 }
 
 /// The numbers of one line, in order.
@@ -109,13 +106,6 @@ impl LawServer {
             law: flight::law(scenario)?,
             // A step of single precision above the limit, so that rounding never turns a refused number into a served one.
             least_vertical_acceleration: fall - gravity * (1.0 - f64::from(f32::EPSILON)),
-            bandwidth: match configuration.law() {
-                LawParameters::Paper(_) => None,
-                LawParameters::Extended(law) => {
-                    let estimates = law.parameters.estimates;
-                    Some(estimates.force_bandwidth_across.max(estimates.force_bandwidth_vertical))
-                }
-            },
         })
     }
 
@@ -189,28 +179,9 @@ impl LawServer {
             return Err(at_time(format!("reference a[2]: must stay above M_p - g = {limit:.6}, found {}", values[23])));
         }
 
-        self.law.set_period(period as f32).map_err(|error| at_time(self.too_long(period, &error)))?;
+        self.law.set_period(period as f32).map_err(|error| at_time(error.to_string()))?;
         let (wrench, _) = self.law.step(&state, &reference).map_err(|error| at_time(error.to_string()))?;
         Ok(wrench.scaled(1.0 / self.law.thrust_scale()))
-    }
-}
-
-impl LawServer {
-    /// Why the law does not take a dt that other laws would.
-    fn too_long(&self, period: f64, error: &ParameterError) -> String {
-        match self.bandwidth {
-            Some(bandwidth) if error.field.starts_with("estimates.force_bandwidth") => {
-                // In whole microseconds, and one that is taken.
-                let is_taken = |us: f64| bandwidth <= ForceGenerator::STEP_MAX / (us * 1e-6) as f32;
-                let us = (1e6 * f64::from(ForceGenerator::STEP_MAX / bandwidth)).round();
-                let greatest = if is_taken(us) { us } else { us - 1.0 } / 1e6;
-                format!(
-                    "dt: must be at most {greatest} s, {} over this file's greatest estimates.force_bandwidth of {bandwidth}/s, found {period}",
-                    ForceGenerator::STEP_MAX
-                )
-            }
-            _ => error.to_string(),
-        }
     }
 }
 

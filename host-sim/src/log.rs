@@ -81,7 +81,7 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     singles(out, d.desired_angular_acceleration.as_slice())?;
     write!(out, ",{}", u8::from(tick.clipped))?;
     if let Some(estimates) = &tick.estimates {
-        singles(out, estimates.force.value.as_slice())?;
+        singles(out, estimates.force.as_slice())?;
         singles(out, estimates.torque.as_slice())?;
         singles(out, &[estimates.scale])?;
     }

@@ -112,7 +112,7 @@ impl Law {
     fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(estimates) = self.law.estimates() else { return Ok(None) };
         let named = PyDict::new(py);
-        named.set_item("force", PyArray1::from_slice(py, estimates.force.value.as_slice()))?;
+        named.set_item("force", PyArray1::from_slice(py, estimates.force.as_slice()))?;
         named.set_item("torque", PyArray1::from_slice(py, estimates.torque.as_slice()))?;
         named.set_item("thrust_scale", estimates.scale)?;
         Ok(Some(named))

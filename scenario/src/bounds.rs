@@ -1,4 +1,5 @@
-//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of itself.
+//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of itself and, under the extended
+//! law, what the vehicle can fly if that is more ([`controller_core::extended::defaults::reference_bounds`]).
 //!
 //! ```toml
 //! [reference_bounds]
@@ -19,13 +20,26 @@ use controller_core::reference::ReferenceBounds;
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
 const DEFAULT_SPEED: f32 = 5.0;
 
-/// Reads `[reference_bounds]`; `own` are those of the scenario's reference.
+/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` the least where the section is left out.
 ///
 /// # Errors
 /// Names the bound that is missing, negative, or below what the reference takes.
-pub fn read_bounds(root: &Section, own: &ReferenceBounds) -> Result<ReferenceBounds, FieldError> {
+pub fn read_bounds(
+    root: &Section,
+    own: &ReferenceBounds,
+    default: impl Fn() -> ReferenceBounds,
+) -> Result<ReferenceBounds, FieldError> {
     let Some(section) = root.optional_section("reference_bounds")? else {
-        return Ok(ReferenceBounds { horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED), ..*own });
+        let default = default();
+        return Ok(ReferenceBounds {
+            horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED),
+            horizontal_acceleration: own.horizontal_acceleration.max(default.horizontal_acceleration),
+            vertical_acceleration: own.vertical_acceleration.max(default.vertical_acceleration),
+            jerk: own.jerk.max(default.jerk),
+            snap: own.snap.max(default.snap),
+            heading_rate: own.heading_rate.max(default.heading_rate),
+            heading_second_derivative: own.heading_second_derivative.max(default.heading_second_derivative),
+        });
     };
     let fields = [
         ("horizontal_speed", own.horizontal_speed),

@@ -154,7 +154,7 @@ pub fn default_wind(configuration: &Configuration) -> f64 {
     const BORNE: f64 = 0.8 / 0.5;
     match configuration.law() {
         LawParameters::Paper(_) => 0.0,
-        LawParameters::Extended(law) => (BORNE * f64::from(law.parameters.estimates.force_across)).min(GREATEST),
+        LawParameters::Extended(law) => (BORNE * f64::from(law.parameters.force_across)).min(GREATEST),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use crate::{actuation, bounds, initial, vehicle};
+use crate::{actuation, initial, vehicle};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -105,7 +105,6 @@ impl Scenario {
         let timing = Timing::read(root)?;
         let reference = ReferenceKind::read(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
-        let bounds = bounds::read_bounds(root, &trajectory.bounds())?;
         let delay_steps = actuation::read_delay(root, &timing)?;
         let rotor_lag = actuation::read_lag(root)?;
         let delay = delay_steps as f64 * timing.step();
@@ -114,8 +113,11 @@ impl Scenario {
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
-        let configuration = vehicle::read_configuration(root, &bounds, actuators, timing.period())?;
-        let configuration = actuation::read_rotors(root, configuration)?;
+        let vehicle = vehicle::read_vehicle(root)?;
+        let rotors = actuation::read_rotors(root, &vehicle)?;
+        let limits = vehicle::read_limits(root, &vehicle, rotors.as_ref())?;
+        let model = (vehicle, limits, rotors);
+        let configuration = vehicle::read_configuration(root, model, &trajectory.bounds(), actuators, timing.period())?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;

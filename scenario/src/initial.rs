@@ -5,6 +5,15 @@ use crate::section::{FieldError, Section};
 use controller_core::state::STATE_RANGE;
 use nalgebra::Vector3;
 
+/// Reads `[initial] position`, m; none where it is left out.
+///
+/// # Errors
+/// If it is not three numbers, or out of the law's range.
+pub fn read_position(root: &Section) -> Result<Option<Vector3<f64>>, FieldError> {
+    let section = root.optional_section("initial")?.filter(|section| section.has("position"));
+    section.map(|section| within_range(&section, "position", Vector3::zeros())).transpose()
+}
+
 /// Reads `[initial]`; `on_reference` is the reference's first position, m.
 ///
 /// # Errors
@@ -16,15 +25,10 @@ pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Re
         return Ok(BodyState { position: on_reference, velocity: rest, attitude, angular_velocity: rest });
     };
     section.allow(&["position", "velocity", "euler_deg", "angular_velocity"])?;
-    let position = section.vector_or("position", on_reference)?;
-    let velocity = section.vector_or("velocity", rest)?;
+    let position = within_range(&section, "position", on_reference)?;
+    let velocity = within_range(&section, "velocity", rest)?;
     let euler = section.vector_or("euler_deg", rest)?.map(f64::to_radians);
     let angular_velocity = section.vector_or("angular_velocity", rest)?;
-    for (vector, key) in [(&position, "position"), (&velocity, "velocity")] {
-        if vector.amax() > f64::from(STATE_RANGE) {
-            return Err(FieldError::new(section.path_of(key), format!("must be within ±{STATE_RANGE:e}")));
-        }
-    }
     let greatest = GREATEST_TURN_PER_STEP / step;
     if angular_velocity.norm() > greatest {
         let problem = format!("must be at most {greatest:.4} rad/s for plant.step = {step} s (or take a smaller step)");
@@ -32,4 +36,13 @@ pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Re
     }
     let attitude = attitude_from_euler(euler.x, euler.y, euler.z);
     Ok(BodyState { position, velocity, attitude, angular_velocity })
+}
+
+/// The vector at `key` if the law can work with it, or `default` where it is left out.
+fn within_range(section: &Section, key: &str, default: Vector3<f64>) -> Result<Vector3<f64>, FieldError> {
+    let vector = section.vector_or(key, default)?;
+    if vector.amax() > f64::from(STATE_RANGE) {
+        return Err(FieldError::new(section.path_of(key), format!("must be within ±{STATE_RANGE:e}")));
+    }
+    Ok(vector)
 }

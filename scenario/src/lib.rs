@@ -2,12 +2,16 @@
 //!
 //! | section | left out |
 //! |---|---|
-//! | `name`, `duration`, `[vehicle]`, `[limits]`, `[gains]`, `[reference]` | an error |
+//! | `name`, `[vehicle]`, `[gains]` | an error |
+//! | `duration` | 20 s |
+//! | `gravity` of `[vehicle]` | 9.81 m/s^2 |
+//! | `[limits]`, or a key of it | what `[rotors]` can give ([`mod@vehicle`]); without them an error |
 //! | `[control]` | `rate` 100 Hz; `law` the paper's; no `thrust_floor`: the paper's thrust |
 //! | `[estimates]` | the extended law estimates nothing |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
+//! | `[reference]` | hover where the flight starts, facing world x; 1 m above the origin if `[initial]` has no position |
 //! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
 //! | `[truth]`, `[drag]`, `[wind]`, `[disturbance]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
 //! | `[campaign]` | the circumstances of [`campaign`] |
@@ -26,6 +30,7 @@ pub mod bounds;
 pub mod campaign;
 pub mod extended;
 pub mod file;
+pub mod inertia;
 pub mod initial;
 pub mod reality;
 pub mod reference;

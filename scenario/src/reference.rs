@@ -1,5 +1,7 @@
-//! `[reference]`: what the vehicle is asked to do, one kind of trajectory per `kind`.
+//! `[reference]`: what the vehicle is asked to do, one kind of trajectory per `kind`. Left out: to hover where it
+//! starts, or 1 m above the origin if `[initial]` does not say where that is, facing world x.
 
+use crate::initial::read_position;
 use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -9,6 +11,9 @@ use controller_core::reference::hover::Hover;
 use controller_core::reference::waypoints::{Waypoint, Waypoints};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
+
+/// Where to hover if the file says nothing of it, m.
+const DEFAULT_POSITION: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 
 /// A reference as the file describes it, double precision.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,12 +32,15 @@ pub enum ReferenceKind {
 }
 
 impl ReferenceKind {
-    /// Reads `[reference]`.
+    /// Reads `[reference]`; the default where there is none.
     ///
     /// # Errors
     /// Names the field that is missing, unknown, or no number.
     pub fn read(root: &Section) -> Result<Self, FieldError> {
-        let section = root.section("reference")?;
+        let Some(section) = root.optional_section("reference")? else {
+            let position = read_position(root)?.unwrap_or(DEFAULT_POSITION);
+            return Ok(Self::Hover { position, heading: 0.0 });
+        };
         match section.text("kind")? {
             "hover" => read_hover(&section),
             "harmonic" => read_harmonic(&section).map(Self::Harmonic),

@@ -136,7 +136,7 @@ impl LoopModel {
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
         require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::Above(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        Ok(Self { inertia, slopes: Slopes::of(law, vehicle), timing, velocity_bandwidth: None })
+        Ok(Self { inertia, slopes: Slopes::of(law), timing, velocity_bandwidth: None })
     }
 
     /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`, rad/s.

@@ -1,4 +1,4 @@
-//! How long, how often: `duration`, `[control] rate` and `[plant] step`.
+//! How long, how often: `duration`, `[control] rate` and `[plant] step`. All may be left out.
 //!
 //! Time is counted in integer microseconds. The control period is a whole number of them and of plant steps, so that a
 //! tick never falls between two steps.
@@ -18,6 +18,8 @@ pub struct Timing {
 
 /// Longest flight, s: nearly four months.
 const GREATEST_DURATION: f64 = 1e7;
+/// Duration where it is left out, s.
+const DEFAULT_DURATION: f64 = 20.0;
 /// The filters advance by at most a tenth of a second at a time.
 const LEAST_RATE: f64 = 10.0;
 /// Periods are whole microseconds, so there is no faster rate.
@@ -39,7 +41,7 @@ impl Timing {
     pub fn read(root: &Section) -> Result<Self, FieldError> {
         let period_us = read_period(root)?;
         let steps_per_tick = read_steps(root, period_us)?;
-        let duration = root.number("duration")?;
+        let duration = root.number_or("duration", DEFAULT_DURATION)?;
         let period = period_us as f64 * 1e-6;
         if !(duration >= period && duration <= GREATEST_DURATION) {
             let allowed = format!("must be from one control period, {period} s, to {GREATEST_DURATION:e} s");

@@ -1,37 +1,74 @@
-//! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about. All their fields are required.
+//! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about.
 //!
-//! `[control] law` is `"paper"` (also where it is left out) or `"extended"` ([`crate::extended`]); `[control] thrust_floor` (N) is an
-//! option of the paper's law: see [`controller_core::projection`].
+//! `[vehicle] gravity` is 9.81 m/s^2 where it is left out. `[limits]`, or a key of it, may be left out beside
+//! `[rotors]`: then the limits are what the rotors can give, all their greatest thrusts together and
+//! [`greatest_torques`].
+//!
+//! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]), the paper's where it is left out and there are
+//! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
 
+use crate::bounds::read_bounds;
 use crate::extended::read_extended;
+use crate::inertia;
+use crate::reality::drag;
 use crate::section::{FieldError, Section};
+use controller_core::allocation::{Rotors, greatest_torques};
+use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
+use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
+use controller_core::extended::defaults::{self, Airframe};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+use nalgebra::Vector3;
 
-/// Reads the three sections, the law and its options, for references within `bounds`. The extended law's estimates count on
-/// rotors that respond as `actuators` says.
+/// Gravity where the file leaves it out, m/s^2.
+const DEFAULT_GRAVITY: f64 = 9.81;
+
+/// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its references; its own reference is
+/// within `own`. The extended law's estimates count on rotors that respond as `actuators` says.
 ///
 /// # Errors
-/// Names the field that is missing, not physical, of another law, or leaves the law undefined: M_p >= g - K_a3.
+/// Names the field that is missing, of another law, or leaves the law undefined: M_p >= g - K_a3; `rotors.position` if
+/// thrust alone would not lift a rotor, under the extended law.
 pub fn read_configuration(
     root: &Section,
-    bounds: &ReferenceBounds,
+    (vehicle, limits, rotors): (Vehicle, Limits, Option<Rotors>),
+    own: &ReferenceBounds,
     actuators: ActuatorParameters,
     period: f64,
 ) -> Result<Configuration, FieldError> {
-    let vehicle = read_vehicle(root)?;
-    let limits = read_limits(root, &vehicle)?;
-    let configuration = if is_extended(root)? {
-        let law = read_extended(root, &vehicle, actuators, period)?;
-        Configuration::extended(vehicle, limits, law, *bounds)
-    } else if root.has("estimates") {
-        let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
-        return Err(FieldError::new("estimates", problem));
-    } else {
-        Configuration::new(vehicle, limits, read_gains(root, &vehicle)?, *bounds)
+    let name = match named_law(root)? {
+        None if root.has("gains") => LawName::Paper,
+        None => LawName::Extended,
+        Some(name) => name,
+    };
+    let (configuration, bounds) = match name {
+        LawName::Extended => {
+            let drag = known_drag(root, &vehicle, rotors.as_ref())?;
+            let period = period as f32;
+            let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
+            let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
+            let law = read_extended(root, &airframe)?;
+            let bounds = read_bounds(root, own, || {
+                let most = defaults::reference_bounds(&airframe, &law.parameters);
+                flyable(most, |bounds| {
+                    let configuration = Configuration::extended(*vehicle, *limits, law, bounds)?;
+                    rotors.map_or(Ok(configuration.clone()), |rotors| configuration.with_rotors(rotors.clone()))
+                })
+            })?;
+            (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
+        }
+        LawName::Paper if root.has("estimates") => {
+            let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
+            return Err(FieldError::new("estimates", problem));
+        }
+        LawName::Paper => {
+            let gains = read_gains(root, &vehicle)?;
+            let bounds = read_bounds(root, own, || ReferenceBounds::REST)?;
+            (Configuration::new(vehicle, limits, gains, bounds), bounds)
+        }
     };
     let configuration = configuration.map_err(|error| {
         let refused = root.refused(&error);
@@ -41,39 +78,107 @@ pub fn read_configuration(
         );
         FieldError::new(refused.field, problem)
     })?;
-    match root.optional_section("control")? {
+    let configuration = match root.optional_section("control")? {
         Some(control) if control.has("thrust_floor") => {
             let floor = control.number("thrust_floor")? as f32;
-            configuration.with_thrust_floor(floor).map_err(|error| root.refused(&error))
+            configuration.with_thrust_floor(floor).map_err(|error| root.refused(&error))?
         }
-        _ => Ok(configuration),
+        _ => configuration,
+    };
+    match rotors {
+        Some(rotors) => mounted(configuration, rotors),
+        None => Ok(configuration),
     }
 }
 
-/// `[control] law`: whether it is the extended one.
-fn is_extended(root: &Section) -> Result<bool, FieldError> {
-    let law = match root.optional_section("control")? {
-        Some(control) if control.has("law") => control.text("law")?,
-        _ => "paper",
-    };
-    match law {
-        "paper" => Ok(false),
-        "extended" => Ok(true),
-        other => Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}"))),
+/// Carries `configuration` to its rotors.
+fn mounted(configuration: Configuration, rotors: Rotors) -> Result<Configuration, FieldError> {
+    let unlifted = rotors.pseudo_inverse().iter().position(|row| row.x <= 0.0);
+    configuration.with_rotors(rotors).map_err(|error| {
+        let problem = match unlifted {
+            Some(index) => format!(
+                "leaves rotor {} without a share of the thrust, which the extended law needs: the centre of mass, \
+                 from which positions count, must lie well amid the rotors",
+                index + 1
+            ),
+            None => error.reason.to_string(),
+        };
+        FieldError::new(error.field, problem)
+    })
+}
+
+/// The laws that a file can name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LawName {
+    Paper,
+    Extended,
+}
+
+/// `[control] law`; none where it is left out.
+fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
+    let control = root.optional_section("control")?.filter(|control| control.has("law"));
+    match control.map(|control| control.text("law")).transpose()? {
+        None => Ok(None),
+        Some("paper") => Ok(Some(LawName::Paper)),
+        Some("extended") => Ok(Some(LawName::Extended)),
+        Some(other) => {
+            Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}")))
+        }
     }
+}
+
+/// As much of `most` as certifies in steps of a tenth: what the formulas leave out, of headings that turn while the vehicle tilts. All of it where even
+/// a hundredth does not, so that the certificate says why.
+fn flyable(
+    most: ReferenceBounds,
+    configuration: impl Fn(ReferenceBounds) -> Result<Configuration, ParameterError>,
+) -> ReferenceBounds {
+    let mut bounds = most;
+    for _ in 0..44 {
+        let certificate = configuration(bounds).and_then(|configuration| Certificate::new(&configuration));
+        if certificate.is_ok_and(|certificate| certificate.holds()) {
+            return bounds;
+        }
+        let less = |bound: f32| 0.9 * bound;
+        bounds = ReferenceBounds {
+            horizontal_acceleration: less(bounds.horizontal_acceleration),
+            vertical_acceleration: less(bounds.vertical_acceleration),
+            jerk: less(bounds.jerk),
+            snap: less(bounds.snap),
+            heading_rate: less(bounds.heading_rate),
+            heading_second_derivative: less(bounds.heading_second_derivative),
+            ..bounds
+        };
+    }
+    most
+}
+
+/// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.
+fn known_drag(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Result<f32, FieldError> {
+    let Some(drag) = drag::read(root, rotors.is_some())? else { return Ok(0.0) };
+    let turning: f64 = rotors.map_or(0.0, |rotors| {
+        let each = f64::from(vehicle.mass * vehicle.gravity) / rotors.len() as f64;
+        rotors.iter().map(|rotor| (each / f64::from(rotor.thrust_coefficient)).sqrt()).sum()
+    });
+    let linear = 0.5 * (drag.linear.x + drag.linear.y);
+    Ok(((linear + drag.rotor_across * turning) / f64::from(vehicle.mass)) as f32)
 }
 
 /// Reads `[vehicle]`.
-fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
+///
+/// # Errors
+/// Names the field that is missing or not physical.
+pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
     let section = root.section("vehicle")?;
     section.allow(&["mass", "inertia", "gravity"])?;
-    let parameters = VehicleParameters {
-        mass: section.number("mass")? as f32,
-        inertia: section.vector("inertia")?.map(|moment| moment as f32),
-        gravity: section.number("gravity")? as f32,
-    };
-    let vehicle = Vehicle::new(parameters).map_err(|error| root.refused(&error))?;
-    let VehicleParameters { mass, gravity, .. } = *vehicle;
+    let mass = section.number("mass")? as f32;
+    let moments = inertia::read(&section, "inertia")?;
+    let gravity = section.number_or("gravity", DEFAULT_GRAVITY)? as f32;
+    let parameters = VehicleParameters { mass, inertia: moments.map(|moment| moment as f32), gravity };
+    let vehicle = Vehicle::new(parameters).map_err(|error| {
+        let impossible = inertia::impossible("vehicle.inertia", &moments, &error);
+        impossible.unwrap_or_else(|| root.refused(&error))
+    })?;
     if !(mass * gravity).is_finite() {
         let problem =
             format!("must have a weight, with vehicle.gravity = {gravity}, within {:e} N, found {mass:e}", f32::MAX);
@@ -82,15 +187,45 @@ fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
     Ok(vehicle)
 }
 
-/// Reads `[limits]`.
-fn read_limits(root: &Section, vehicle: &Vehicle) -> Result<Limits, FieldError> {
-    let section = root.section("limits")?;
-    section.allow(&["thrust_max", "torque_max"])?;
-    let parameters = LimitParameters {
-        thrust_max: section.number("thrust_max")? as f32,
-        torque_max: section.vector("torque_max")?.map(|torque| torque as f32),
+/// Reads `[limits]`; what is left out comes from `rotors`.
+///
+/// # Errors
+/// Names the field that is missing or refused, or `rotors.position` if the rotors cannot push without turning the
+/// vehicle.
+pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Result<Limits, FieldError> {
+    let missing = |field: &str, wanted: &str| {
+        let problem =
+            format!("missing, must be {wanted} (it may be left out only beside [rotors], which are the limit then)");
+        FieldError::new(field, problem)
     };
-    Limits::new(parameters, vehicle).map_err(|error| root.refused(&error))
+    let section = match root.optional_section("limits")? {
+        None if rotors.is_none() => return Err(missing("limits", "a section")),
+        section => section,
+    };
+    section.iter().try_for_each(|section| section.allow(&["thrust_max", "torque_max"]))?;
+    let with = |key: &str| section.as_ref().filter(|section| section.has(key));
+    let thrust_max = match (with("thrust_max"), rotors) {
+        (Some(section), _) => section.number("thrust_max")? as f32,
+        (None, Some(rotors)) => rotors.thrust_together().1,
+        (None, None) => return Err(missing("limits.thrust_max", "a number")),
+    };
+    let torque_max = match (with("torque_max"), rotors) {
+        (Some(section), _) => section.vector("torque_max")?.map(|torque| torque as f32),
+        (None, Some(rotors)) => torques_of(rotors)?,
+        (None, None) => return Err(missing("limits.torque_max", "a list of three numbers")),
+    };
+    Limits::new(LimitParameters { thrust_max, torque_max }, vehicle).map_err(|error| root.refused(&error))
+}
+
+/// What `rotors` attain about each axis alone, N m.
+fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
+    let torques = greatest_torques(rotors);
+    if torques.min() > 0.0 {
+        return Ok(torques);
+    }
+    let problem = "cannot push without turning the vehicle: the centre of mass, from which positions count, must lie \
+                   amid the rotors";
+    Err(FieldError::new("rotors.position", problem))
 }
 
 /// Reads `[gains]`.

@@ -34,7 +34,10 @@ use super::geometry::{ROTORS_MAX, Rotors, normal};
 use crate::math;
 use core::cell::Cell;
 use heapless::Vec;
-use nalgebra::{Vector2, Vector4};
+use nalgebra::{Vector2, Vector3, Vector4};
+
+/// Pairs of eight rotors.
+pub(super) const PAIRS: usize = 28;
 
 /// What evaluating a.w in f32 may lose, relative to |a|.|w|: four products, four sums, and the rounding of a, w and the
 /// bounds, half an [`f32::EPSILON`] each at most.
@@ -159,6 +162,20 @@ fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
         let (one, other) = (at * generator.low, at * generator.high);
         (low + one.min(other), high + one.max(other))
     })
+}
+
+/// The greatest torque about each body axis, N m, that `rotors` deliver to either side with none about the other two,
+/// at whatever thrust suits it best. Not above zero for some axis where they cannot push without turning the vehicle.
+#[must_use]
+pub fn greatest_torques(rotors: &Rotors) -> Vector3<f32> {
+    let order: Vec<usize, ROTORS_MAX> = collected(0..rotors.len());
+    let all = generators(rotors, order.iter());
+    let about = |axis: Vector4<f64>| {
+        let along = Slabs::<PAIRS>::new(rotors, &all, Some(Vector4::x()), -axis);
+        let (least, greatest) = along.range(&Vector4::zeros());
+        greatest.min(-least)
+    };
+    Vector3::new(about(Vector4::y()), about(Vector4::z()), about(Vector4::w()))
 }
 
 /// An edge of a convex polygon.

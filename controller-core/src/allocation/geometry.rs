@@ -216,6 +216,24 @@ impl Rotors {
         &self.inverse
     }
 
+    /// The least and the greatest thrust of all rotors together, N.
+    #[must_use]
+    pub fn thrust_together(&self) -> (f32, f32) {
+        let sum = |thrust: fn(&Rotor) -> f32| self.rotors.iter().map(thrust).sum();
+        (sum(|rotor| rotor.thrust_min), sum(|rotor| rotor.thrust_max))
+    }
+
+    /// Checks that all rotors together can lift `weight`, N, and need not.
+    ///
+    /// # Errors
+    /// Names `rotors.speed`: [`Reason::NotAbove`] where the greatest thrust is too little, [`Reason::NotBelow`] where
+    /// the least is too much.
+    pub fn check_hover(&self, weight: f32) -> Result<(), ParameterError> {
+        let (least, greatest) = self.thrust_together();
+        require(greatest > weight, "rotors.speed", Reason::NotAbove(weight))?;
+        require(least < weight, "rotors.speed", Reason::NotBelow(weight))
+    }
+
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
     pub(super) fn scale(&self) -> Vector4<f64> {
         squares(&self.columns).map(|square| 1.0 / math::sqrt_f64(square))

@@ -23,7 +23,7 @@
 //! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its scenario says
 //! never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
 
-use super::attainable::{Polygon, Slabs, generators};
+use super::attainable::{PAIRS, Polygon, Slabs, generators};
 use super::collected;
 use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors, normal};
 use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
@@ -33,8 +33,6 @@ use core::hint::cold_path;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector4};
 
-/// Pairs of eight rotors.
-const PAIRS: usize = 28;
 /// Triples of eight rotors.
 const TRIPLES: usize = 56;
 /// Triples of the seven rotors after the first.

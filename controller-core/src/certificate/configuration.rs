@@ -63,7 +63,7 @@ impl Configuration {
     /// The extended law for `vehicle`, to fly references within `bounds`.
     ///
     /// # Errors
-    /// If a bound is not finite or negative, or M_z- + D_z >= g - K_a3, where the law is undefined.
+    /// If a bound is not finite or negative, or A_- >= g - K_a3, where the law is undefined.
     pub fn extended(
         vehicle: Vehicle,
         limits: Limits,
@@ -83,7 +83,7 @@ impl Configuration {
         let room = vehicle.gravity - bounds.vertical_acceleration;
         let (least, field) = match &law {
             LawParameters::Paper(PaperLaw { gains, .. }) => (gains.m_p, "gains.m_p"),
-            LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.greatest_fall(), "gains.m_down"),
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.a_down, "gains.a_down"),
         };
         require(least < room, field, Reason::NotBelow(room))?;
         Ok(Self { vehicle, limits, law, bounds, rotors: None })
@@ -127,7 +127,7 @@ impl Configuration {
     pub fn greatest_fall(&self) -> f32 {
         match &self.law {
             LawParameters::Paper(PaperLaw { gains, .. }) => gains.m_p,
-            LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.greatest_fall(),
+            LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.a_down,
         }
     }
 
@@ -142,11 +142,7 @@ impl Configuration {
     /// # Errors
     /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it.
     pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
-        let hover = self.vehicle.mass * self.vehicle.gravity;
-        let greatest: f32 = rotors.iter().map(|rotor| rotor.thrust_max).sum();
-        let least: f32 = rotors.iter().map(|rotor| rotor.thrust_min).sum();
-        require(greatest > hover, "rotors.speed", Reason::NotAbove(hover))?;
-        require(least < hover, "rotors.speed", Reason::NotBelow(hover))?;
+        rotors.check_hover(self.vehicle.mass * self.vehicle.gravity)?;
         if let LawParameters::Extended(_) = self.law {
             // Its thrust floor lifts every rotor: a rotor that thrust does not reach cannot be lifted by it.
             let lifted = rotors.pseudo_inverse().iter().all(|row| row.x > 0.0);

@@ -1,52 +1,52 @@
-//! The certificate of the extended law. Derived in `docs/extended-law.md`, sections 9 to 12.
+//! The certificate of the extended law: what construction does not give. Derived in `docs/extended-law.md`, section 11.
 //!
 //! | inequality | what follows from it |
 //! |---|---|
-//! | K_a3 < g; m (g + \|p_d'' with its drag\|) < T_max | A1: the reference can be flown at all |
-//! | \|w*_3\| < W_max, \|w*_3'\| < A without position error | A1: the heading arrives |
-//! | M_z- + D_z < g - K_a3 | T1: u_z > 0, the law is defined |
+//! | A_- < g - K_a3 | T1: u_z > 0, the law is defined |
+//! | (with d up to its levels) m \|g e3 + p_d'' - d\| < what torques near the target leave of the rotors' thrust | A1: near the target the thrust is not cut |
+//! | \|omega_d12\| < Omega, \|omega'_d12\| < alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
+//! | \|w*_3\| < W_max, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
+//! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
 //! | qbar < eta, 2 qbar M_t < w eta_t sqrt(1 - qbar^2) | E: the only equilibrium of the attitude is the target |
-//! | N(feed-forward) < m n, in each cell of u | G: near the target the thrust is the law's own, so that the position loop is the proven one |
-//! | thrust and torques within the limits | T1, T2 |
-//! | each rotor's greatest thrust within its range | R: with the floor, which keeps it above the least, B+ w fits every rotor |
+//! | \|P\| < M_all | D: damping always has a share |
+//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range |
 //!
-//! [`reach`]: what u and its derivatives can be; [`motion`]: how the desired frame moves then; [`torque`]: what that asks for;
-//! [`bounds`]: all of it together.
-
-pub mod bounds;
-pub mod motion;
-pub mod reach;
-pub mod torque;
+//! Everything else about commands holds by construction ([`crate::extended`]): a tick spends what is there.
 
 use super::configuration::{Configuration, ExtendedLaw};
-use super::form::ARITHMETIC_ALLOWANCE;
+use super::form::{ARITHMETIC_ALLOWANCE, Interval};
 use super::inequality::Inequality;
 use super::reachable::Reachable;
 use super::sharp;
 use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::error::ParameterError;
-use crate::extended::parameters::{AttitudeParameters, Extended};
+use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::parameters::Extended;
+use crate::extended::position::net_level;
 use crate::math;
 use crate::reference::ReferenceBounds;
-use bounds::ExtendedBounds;
 use heapless::Vec;
-use torque::switching_scalar;
+use nalgebra::Vector3;
 
-/// Inequalities beside those on rotors.
-const WITHOUT_ROTORS: usize = 12;
+/// Cells of the tilt over which the potential's greatest torque is looked for.
+const POTENTIAL_CELLS: usize = 64;
 
-/// Names of the inequalities on rotors.
-const ROTORS: [&str; ROTORS_MAX] = [
-    "R rotor 1 greatest",
-    "R rotor 2 greatest",
-    "R rotor 3 greatest",
-    "R rotor 4 greatest",
-    "R rotor 5 greatest",
-    "R rotor 6 greatest",
-    "R rotor 7 greatest",
-    "R rotor 8 greatest",
-];
+/// How many inequalities there are at most.
+const MOST: usize = 16;
+
+/// Everything the extended law can command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExtendedBounds {
+    /// Greatest |omega_d12| and |omega'_d12|, rad/s and rad/s^2.
+    pub rates: [f64; 2],
+    /// Every thrust, N.
+    pub thrust: Interval,
+    /// Greatest |torque| about each body axis, N m.
+    pub torque: Vector3<f64>,
+    /// Every thrust of each rotor as commanded, divided by the thrust scale, N.
+    pub rotors: Vec<Interval, ROTORS_MAX>,
+}
 
 /// Every inequality about one configuration of the extended law.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,47 +54,66 @@ pub struct ExtendedCertificate {
     /// What the law can command.
     pub bounds: ExtendedBounds,
     /// The inequalities, in the order of this module's table.
-    pub inequalities: Vec<Inequality, { WITHOUT_ROTORS + ROTORS_MAX }>,
+    pub inequalities: Vec<Inequality, MOST>,
 }
 
 impl ExtendedCertificate {
     /// Works out every inequality for `law`, the one of `configuration`.
     ///
     /// # Errors
-    /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
+    /// None today; the paper's law has some.
     #[inline(never)] // as the paper law's
     pub fn new(configuration: &Configuration, law: &ExtendedLaw) -> Result<Self, ParameterError> {
         let parameters = &law.parameters;
-        let bounds = bounds::bounds(configuration, parameters)?;
-        let all = feasibility(configuration, parameters)
+        let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
+        let budget = TorqueBudget::new(parameters, vehicle, limits, configuration.rotors());
+        let all = feasibility(configuration, parameters, &budget)
             .into_iter()
-            .chain(equilibrium(&parameters.attitude))
-            .chain(commands(configuration, &bounds))
-            .chain(rotors(configuration, &bounds));
-        let inequalities = collected(all);
-        Ok(Self { bounds, inequalities })
+            .chain(heading(configuration, parameters))
+            .chain(attitude(parameters))
+            .chain(torques(parameters, &budget));
+        Ok(Self { bounds: bounds(configuration, parameters, &budget), inequalities: collected(all) })
     }
 }
 
-/// The reference with its drag, and room for it: Assumption 1, and that the law is defined.
-fn feasibility(configuration: &Configuration, parameters: &Extended) -> [Inequality; 5] {
-    let (vehicle, references) = (configuration.vehicle(), configuration.bounds());
-    let (mass, gravity) = (f64::from(vehicle.mass), f64::from(vehicle.gravity));
-    let with_drag = with_drag(references, parameters.estimates.drag_across);
-    let vertical = f64::from(references.vertical_acceleration);
+/// The reference with its drag, and room for it.
+fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> [Inequality; 6] {
+    let (vehicle, bounds) = (configuration.vehicle(), configuration.bounds());
+    let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(f64::from);
+    let p = parameters;
+    let reference = with_drag(bounds, p.drag_across);
     let raised = 1.0 + ARITHMETIC_ALLOWANCE;
-    let thrust = mass * (gravity + math::hypot(f64::from(with_drag.horizontal_acceleration), vertical)) * raised;
-    // With M_p = 0 the filters stay at zero, whatever their bandwidths.
-    let alone = Reachable::new(1.0, 1.0, 0.0, gravity, &with_drag);
-    let [rate, acceleration] = sharp::turning_rates(&alone, &with_drag).map(|rate| rate * raised);
-    let (fall, heading) = (f64::from(parameters.greatest_fall()), &parameters.heading);
+    let [across, vertical] = [reference.horizontal_acceleration, bounds.vertical_acceleration].map(f64::from);
+    let [force_across, up, down] = [p.force_across, p.force_up, p.force_down].map(f64::from);
+
+    let [each, taken] = budget.ceiling;
+    let limit = f64::from(configuration.limits().thrust_max);
+    let available = (1.0 - THRUST_LEFT) * math::lesser_f64(f64::from(p.scale_least) * each - taken, limit);
+    let thrust = |across: f64, vertical: f64| mass * math::hypot(across, gravity + vertical) * raised;
+
+    let net = net_level(p, vehicle.gravity);
+    let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
+    let jerk = f64::from(reference.jerk) + 2.0 * k_f * net;
+    let snap = f64::from(reference.snap) + 2.0 * k_f * (k_s + k_f) * net;
+    let least = gravity - vertical - up - net;
+    let rate = jerk / least * raised;
+    let acceleration = (snap / least + 2.0 * rate * rate) * raised;
+    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(f64::from);
+    let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
+    let weakest = (1.0 - THRUST_LEFT) * mass * (gravity - vertical - up);
     [
-        Inequality::new("A1 vertical acceleration K_a3 < g", "m/s^2", vertical, gravity),
-        Inequality::new("A1 thrust for the reference", "N", thrust, f64::from(configuration.limits().thrust_max)),
-        Inequality::new("A1 heading rate for the reference", "rad/s", rate, f64::from(heading.rate)),
-        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, f64::from(heading.acceleration)),
-        Inequality::new("T1 fall M_z- + D_z < g - K_a3", "m/s^2", fall, gravity - vertical),
+        Inequality::new("T1 fall A_- < g - K_a3", "m/s^2", f64::from(p.a_down), gravity - vertical),
+        Inequality::new("A1 thrust against force across", "N", thrust(across + force_across, vertical), available),
+        Inequality::new("A1 thrust against force down", "N", thrust(across, vertical + down), available),
+        Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
+        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), most),
+        Inequality::new("G floor at the target < thrust", "N", floor, weakest),
     ]
+}
+
+/// `value` where `least`, which it was divided by, is positive; otherwise what no inequality holds for.
+fn positive(value: f64, least: f64) -> f64 {
+    if least > 0.0 { value } else { f64::INFINITY }
 }
 
 /// `bounds` of p_d'' + kappa p_d' and its derivatives, `drag` being kappa, 1/s.
@@ -107,39 +126,105 @@ fn with_drag(bounds: &ReferenceBounds, drag: f32) -> ReferenceBounds {
     }
 }
 
-/// Section 4 of the document: no attitude but the target is an equilibrium.
-fn equilibrium(attitude: &AttitudeParameters) -> [Inequality; 2] {
-    let qbar = switching_scalar(attitude.delta);
-    let AttitudeParameters { w, eta, m_t, eta_t, .. } = attitude;
-    let pull = f64::from(*w) * f64::from(*eta_t) * math::sqrt_of_rounded(1.0 - qbar * qbar);
+/// The heading of the reference, with the force that tilts u.
+fn heading(configuration: &Configuration, parameters: &Extended) -> [Inequality; 2] {
+    let reference = with_drag(configuration.bounds(), parameters.drag_across);
+    let forced = ReferenceBounds {
+        horizontal_acceleration: reference.horizontal_acceleration + parameters.force_heading,
+        ..reference
+    };
+    let gravity = f64::from(configuration.vehicle().gravity) - f64::from(parameters.force_up);
+    // With a feedback of zero the filters stay at zero, whatever their bandwidths.
+    let alone = Reachable::new(1.0, 1.0, 0.0, gravity, &forced);
+    let turning = if alone.vertical_least > 0.0 { sharp::turning_rates(&alone, &forced) } else { [f64::INFINITY; 2] };
+    let [rate, acceleration] = turning.map(|rate| rate * (1.0 + ARITHMETIC_ALLOWANCE));
     [
-        Inequality::new("E switch qbar < eta", "1", qbar, f64::from(*eta)),
-        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", 2.0 * qbar * f64::from(*m_t), pull),
+        Inequality::new("A1 heading rate for the reference", "rad/s", rate, f64::from(parameters.yaw_rate)),
+        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, f64::from(parameters.yaw_acceleration)),
     ]
 }
 
-/// The floor's place, thrust and torques.
-fn commands(configuration: &Configuration, bounds: &ExtendedBounds) -> [Inequality; 5] {
-    let limits = configuration.limits();
-    let available = limits.torque_max.map(f64::from);
-    let ([floor, least], torque) = (bounds.floor, &bounds.torque);
+/// qbar, at whose negative the lift switches.
+#[must_use]
+pub fn switching_scalar(delta: f32) -> f64 {
+    let square = (1.0 + f64::from(delta)) * (1.0 + f64::from(delta));
+    (square - 1.0) / (square + 1.0)
+}
+
+/// Section 6 of the document: no attitude but the target is an equilibrium, and damping always has a share.
+fn attitude(parameters: &Extended) -> [Inequality; 3] {
+    let qbar = switching_scalar(parameters.delta);
+    let [w, eta, m_t, eta_t, m_all] =
+        [parameters.w, parameters.eta, parameters.m_t, parameters.eta_t, parameters.m_all].map(f64::from);
+    let pull = w * eta_t * math::sqrt_of_rounded(1.0 - qbar * qbar);
+    let potential = greatest_potential(parameters) * (1.0 + ARITHMETIC_ALLOWANCE);
     [
-        Inequality::new("G floor at the target < m |u|", "N", floor, least),
-        Inequality::new("T1 greatest thrust", "N", bounds.thrust.greatest, f64::from(limits.thrust_max)),
-        Inequality::new("T2 roll torque", "N m", torque.x, available.x),
-        Inequality::new("T2 pitch torque", "N m", torque.y, available.y),
-        Inequality::new("T2 yaw torque", "N m", torque.z, available.z),
+        Inequality::new("E switch qbar < eta", "1", qbar, eta),
+        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", 2.0 * qbar * m_t, pull),
+        Inequality::new("D potential |P| < M_all", "N m", potential, m_all),
     ]
 }
 
-/// What each rotor is asked for beyond hovering, against what it has beyond it.
-fn rotors<'a>(configuration: &'a Configuration, bounds: &'a ExtendedBounds) -> impl Iterator<Item = Inequality> + 'a {
-    let hover = f64::from(configuration.vehicle().mass) * f64::from(configuration.vehicle().gravity);
-    let all = configuration.rotors().into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse()));
-    all.zip(&bounds.rotors).zip(&ROTORS).map(move |(((rotor, row), asked), name)| {
-        let share = row.x * hover;
-        Inequality::new(name, "N", asked.greatest - share, f64::from(rotor.thrust_max) - share).or_equal()
+/// Greatest w r / 2 + G r sqrt(1 - r^2), N m, over r in [0, 1]: in cells, each term at the end where it is greatest.
+#[must_use]
+pub fn greatest_potential(parameters: &Extended) -> f64 {
+    let p = parameters;
+    let [w, k_t, m_t, eta_t] = [p.w, p.k_t, p.m_t, p.eta_t].map(f64::from);
+    let rest = |r: f64| math::sqrt_of_rounded(1.0 - r * r);
+    let of = |cell: usize| {
+        let [near, far] = [cell, cell + 1].map(|end| end as f64 / POTENTIAL_CELLS as f64);
+        // k_t r / sqrt(M_t^2 + k_t^2 r^2) rises with r, sqrt(1 - r^2) / sqrt(1 - r^2 + eta_t^2) falls.
+        let rising = m_t * k_t * far / math::hypot(m_t, k_t * far);
+        0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
+    };
+    (0..POTENTIAL_CELLS).map(of).fold(0.0, math::greater_f64)
+}
+
+/// The rows of the budget, with the reserve.
+fn torques(parameters: &Extended, budget: &TorqueBudget) -> impl Iterator<Item = Inequality> {
+    const NAMES: [&str; 3] = ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range"];
+    const UNITS: [&str; 3] = ["N m", "N m", "N"];
+    let reserves: Vec<[f64; 2], 3> =
+        collected(budget.reserves(f64::from(parameters.m_all), f64::from(parameters.turn_reserve)));
+    reserves.into_iter().zip(NAMES).zip(UNITS).map(|(([required, available], name), unit)| {
+        Inequality::new(name, unit, required * (1.0 + ARITHMETIC_ALLOWANCE), available)
     })
+}
+
+/// What can be commanded if every inequality holds.
+fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> ExtendedBounds {
+    let p = parameters;
+    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+    let [tilt_inertia, yaw_inertia] = budget.inertia;
+    let turning = f64::from(p.turn_acceleration);
+    let (mut tilt, mut yaw) = (f64::from(p.m_all) + tilt_inertia * turning, yaw_inertia * turning);
+    for row in &budget.rows {
+        if row.tilt > 0.0 {
+            tilt = math::lesser_f64(tilt, row.room / row.tilt);
+        }
+        if row.yaw > 0.0 {
+            yaw = math::lesser_f64(yaw, row.room / row.yaw);
+        }
+    }
+    let across = tilt + budget.fixed[0] + f64::from(p.torque_tilt);
+    let about = yaw + budget.fixed[1] + f64::from(p.torque_yaw);
+    let mut rotors = Vec::new();
+    let mut together = f64::from(configuration.limits().thrust_max);
+    if let Some(all) = configuration.rotors() {
+        for rotor in all.iter() {
+            let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(f64::from);
+            // As many as there are rotors: it fits.
+            let _ = rotors.push(Interval { least, greatest });
+        }
+        let thrust: f64 = rotors.iter().map(|rotor| rotor.greatest).sum();
+        together = math::lesser_f64(together, thrust * f64::from(p.scale_greatest));
+    }
+    ExtendedBounds {
+        rates: [f64::from(p.turn_rate) * raised, turning * raised],
+        thrust: Interval { least: f64::from(p.floor_margin) / raised, greatest: together * raised },
+        torque: Vector3::new(across, across, about) * raised,
+        rotors,
+    }
 }
 
 #[cfg(test)]

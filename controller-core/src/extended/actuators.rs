@@ -57,6 +57,10 @@ impl Response {
 pub struct ActuatorModel {
     /// n.
     whole_delay: usize,
+    /// Lag, the part of a period that a command is late beyond whole ones, and the period, s.
+    lag: f32,
+    late: f32,
+    period: f32,
     end: Response,
     mean: Response,
 }
@@ -122,7 +126,23 @@ impl ActuatorModel {
             older: older as f32,
             newer: newer as f32,
         };
-        Ok(Self { whole_delay: whole as usize, end: response(end), mean: response(mean) })
+        Ok(Self {
+            whole_delay: whole as usize,
+            lag: parameters.lag,
+            late: late as f32,
+            period: period as f32,
+            end: response(end),
+            mean: response(mean),
+        })
+    }
+
+    /// What commands of the past will still deliver: the integral of the wrench from now on, N s and N m s, if zero were commanded from now on.
+    /// The lag passes all of what reaches it, so the integral is lag times what acts and the commands that are under way.
+    #[must_use]
+    pub fn pending(&self, state: &ActuatorState) -> Vector4<f32> {
+        let whole = (0..self.whole_delay).fold(Vector4::zeros(), |sum, age| sum + state.command_before(age));
+        let oldest = state.command_before(self.whole_delay);
+        state.acting * self.lag + whole * self.period + oldest * self.late
     }
 
     /// Lets one period pass; returns the mean wrench over it.

@@ -7,30 +7,55 @@
 //! | V | 1/2 omega~^T J omega~ + w (1 + eta - h) + U_t(r), dU_t/dr = 2 r G(r) |
 //! | G(r) | M_t k_t / (sqrt(M_t^2 + k_t^2 r^2) sqrt(1 - r^2 + eta_t^2)) |
 //! | `potential` | (w / 2h) ((q_0 + eta) q_1 + q_2 q_3, (q_0 + eta) q_2 - q_1 q_3, eta q_3) + G (q_0 q_1 + q_2 q_3, q_0 q_2 - q_1 q_3, 0) |
-//! | `damping` | s_omega(omega~): a disc (k_omega_t, M_omega_t) on the first two components, a number (k_omega_z, M_omega_z) on the third |
+//! | `damping` = lambda D | D = k_omega_t omega~_12 / (1 + (r / r_0)^2)^(1/4), lambda below; a number (k_omega_z, M_omega_z) about z |
+//! | lambda | the greatest in (0, 1] with \|P + lambda D\| <= M_all, P the potential's part about the tilt's axes |
 //! | `torque` | -potential - damping + J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d |
 //!
-//! Then V' = -omega~ . s_omega(omega~) <= 0 for any J and omega_d, and V falls across the switch to the shadow, where U_t does
-//! not change. The potential's torque is at most w r / 2 + G r sqrt(1 - r^2) about the tilt's axes together and w eta / 2 about
-//! z. Towards a half turn the tilt's damping may ease: its gain is k_omega_t (1 - ease r^2). Body frame, N m.
+//! Then V' = -omega~ . damping <= 0 for any J and omega_d, and V falls across the switch to the shadow, where U_t does not change. With room
+//! = M_all^2 - |P|^2, which the certificate keeps positive,
+//!
+//! lambda = 1 if |D|^2 + 2 P.D <= room, else room / (sqrt((P.D)^2 + |D|^2 room) + P.D)    (or its conjugate where P.D < 0).
+//!
+//! **Actuators that are late.** With the lag and the delay together T and the angular impulse I that commands of the past will still
+//! deliver, the law is evaluated for the errors projected over T ([`Late`]),
+//!
+//! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T R~^T omega_d':
+//!
+//! with a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is omega_p, as if the
+//! actuators were ideal. It is what the paper's z_1 and z_2 do for its filters. Every bound holds for any errors, so for projected ones. Body frame, N m.
 
-use super::parameters::AttitudeParameters;
+use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
-use crate::attitude::rotate_back;
 use crate::math;
-use nalgebra::{Quaternion, Vector3};
+use core::hint::cold_path;
+use nalgebra::{Quaternion, Vector2, Vector3};
 
-/// The torque and the terms it is made of, body frame, N m.
+/// The feedback and the terms it is made of, body frame, N m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AttitudeTorque {
-    /// omega~, rad/s.
-    pub angular_velocity_error: Vector3<f32>,
+pub struct AttitudeFeedback {
     /// What the potential pulls with, its sign turned.
     pub potential: Vector3<f32>,
-    /// s_omega(omega~).
+    /// Damping, lambda in it.
     pub damping: Vector3<f32>,
-    /// tau.
-    pub torque: Vector3<f32>,
+}
+
+impl AttitudeFeedback {
+    /// |P + lambda D|, N m: at most M_all.
+    #[must_use]
+    pub fn tilt(&self) -> f32 {
+        math::sqrt((self.potential.xy() + self.damping.xy()).norm_squared())
+    }
+}
+
+/// What is still under way of what was commanded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Late {
+    /// T, s: lag and delay together.
+    pub time: f32,
+    /// I + T tau_b, N m s, body frame.
+    pub impulse: Vector3<f32>,
+    /// R~^T omega_d' of the last tick, rad/s^2.
+    pub wanted: Vector3<f32>,
 }
 
 /// The attitude law's constants.
@@ -44,19 +69,23 @@ pub struct AttitudeLaw {
     tilt_level_squared: f32,
     tilt_gain_squared: f32,
     eta_t_squared: f32,
-    damping_tilt: Saturation,
+    /// k_omega_t, N m s, and 1 / r_0^2.
+    tilt_damping: f32,
+    easing: f32,
     damping_yaw: Saturation,
-    ease: f32,
+    /// M_all^2, N^2 m^2.
+    feedback_squared: f32,
     /// The diagonal of J, kg m^2.
     inertia: Vector3<f32>,
     /// (J_z - J_y, J_x - J_z, J_y - J_x), kg m^2.
     differences: Vector3<f32>,
+    per_inertia: Vector3<f32>,
 }
 
 impl AttitudeLaw {
     /// For the diagonal of J, kg m^2.
     #[must_use]
-    pub fn new(parameters: &AttitudeParameters, inertia: &Vector3<f32>) -> Self {
+    pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>) -> Self {
         let p = parameters;
         Self {
             half_w: 0.5 * p.w,
@@ -65,33 +94,69 @@ impl AttitudeLaw {
             tilt_level_squared: p.m_t * p.m_t,
             tilt_gain_squared: p.k_t * p.k_t,
             eta_t_squared: p.eta_t * p.eta_t,
-            damping_tilt: Saturation::new(p.k_omega_t, p.m_omega_t),
+            tilt_damping: p.k_omega_t,
+            easing: 1.0 / (p.r_0 * p.r_0),
             damping_yaw: Saturation::new(p.k_omega_z, p.m_omega_z),
-            ease: p.ease,
+            feedback_squared: p.m_all * p.m_all,
+            per_inertia: inertia.map(|moment| 1.0 / moment),
             inertia: *inertia,
             differences: inertia.zxy() - inertia.yzx(),
         }
     }
 
-    /// Evaluates the law. `error` is the lifted error, of unit length; `angular_velocity` is omega in the body frame; omega_d
-    /// and omega_d' are in the axes of the desired body frame.
+    /// The errors as they will be once `late` has arrived: q_p, of any length, and omega_p.
+    #[must_use]
+    pub fn projected(
+        &self,
+        error: &Quaternion<f32>,
+        rate_error: &Vector3<f32>,
+        late: &Late,
+    ) -> (Quaternion<f32>, Vector3<f32>) {
+        let Late { time, impulse, wanted } = late;
+        let half = rate_error * (0.5 * time);
+        let (w, v) = (error.w, error.imag());
+        let turned = v + half * w + v.cross(&half);
+        let quaternion = Quaternion::new(w - v.dot(&half), turned.x, turned.y, turned.z);
+        (quaternion, rate_error + self.per_inertia.component_mul(impulse) - wanted * *time)
+    }
+
+    /// P and the damping, for the lifted error, of unit length, and omega~.
+    #[must_use]
+    pub fn feedback(&self, error: &Quaternion<f32>, rate_error: &Vector3<f32>) -> AttitudeFeedback {
+        let potential = self.potential(error);
+        let r_squared = error.i * error.i + error.j * error.j;
+        let eased = 1.0 + r_squared * self.easing;
+        let wanted = rate_error.xy() * (self.tilt_damping / math::sqrt(math::sqrt(eased)));
+        let about = self.damping_yaw.factor(rate_error.z * rate_error.z) * rate_error.z;
+        let tilt = wanted * self.share(&potential, &wanted);
+        AttitudeFeedback { potential, damping: Vector3::new(tilt.x, tilt.y, about) }
+    }
+
+    /// lambda.
+    fn share(&self, potential: &Vector3<f32>, damping: &Vector2<f32>) -> f32 {
+        let room = self.feedback_squared - potential.xy().norm_squared();
+        let (along, square) = (potential.xy().dot(damping), damping.norm_squared());
+        if square + 2.0 * along <= room {
+            return 1.0;
+        }
+        cold_path();
+        let room = math::greater(room, 0.0);
+        let root = math::sqrt(along * along + square * room);
+        if along > 0.0 { room / (root + along) } else { (root - along) / square }
+    }
+
+    /// tau: J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d less the feedback. `rate` and `acceleration` are R~^T omega_d and R~^T omega_d'.
     #[must_use]
     pub fn torque(
         &self,
-        error: &Quaternion<f32>,
-        angular_velocity: &Vector3<f32>,
-        desired_angular_velocity: &Vector3<f32>,
-        desired_angular_acceleration: &Vector3<f32>,
-    ) -> AttitudeTorque {
-        let rate = rotate_back(error, desired_angular_velocity);
-        let acceleration = rotate_back(error, desired_angular_acceleration);
-        let feedforward = self.inertia.component_mul(&acceleration)
-            + self.differences.component_mul(&rate.yzx()).component_mul(&rate.zxy());
-        let angular_velocity_error = angular_velocity - rate;
-        let potential = self.potential(error);
-        let damping = self.damping(error, &angular_velocity_error);
-        let torque = feedforward - potential - damping;
-        AttitudeTorque { angular_velocity_error, potential, damping, torque }
+        feedback: &AttitudeFeedback,
+        rate: &Vector3<f32>,
+        acceleration: &Vector3<f32>,
+    ) -> Vector3<f32> {
+        self.inertia.component_mul(acceleration)
+            + self.differences.component_mul(&rate.yzx()).component_mul(&rate.zxy())
+            - feedback.potential
+            - feedback.damping
     }
 
     fn potential(&self, error: &Quaternion<f32>) -> Vector3<f32> {
@@ -105,13 +170,5 @@ impl AttitudeLaw {
         let tilt = self.tilt_product / math::sqrt(level * ease);
         let (along, across) = (whole * lifted + tilt * q_0, (whole + tilt) * q_3);
         Vector3::new(along * q_1 + across * q_2, along * q_2 - across * q_1, whole * self.eta * q_3)
-    }
-
-    fn damping(&self, error: &Quaternion<f32>, angular_velocity_error: &Vector3<f32>) -> Vector3<f32> {
-        let rate = angular_velocity_error;
-        let eased = 1.0 - self.ease * (error.i * error.i + error.j * error.j);
-        let square = rate.x * rate.x + rate.y * rate.y;
-        let tilt = eased * self.damping_tilt.factor(eased * eased * square);
-        Vector3::new(rate.x * tilt, rate.y * tilt, rate.z * self.damping_yaw.factor(rate.z * rate.z))
     }
 }

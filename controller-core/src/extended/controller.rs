@@ -1,8 +1,9 @@
 //! One step of the extended law: state and reference in, wrench out.
 //!
 //! ```text
-//! what happened since the last tick -> force, torque_bias, thrust_scale
-//! State, Reference -> position -> attitude_reference -> heading -> path_lifting -> attitude -> thrust_floor -> Wrench
+//! what happened since the last tick -> force, thrust_scale, torque_bias
+//! State, Reference -> position -> attitude_reference -> path_lifting -> attitude (feedback) -> budget -> turning
+//!                  -> heading -> attitude (torque) -> thrust_range -> Wrench
 //! ```
 //!
 //! The order within a tick: what can be refused first, up to the desired motion, from filters and generators as they stand and
@@ -11,26 +12,30 @@
 //! in the paper's [`controller`](crate::controller).
 
 use super::actuators::ActuatorModel;
-use super::attitude::{AttitudeLaw, AttitudeTorque};
-use super::force::{ForceEstimate, ForceGenerator, ForceObserver};
+use super::attitude::{AttitudeLaw, Late};
+use super::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
+use super::force::ForceObserver;
 use super::heading::{self, HeadingLag};
-use super::memory::{Estimates, Last, Memory};
-use super::parameters::{AttitudeParameters, EstimateParameters, Extended};
+use super::memory::{Averages, Estimates, Last, Memory};
+use super::parameters::Extended;
 use super::position::PositionLaw;
-use super::thrust_floor::ThrustFloor;
+use super::thrust_range::ThrustRange;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
+use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
+use crate::attitude::rotate_back;
 use crate::attitude_reference::DesiredAttitude;
 use crate::certificate::certified::Certified;
-use crate::certificate::configuration::{ExtendedLaw, LawParameters};
+use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters};
 use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
+use crate::math;
 use crate::path_lifting;
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
@@ -44,11 +49,11 @@ struct Learning {
 }
 
 impl Learning {
-    fn new(estimates: &EstimateParameters, vehicle: &Vehicle, period: f32) -> Self {
+    fn new(parameters: &Extended, vehicle: &Vehicle, period: f32) -> Self {
         Self {
-            force: ForceObserver::new(estimates, vehicle.gravity, period),
-            torque: TorqueBias::new(estimates, &vehicle.inertia, period),
-            scale: ThrustScale::new(estimates, period),
+            force: ForceObserver::new(parameters, vehicle.gravity, period),
+            torque: TorqueBias::new(parameters, &vehicle.inertia, period),
+            scale: ThrustScale::new(parameters, period),
         }
     }
 }
@@ -57,22 +62,28 @@ impl Learning {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
     vehicle: Vehicle,
+    limits: Limits,
     law: ExtendedLaw,
     rotors: Option<Rotors>,
     parameters: Extended,
     period: f32,
     per_mass: f32,
     switching_scalar: f32,
-    /// M_z- + D_z - g: the reference's vertical acceleration stays above it, m/s^2.
+    /// A_- - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
+    /// U for each unit of s, what bias and yaw take of it, and at most, m/s^2.
+    greatest: [f32; 3],
+    /// Lag and delay of the actuators together, s.
+    late: f32,
     position: PositionLaw,
-    force: ForceGenerator,
     attitude: AttitudeLaw,
+    budget: TurningBudget,
+    turning: TurningLimit,
     /// Of the interval since the last tick.
     learning: Learning,
     /// Of the one to come, if it is another.
     changed: Option<Learning>,
-    floor: ThrustFloor,
+    range: ThrustRange,
     actuators: ActuatorModel,
     /// Ticks for which the wrench that acts still depends on one that was not delivered.
     settling: u32,
@@ -84,18 +95,23 @@ impl Controller {
     /// (0, 0.1].
     ///
     /// # Errors
-    /// Names `control.period` if it is outside, `estimates.force_bandwidth_…`, `gains.c_1`, `gains.c_2` or `sampling.delay` if it is
-    /// beyond what they allow, `control.law` if the configuration's is another.
+    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if it is beyond what they allow, `control.law`
+    /// if the configuration's is another.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         let LawParameters::Extended(law) = configuration.law() else {
             return Err(ParameterError { field: "control.law", reason: Reason::OtherLaw });
         };
-        Self::build(configuration.vehicle(), law, configuration.rotors(), period)
+        Self::of(configuration, law, period)
     }
 
-    pub(crate) fn build(
+    pub(crate) fn of(configuration: &Configuration, law: &ExtendedLaw, period: f32) -> Result<Self, ParameterError> {
+        Self::build(configuration.vehicle(), configuration.limits(), law, configuration.rotors(), period)
+    }
+
+    fn build(
         vehicle: &Vehicle,
+        limits: &Limits,
         law: &ExtendedLaw,
         rotors: Option<&Rotors>,
         period: f32,
@@ -105,47 +121,55 @@ impl Controller {
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::Above(longest))?;
         Self::check_period(parameters, period)?;
-        let p = &parameters.position;
+        let budget = TorqueBudget::new(parameters, vehicle, limits, rotors);
+        let used = (1.0 - THRUST_LEFT) / f64::from(vehicle.mass);
+        let [each, taken] = budget.ceiling;
+        let greatest = [each, taken, f64::from(limits.thrust_max)].map(|thrust| (thrust * used) as f32);
         Ok(Self {
             vehicle: *vehicle,
+            limits: *limits,
             law: *law,
             rotors: rotors.cloned(),
             parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
-            switching_scalar: path_lifting::switching_scalar(parameters.attitude.delta),
-            steepest_fall: p.m_down + parameters.estimates.force_vertical - vehicle.gravity,
-            position: PositionLaw::new(p, period)?,
-            force: ForceGenerator::new(&parameters.estimates, period)?,
-            attitude: AttitudeLaw::new(&parameters.attitude, &vehicle.inertia),
-            learning: Learning::new(&parameters.estimates, vehicle, period),
+            switching_scalar: path_lifting::switching_scalar(parameters.delta),
+            steepest_fall: parameters.a_down - vehicle.gravity,
+            greatest,
+            late: actuators.lag + actuators.delay,
+            position: PositionLaw::new(parameters, vehicle.gravity, period)?,
+            attitude: AttitudeLaw::new(parameters, &vehicle.inertia),
+            budget: TurningBudget::new(&budget, vehicle.mass, parameters.turn_acceleration),
+            turning: TurningLimit::new(parameters, period),
+            learning: Learning::new(parameters, vehicle, period),
             changed: None,
-            floor: ThrustFloor::new(rotors, parameters.floor_margin),
+            range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
-            memory: Memory::fresh(vehicle, Estimates::NONE),
+            memory: Memory::fresh(vehicle, Averages::hovering(Vector3::zeros(), 1.0, vehicle.gravity)),
         })
     }
 
-    /// Checks what is defined for ticks that are not too long only: the generators of the force and of the heading, `period` in s.
+    /// Checks what is defined for ticks that are not too long only: the heading's generator, `period` in s.
     ///
     /// # Errors
-    /// Names `estimates.force_bandwidth_…`, `gains.c_1` or `gains.c_2`.
+    /// Names `gains.c_1` or `gains.c_2`.
     pub fn check_period(parameters: &Extended, period: f32) -> Result<(), ParameterError> {
-        ForceGenerator::check(&parameters.estimates, period)?;
-        heading::check(&parameters.heading, period)
+        heading::check(parameters, period)
     }
 
     /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
     pub fn reset(&mut self) {
-        self.memory = Memory::fresh(&self.vehicle, Estimates::NONE);
+        let averages = Averages::hovering(Vector3::zeros(), 1.0, self.vehicle.gravity);
+        self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
     /// The same with what has been estimated of the vehicle itself kept, torque and thrust scale: how a flight goes on without a
     /// pose. The force is forgotten: it came from velocities that are no longer known.
     pub fn restart(&mut self) {
-        let estimates = Estimates { force: ForceEstimate::NONE, ..self.memory.estimates };
-        self.memory = Memory::fresh(&self.vehicle, estimates);
+        let Averages { torque, scale, .. } = self.memory.averages;
+        let averages = Averages::hovering(torque, scale.scale, self.vehicle.gravity);
+        self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on
@@ -157,7 +181,7 @@ impl Controller {
     /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided by it.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
-        self.memory.estimates.scale
+        self.memory.averages.scale.scale
     }
 
     /// Changes the time to the next step, s, and from there on.
@@ -165,7 +189,7 @@ impl Controller {
     /// # Errors
     /// As [`Self::new`]; the period then stays what it was.
     pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
-        let rebuilt = Self::build(&self.vehicle, &self.law, self.rotors.as_ref(), period)?;
+        let rebuilt = Self::build(&self.vehicle, &self.limits, &self.law, self.rotors.as_ref(), period)?;
         *self = Self { memory: self.memory, learning: self.learning, changed: Some(rebuilt.learning), ..rebuilt };
         Ok(())
     }
@@ -176,11 +200,12 @@ impl Controller {
         &self.memory
     }
 
-    /// What has been estimated; the torque bias as far as it is believed.
+    /// What has been estimated; force and torque bias as far as they are believed.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
-        let estimates = self.memory.estimates;
-        Estimates { torque: self.learning.torque.estimate(&estimates.torque), ..estimates }
+        let Averages { force, torque, scale } = &self.memory.averages;
+        let Learning { force: observer, torque: bias, .. } = &self.learning;
+        Estimates { force: observer.believed(force), torque: bias.estimate(torque), scale: scale.scale }
     }
 
     /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
@@ -202,45 +227,76 @@ impl Controller {
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
-        let filter = self.memory.filter;
         let axis = thrust_axis(&state.attitude);
-        let (force, scale) = self.force_and_scale(state, &axis);
+        let learnt = self.learnt(state, &axis);
+        let scale = learnt.scale.scale;
+        let force = self.learning.force.believed(&learnt.force);
+        let bias = self.learning.torque.estimate(&learnt.torque);
 
-        let feedback = self.position.feedback(state, reference, &filter);
-        let force_acceleration = self.force.acceleration(&force);
-        let command = self.acceleration_command(reference, &filter, &force);
-        let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.filtered_rate - force.rate;
-        let snap =
-            self.with_drag(&reference.snap, &reference.jerk) + feedback.filtered_acceleration - force_acceleration;
+        let mut net = self.memory.net;
+        let filter =
+            if net.catches() { FilterState { filtered: -force, intermediate: -force } } else { self.memory.filter };
+        let [each, taken, most] = self.greatest;
+        let greatest = math::lesser(scale * each - taken, most);
+        let feedback = self.position.feedback(state, reference, &filter, &force, greatest, net.is_caught());
+        let command = self.acceleration_command(reference, &filter);
+        let wanted = (feedback.drive - feedback.rate) * self.position.k_f();
+        let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
+        let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
         let desired = DesiredAttitude::new(&command, &reference.heading);
-        let papers = desired.motion(&jerk, &snap, &reference.heading);
+        let turn = desired.turn(&jerk, &snap);
+        let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
+        let lag = self.memory.heading.unwrap_or_else(|| HeadingLag::none(yaw_rate, &self.parameters));
+        let velocity = heading::velocity(&lag, &Vector3::new(-turn.rate.y, turn.rate.x, yaw_rate));
+
+        let error = lag.turned_back(&desired.error(&state.attitude));
+        let rate = rotate_back(&error, &velocity);
+        let angular_velocity_error = state.angular_velocity - rate;
+        let (projected, projected_rate) =
+            self.attitude.projected(&error, &angular_velocity_error, &self.late(scale, &bias));
+        let lifted =
+            path_lifting::lift(self.memory.lift.as_ref(), &projected, self.switching_scalar, self.parameters.alpha);
+        let torques = self.attitude.feedback(&lifted.quaternion, &projected_rate);
+
+        let limited = self.turning.limited(
+            &turn,
+            &Circumstances {
+                budget: self.budget.acceleration(turn.magnitude, torques.tilt(), sine_of_tilt(&error)),
+                yaw_rate: velocity.z,
+                up: desired.up(),
+                greatest,
+                vertical: [filter.filtered.z, feedback.rate.z, wanted.z],
+            },
+        );
+        let papers = desired.motion_of(&turn.rate, &limited.acceleration, &reference.heading);
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         if !papers.is_in_range() {
             return Err(InputError::OutOfRange { field: "reference" });
         }
 
         // Nothing can fail from here on: every part of the memory advances as soon as its last value has served.
-        self.memory.filter = self.position.advance(&filter, &feedback.feedback);
-        self.memory.estimates.force = self.force.advanced(&force, &force_acceleration);
-        self.memory.estimates.scale = scale;
-
-        let heading = self.memory.heading;
-        let heading = heading.unwrap_or_else(|| HeadingLag::none(papers.velocity.z, &self.parameters.heading));
-        let turning = heading::turning(&heading, &papers, &self.parameters.heading, self.period);
-        self.memory.heading = Some(heading::advanced(&heading, &turning, self.period));
-
-        let error = heading.turned_back(&desired.error(&state.attitude));
-        let AttitudeParameters { alpha, .. } = self.parameters.attitude;
-        let lifted = path_lifting::lift(self.memory.lift.as_ref(), &error, self.switching_scalar, alpha);
+        let drive = match limited.change {
+            None => feedback.drive,
+            Some(change) => {
+                cold_path();
+                feedback.drive + desired.turned(&change) * (1.0 / self.position.k_f())
+            }
+        };
+        self.memory.filter = self.position.advance(&filter, &drive);
+        self.memory.averages = learnt;
+        let turning = heading::turning(&lag, &papers, &self.parameters, self.period);
+        self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
         self.memory.lift = Some(lifted.lift);
 
-        let AttitudeTorque { angular_velocity_error, potential, damping, torque } =
-            self.attitude.torque(&lifted.quaternion, &state.angular_velocity, &turning.velocity, &turning.acceleration);
-        let average = self.torque_average(state, scale);
-        self.memory.estimates.torque = average;
-        let torque = torque - self.learning.torque.estimate(&average);
+        let acceleration = rotate_back(&error, &turning.acceleration);
+        let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
-        let thrust = self.floor.raised(along, &torque, scale);
+        let thrust = self.range.admitted(along, &torque, scale);
+        net.observe(
+            [feedback.z_1.norm_squared(), feedback.z_2.norm_squared()],
+            limited.change.is_some() || thrust < along,
+            self.period,
+        );
 
         if let Some(changed) = self.changed {
             cold_path();
@@ -248,9 +304,14 @@ impl Controller {
             self.changed = None;
         }
         let memory = &mut self.memory;
+        memory.net = net;
         memory.held = memory.held.saturating_sub(1);
-        memory.last =
-            Some(Last { velocity: state.velocity, thrust_axis: axis, angular_velocity: state.angular_velocity });
+        memory.last = Some(Last {
+            velocity: state.velocity,
+            thrust_axis: axis,
+            angular_velocity: state.angular_velocity,
+            wanted: acceleration,
+        });
         memory.actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) * (1.0 / scale));
         memory.acted = self.actuators.advance(&mut memory.actuators);
 
@@ -269,9 +330,9 @@ impl Controller {
             attitude_error: lifted.quaternion,
             mrp: lifted.mrp,
             lift_sign: lifted.lift.sign,
-            angular_velocity_error,
-            attitude_feedback: potential,
-            rate_feedback: damping,
+            angular_velocity_error: projected_rate,
+            attitude_feedback: torques.potential,
+            rate_feedback: torques.damping,
         };
         Ok((Wrench { thrust, torque }, diagnostics))
     }
@@ -281,43 +342,40 @@ impl Controller {
         self.memory.last.as_ref().filter(|_| self.memory.held == 0)
     }
 
-    /// The estimates of the force and of the thrust scale with what happened since the last tick.
-    fn force_and_scale(&self, state: &State, axis: &Vector3<f32>) -> (ForceEstimate, f32) {
-        let Memory { estimates, acted, .. } = &self.memory;
+    /// The averages with what happened since the last tick.
+    fn learnt(&self, state: &State, axis: &Vector3<f32>) -> Averages {
+        let Memory { averages, acted, .. } = &self.memory;
         let Some(last) = self.last() else {
-            return (estimates.force, estimates.scale);
+            return *averages;
         };
-        let commanded = acted.x * self.per_mass;
-        let thrust = (last.thrust_axis + axis) * (0.5 * commanded);
-        let Learning { force: observer, scale: learner, .. } = &self.learning;
-        let lift = observer.lift(&last.velocity, &state.velocity);
-        let scale = learner.learnt(estimates.scale, commanded, thrust.z, lift);
-        let force = observer.observed([&last.velocity, &state.velocity], &(thrust * scale));
-        (observer.averaged(&estimates.force, &force), scale)
+        let Learning { force: observer, torque: bias, scale: learner } = &self.learning;
+        let made = observer.observed([&last.velocity, &state.velocity]);
+        let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
+        let scale = learner.learnt(&averages.scale, &made, &commanded);
+        let force = observer.averaged(&averages.force, &(made - commanded * scale.scale));
+        let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
+        let torque = bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
+        Averages { force, scale, torque: bias.averaged(&averages.torque, &torque) }
     }
 
-    /// The average of the torque bias with what happened since the last tick.
-    fn torque_average(&self, state: &State, scale: f32) -> Vector3<f32> {
-        let Memory { estimates, acted, .. } = &self.memory;
-        let Some(last) = self.last() else {
-            return estimates.torque;
-        };
-        let torque = Vector3::new(acted.y, acted.z, acted.w) * scale;
-        let learner = &self.learning.torque;
-        let torque = learner.observed([&last.angular_velocity, &state.angular_velocity], &torque);
-        learner.averaged(&estimates.torque, &torque)
+    /// What is under way to the vehicle, for the thrust scale and torque bias at hand.
+    fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
+        let pending = self.actuators.pending(&self.memory.actuators);
+        let impulse = Vector3::new(pending.y, pending.z, pending.w) * scale + bias * self.late;
+        let wanted = self.memory.last.as_ref().map_or_else(Vector3::zeros, |last| last.wanted);
+        Late { time: self.late, impulse, wanted }
     }
 
-    /// u = u_f + g e3 + p_d'' + kappa p_d' - d.
-    fn acceleration_command(&self, reference: &Reference, filter: &FilterState, force: &ForceEstimate) -> Vector3<f32> {
-        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered - force.value;
+    /// u = c + g e3 + p_d'' + kappa p_d'.
+    fn acceleration_command(&self, reference: &Reference, filter: &FilterState) -> Vector3<f32> {
+        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered;
         command.z += self.vehicle.gravity;
         command
     }
 
     /// A derivative of the reference with the drag that the one below it makes.
     fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
-        let drag = self.parameters.estimates.drag_across;
+        let drag = self.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
     }
 
@@ -335,6 +393,12 @@ impl Controller {
         reference.check()?;
         if reference.acceleration.z > self.steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
     }
+}
+
+/// The sine of the angle from b to rho, one beyond a right angle, of an error quaternion of any length.
+fn sine_of_tilt(q: &Quaternion<f32>) -> f32 {
+    let (across, along) = (q.i * q.i + q.j * q.j, q.w * q.w + q.k * q.k);
+    if across >= along { 1.0 } else { 2.0 * math::sqrt(across * along) / (across + along) }
 }
 
 /// R e3 of a quaternion near unit length.

@@ -14,7 +14,7 @@
 //! has; here yaw is asked for J_33 A and a gyroscopic term at most, and the heading catches up. For small chi, 2 c_1 sin(chi/2) is
 //! c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2), which only then changes at once.
 
-use super::parameters::HeadingParameters;
+use super::parameters::ExtendedParameters;
 use crate::attitude_reference::AngularMotion;
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
@@ -32,8 +32,15 @@ pub struct HeadingLag {
 impl HeadingLag {
     /// No lag, turning at `rate`, rad/s, as far as the generator may.
     #[must_use]
-    pub fn none(rate: f32, parameters: &HeadingParameters) -> Self {
-        Self { half_angle: Vector2::new(1.0, 0.0), rate: math::within(rate, parameters.rate) }
+    pub fn none(rate: f32, parameters: &ExtendedParameters) -> Self {
+        Self { half_angle: Vector2::new(1.0, 0.0), rate: math::within(rate, parameters.yaw_rate) }
+    }
+
+    /// R_z(-chi) of the first two components.
+    fn across(&self, v: &Vector3<f32>) -> Vector2<f32> {
+        let (c, s) = (self.half_angle.x, self.half_angle.y);
+        let (cos, sin) = (c * c - s * s, 2.0 * c * s);
+        Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
     }
 
     /// R_z(-chi) times the paper's error: R~ as a quaternion of any length along R_d^T R.
@@ -50,8 +57,8 @@ impl HeadingLag {
 ///
 /// # Errors
 /// Names `gains.c_1` or `gains.c_2`.
-pub fn check(parameters: &HeadingParameters, period: f32) -> Result<(), ParameterError> {
-    let HeadingParameters { c_1, c_2, .. } = *parameters;
+pub fn check(parameters: &ExtendedParameters, period: f32) -> Result<(), ParameterError> {
+    let ExtendedParameters { c_1, c_2, .. } = *parameters;
     require(c_2 * period <= 1.0, "gains.c_2", Reason::Above(1.0 / period))?;
     let most = 0.5 * c_2 / period;
     require(c_1 <= most, "gains.c_1", Reason::Above(most))
@@ -68,20 +75,25 @@ pub struct Turning {
     pub lag_rate: f32,
 }
 
+/// omega_d, rad/s, axes of the desired body frame, where the paper's is `paper`.
+#[must_use]
+pub fn velocity(lag: &HeadingLag, paper: &Vector3<f32>) -> Vector3<f32> {
+    let across = lag.across(paper);
+    Vector3::new(across.x, across.y, lag.rate)
+}
+
 /// The desired motion for the paper's frame's `motion` and the lag at hand, with ticks `period` seconds apart.
 #[must_use]
-pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &HeadingParameters, period: f32) -> Turning {
-    let HeadingParameters { acceleration: most, rate: fastest, c_1, c_2 } = *parameters;
+pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &ExtendedParameters, period: f32) -> Turning {
+    let ExtendedParameters { yaw_acceleration: most, yaw_rate: fastest, c_1, c_2, .. } = *parameters;
     let AngularMotion { velocity: w, acceleration: a } = motion;
-    let (c, s) = (lag.half_angle.x, lag.half_angle.y);
+    let s = lag.half_angle.y;
     let lag_rate = lag.rate - w.z;
     let wanted = math::within(a.z - c_2 * lag_rate - 2.0 * c_1 * s, most);
     // The rate at the end of the period is what W_max bounds.
     let turn = math::within_rate(wanted, lag.rate, fastest, period);
 
-    let (cos, sin) = (c * c - s * s, 2.0 * c * s);
-    let across = |v: &Vector3<f32>| Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x);
-    let (velocity, acceleration) = (across(w), across(a));
+    let (velocity, acceleration) = (lag.across(w), lag.across(a));
     Turning {
         velocity: Vector3::new(velocity.x, velocity.y, lag.rate),
         acceleration: Vector3::new(

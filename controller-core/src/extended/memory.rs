@@ -1,19 +1,20 @@
 //! What the extended law remembers from one tick to the next.
 
 use super::actuators::ActuatorState;
-use super::force::ForceEstimate;
 use super::heading::HeadingLag;
+use super::net::Net;
+use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::position::FilterState;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector3, Vector4};
 
-/// What the law knows beyond its filters and its lift.
+/// What is estimated, as far as it is believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
-    /// The force per mass.
-    pub force: ForceEstimate,
-    /// The averaged torque bias, N m, body frame, before it is cut to its level.
+    /// d, the force per mass, m/s^2, world frame.
+    pub force: Vector3<f32>,
+    /// The torque bias, N m, body frame.
     pub torque: Vector3<f32>,
     /// What the rotors deliver of what is commanded.
     pub scale: f32,
@@ -21,7 +22,26 @@ pub struct Estimates {
 
 impl Estimates {
     /// Nothing known.
-    pub const NONE: Self = Self { force: ForceEstimate::NONE, torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+    pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
+}
+
+/// What the law has averaged, before it is cut to its levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Averages {
+    /// zeta, the force per mass, m/s^2, world frame.
+    pub force: Vector3<f32>,
+    /// The torque bias, N m, body frame.
+    pub torque: Vector3<f32>,
+    /// The thrust scale, with what it is learnt from.
+    pub scale: ScaleEstimate,
+}
+
+impl Averages {
+    /// Of a vehicle of which torque bias and thrust scale are known, hovering under `gravity`, m/s^2.
+    #[must_use]
+    pub fn hovering(torque: Vector3<f32>, scale: f32, gravity: f32) -> Self {
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale, gravity) }
+    }
 }
 
 /// The last tick, as far as the estimates need it.
@@ -31,6 +51,8 @@ pub(super) struct Last {
     /// R e3.
     pub thrust_axis: Vector3<f32>,
     pub angular_velocity: Vector3<f32>,
+    /// R~^T omega_d', rad/s^2.
+    pub wanted: Vector3<f32>,
 }
 
 /// Everything the law remembers from one tick to the next.
@@ -42,8 +64,10 @@ pub struct Memory {
     pub lift: Option<Lift>,
     /// The heading's lag; none before the first step.
     pub heading: Option<HeadingLag>,
-    /// The estimates.
-    pub estimates: Estimates,
+    /// What the estimates are made of.
+    pub averages: Averages,
+    /// The net.
+    pub net: Net,
     /// Ticks for which the estimates are still held.
     pub(super) held: u32,
     pub(super) last: Option<Last>,
@@ -53,14 +77,15 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// A memory of `estimates` and nothing else.
-    pub(super) fn fresh(vehicle: &Vehicle, estimates: Estimates) -> Self {
-        let hover = Vector4::new(vehicle.mass * vehicle.gravity / estimates.scale, 0.0, 0.0, 0.0);
+    /// A memory of `averages` and nothing else.
+    pub(super) fn fresh(vehicle: &Vehicle, averages: Averages) -> Self {
+        let hover = Vector4::new(vehicle.mass * vehicle.gravity / averages.scale.scale, 0.0, 0.0, 0.0);
         Self {
             filter: FilterState::ZERO,
             lift: None,
             heading: None,
-            estimates,
+            averages,
+            net: Net::FRESH,
             held: 0,
             last: None,
             actuators: ActuatorState::steady(hover),

@@ -1,82 +1,39 @@
-//! The position law, axis by axis, with a capped approach speed. Section 1 of `docs/extended-law.md`.
+//! The position law: feedback gets what the wind leaves, across what the vertical leaves. Section 1 of `docs/extended-law.md`.
+//!
+//! c is the part of u that is neither gravity nor reference, x the filter before it, d the observed force per mass (section 2):
 //!
 //! | here | equation |
 //! |---|---|
-//! | `z_1` = p~ + (1/k_f + 1/k_s) v~ + u_f / (k_f k_s), `z_2` = v~ + u_f / k_f + u_s / k_s | the paper's (9), each axis with its own filters |
-//! | phi(z_1) = s(k_p z_1; k_v v_c) = k_v s(k_p z_1 / k_v; v_c) | the approach: its speed is at most v_c |
-//! | `feedback` = -s(phi(z_1) + k_v z_2; M) | ubar |
-//! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`Saturation`]: radial across; along the vertical a level for either sign |
-//! | u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar) | the paper's (7) |
-//! | u_f'' = k_f k_s (ubar - u_s) - k_f^2 (u_s - u_f) | from the line above |
+//! | `z_1` = p~ + (1/k_f + 1/k_s) v~ + (c + d) / (k_f k_s), `z_2` = v~ + (c + d) / k_f + (x + d) / k_s | the paper's (9) for u_f = c + d, u_s = x + d |
+//! | phi(z_1) = s(k_p z_1; k_v v_c) | the approach: its speed is at most v_c |
+//! | `feedback` = -s(phi(z_1) + k_v z_2; M) - d | ubar |
+//! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`Saturation`]: radial across |
+//! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical has what the force leaves |
+//! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across has what the vertical leaves |
+//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (ubar - x) | the paper's (7); [`super::turning`] may change the drive |
 //!
-//! World frame; accelerations in m/s^2. Along the vertical M is M_z+ upwards and M_z- downwards, v_c the speed of ascent or
-//! descent. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign of its argument.
+//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, whatever d is, and every level is as wide as that
+//! allows. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
+//! of its argument.
 
-use super::parameters::PositionParameters;
+use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
-use crate::error::ParameterError;
+use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::math;
 use crate::position::{FilterState, FilterTransition};
 use crate::reference::Reference;
 use crate::state::State;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
-/// The feedback's saturations in one direction: of the approach, s(k_p z_1; k_v v_c) / k_v, and of the whole, s(k_v .; M).
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Levels {
-    approach: Saturation,
-    whole: Saturation,
-}
+/// The least level of a feedback, m/s^2: what is left where a force takes all of the envelope.
+const LEVEL_LEAST: f32 = 0.3;
 
-impl Levels {
-    fn new(k_p: f32, k_v: f32, approach_speed: f32, level: f32) -> Self {
-        Self { approach: Saturation::new(k_p / k_v, approach_speed), whole: Saturation::new(k_v, level) }
-    }
-}
+/// How much of the tilt and of the thrust across the feedback uses: the reference needs some.
+const SHARE_ACROSS: f32 = 0.95;
 
-/// The filters of one axis and what the law makes of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Filters {
-    /// 1 / k_f, 1 / k_s and their sum, s; their product, s^2.
-    second_lag: f32,
-    first_lag: f32,
-    both_lags: f32,
-    lags_product: f32,
-    /// k_f, 1/s.
-    k_f: f32,
-    /// k_f^2 and k_f k_s, 1/s^2.
-    k_f_squared: f32,
-    k_f_k_s: f32,
-    transition: FilterTransition,
-}
-
-impl Filters {
-    fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
-        let (second_lag, first_lag) = (1.0 / k_f, 1.0 / k_s);
-        Ok(Self {
-            second_lag,
-            first_lag,
-            both_lags: second_lag + first_lag,
-            lags_product: second_lag * first_lag,
-            k_f,
-            k_f_squared: k_f * k_f,
-            k_f_k_s: k_f * k_s,
-            transition: FilterTransition::new(k_f, k_s, period)?,
-        })
-    }
-
-    /// z_1 and z_2.
-    fn coordinates(&self, position_error: f32, velocity_error: f32, u_f: f32, u_s: f32) -> (f32, f32) {
-        (
-            position_error + self.both_lags * velocity_error + self.lags_product * u_f,
-            velocity_error + self.second_lag * u_f + self.first_lag * u_s,
-        )
-    }
-
-    /// u_f' and u_f''.
-    fn rates(&self, u_f: f32, u_s: f32, feedback: f32) -> (f32, f32) {
-        let (towards_intermediate, towards_feedback) = (u_s - u_f, feedback - u_s);
-        (self.k_f * towards_intermediate, self.k_f_k_s * towards_feedback - self.k_f_squared * towards_intermediate)
-    }
+/// s(k_p z_1; k_v v_c) / k_v, the velocity of approach.
+fn approach(k_p: f32, k_v: f32, speed: f32) -> Saturation {
+    Saturation::new(k_p / k_v, speed)
 }
 
 /// What the position law commands, with the quantities it went through.
@@ -92,83 +49,160 @@ pub struct PositionFeedback {
     pub z_2: Vector3<f32>,
     /// ubar, m/s^2.
     pub feedback: Vector3<f32>,
-    /// u_f', m/s^3.
-    pub filtered_rate: Vector3<f32>,
-    /// u_f'', m/s^4.
-    pub filtered_acceleration: Vector3<f32>,
+    /// c', m/s^3.
+    pub rate: Vector3<f32>,
+    /// The drive that the law wants, m/s^3.
+    pub drive: Vector3<f32>,
 }
 
 /// The position law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
-    across: Filters,
-    vertical: Filters,
-    levels_across: Levels,
-    levels_up: Levels,
-    levels_down: Levels,
+    /// 1 / k_f, 1 / k_s and their sum, s; their product, s^2.
+    second_lag: f32,
+    first_lag: f32,
+    both_lags: f32,
+    lags_product: f32,
+    /// k_f, 1/s.
+    k_f: f32,
+    /// (1 - e^(-k_s h)) / h, 1/s: what brings x to ubar as its filter would.
+    k_s_held: f32,
+    period: f32,
+    /// 1 - e^(-k_f h), and h - (1 - e^(-k_f h)) / k_f, s: the step of c.
+    towards: f32,
+    ramp: f32,
+    k_v_across: f32,
+    k_v_vertical: f32,
+    approach_across: Saturation,
+    approach_up: Saturation,
+    approach_down: Saturation,
+    a_across: f32,
+    a_down: f32,
+    tangent: f32,
+    gravity: f32,
+    /// The level of the net, m/s^2.
+    net: f32,
 }
 
 impl PositionLaw {
-    /// For steps of `period`, s.
+    /// Under `gravity`, m/s^2, for steps of `period`, s.
     ///
     /// # Errors
     /// Names `control.period` if it is outside (0, 0.1].
-    pub fn new(parameters: &PositionParameters, period: f32) -> Result<Self, ParameterError> {
+    pub fn new(parameters: &ExtendedParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let p = parameters;
+        require_positive(period, "control.period")?;
+        let longest = FilterTransition::LONGEST_PERIOD;
+        require(period <= longest, "control.period", Reason::Above(longest))?;
+        let (second_lag, first_lag) = (1.0 / p.k_f, 1.0 / p.k_s);
+        let gone = |bandwidth: f32| -math::exp_m1(-f64::from(bandwidth) * f64::from(period));
+        let towards = gone(p.k_f);
         Ok(Self {
-            across: Filters::new(p.k_f_across, p.k_s_across, period)?,
-            vertical: Filters::new(p.k_f_vertical, p.k_s_vertical, period)?,
-            levels_across: Levels::new(p.k_p_across, p.k_v_across, p.v_across, p.m_across),
-            levels_up: Levels::new(p.k_p_vertical, p.k_v_vertical, p.v_up, p.m_up),
-            levels_down: Levels::new(p.k_p_vertical, p.k_v_vertical, p.v_down, p.m_down),
+            second_lag,
+            first_lag,
+            both_lags: second_lag + first_lag,
+            lags_product: second_lag * first_lag,
+            k_f: p.k_f,
+            k_s_held: (gone(p.k_s) / f64::from(period)) as f32,
+            period,
+            towards: towards as f32,
+            ramp: (f64::from(period) - towards / f64::from(p.k_f)) as f32,
+            k_v_across: p.k_v_across,
+            k_v_vertical: p.k_v_vertical,
+            approach_across: approach(p.k_p_across, p.k_v_across, p.v_across),
+            approach_up: approach(p.k_p_vertical, p.k_v_vertical, p.v_up),
+            approach_down: approach(p.k_p_vertical, p.k_v_vertical, p.v_down),
+            a_across: p.a_across,
+            a_down: p.a_down,
+            tangent: math::tan(f64::from(p.tilt_max)) as f32 * SHARE_ACROSS,
+            gravity,
+            net: net_level(p, gravity) as f32,
         })
     }
 
-    /// Evaluates the law at one instant; the filters are read, not advanced.
+    /// k_f, 1/s.
     #[must_use]
-    pub fn feedback(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionFeedback {
-        let FilterState { filtered: u_f, intermediate: u_s } = filter;
-        let p = state.position - reference.position;
-        let v = state.velocity - reference.velocity;
-        let (z_1x, z_2x) = self.across.coordinates(p.x, v.x, u_f.x, u_s.x);
-        let (z_1y, z_2y) = self.across.coordinates(p.y, v.y, u_f.y, u_s.y);
-        let (z_1z, z_2z) = self.vertical.coordinates(p.z, v.z, u_f.z, u_s.z);
-        let (z_1, z_2) = (Vector3::new(z_1x, z_1y, z_1z), Vector3::new(z_2x, z_2y, z_2z));
+    pub fn k_f(&self) -> f32 {
+        self.k_f
+    }
 
-        let feedback = self.saturated(&z_1, &z_2);
-        let (x_rate, x_acceleration) = self.across.rates(u_f.x, u_s.x, feedback.x);
-        let (y_rate, y_acceleration) = self.across.rates(u_f.y, u_s.y, feedback.y);
-        let (z_rate, z_acceleration) = self.vertical.rates(u_f.z, u_s.z, feedback.z);
+    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2; `caught`, whether the level
+    /// is the net's.
+    #[must_use]
+    pub fn feedback(
+        &self,
+        state: &State,
+        reference: &Reference,
+        filter: &FilterState,
+        force: &Vector3<f32>,
+        greatest: f32,
+        caught: bool,
+    ) -> PositionFeedback {
+        let FilterState { filtered: c, intermediate: x } = filter;
+        let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
+        let (opposed, driven) = (c + force, x + force);
+        let z_1 = p + v * self.both_lags + opposed * self.lags_product;
+        let z_2 = v + opposed * self.second_lag + driven * self.first_lag;
+        let feedback = self.saturated([&z_1, &z_2], force, greatest, if caught { self.net } else { f32::MAX });
         PositionFeedback {
             position_error: p,
             velocity_error: v,
             z_1,
             z_2,
             feedback,
-            filtered_rate: Vector3::new(x_rate, y_rate, z_rate),
-            filtered_acceleration: Vector3::new(x_acceleration, y_acceleration, z_acceleration),
+            rate: (x - c) * self.k_f,
+            drive: (feedback - x) * self.k_s_held,
         }
     }
 
-    /// -s(phi(z_1) + k_v z_2; M), with phi(z_1) = k_v times a velocity of approach.
-    fn saturated(&self, z_1: &Vector3<f32>, z_2: &Vector3<f32>) -> Vector3<f32> {
-        let Levels { approach, whole } = &self.levels_across;
-        let across = z_2.xy() + z_1.xy() * approach.factor(z_1.xy().norm_squared());
-        let across = across * -whole.factor(across.norm_squared());
+    /// ubar.
+    fn saturated(
+        &self,
+        [z_1, z_2]: [&Vector3<f32>; 2],
+        force: &Vector3<f32>,
+        greatest: f32,
+        most: f32,
+    ) -> Vector3<f32> {
         // Above the reference the vehicle descends.
-        let side = |positive: bool| if positive { &self.levels_down } else { &self.levels_up };
-        let vertical = z_2.z + z_1.z * side(z_1.z > 0.0).approach.factor(z_1.z * z_1.z);
-        let vertical = vertical * -side(vertical > 0.0).whole.factor(vertical * vertical);
+        let descent = if z_1.z > 0.0 { &self.approach_down } else { &self.approach_up };
+        let vertical = (z_2.z + z_1.z * descent.factor(z_1.z * z_1.z)) * self.k_v_vertical;
+        let level = if vertical > 0.0 { self.a_down - force.z } else { greatest - self.gravity + force.z };
+        let vertical = -vertical
+            * unit_factor(math::lesser(math::greater(level, LEVEL_LEAST), most), vertical * vertical)
+            - force.z;
+
+        let lift = self.gravity + vertical;
+        let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
+        let reach = math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left));
+        let (across, wind) = (z_1.xy(), force.xy());
+        let wanted = (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
+        let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
+        let level = math::lesser(level, most);
+        let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `feedback` held.
+    /// The filters' states one period later, with `drive` held. c_z never falls below -A_-, to the last bit.
     #[must_use]
-    pub fn advance(&self, filter: &FilterState, feedback: &Vector3<f32>) -> FilterState {
-        let FilterState { filtered: f, intermediate: s } = filter;
-        let (x_f, x_s) = self.across.transition.advance_axis(f.x, s.x, feedback.x);
-        let (y_f, y_s) = self.across.transition.advance_axis(f.y, s.y, feedback.y);
-        let (z_f, z_s) = self.vertical.transition.advance_axis(f.z, s.z, feedback.z);
-        FilterState { filtered: Vector3::new(x_f, y_f, z_f), intermediate: Vector3::new(x_s, y_s, z_s) }
+    pub fn advance(&self, filter: &FilterState, drive: &Vector3<f32>) -> FilterState {
+        let FilterState { filtered: c, intermediate: x } = filter;
+        let mut filtered = c + ((x - c) * self.towards + drive * self.ramp);
+        filtered.z = math::greater(filtered.z, -self.a_down);
+        FilterState { filtered, intermediate: x + drive * self.period }
     }
+}
+
+/// The level of the net, m/s^2: with it c' and c'' take half of alpha_0 and half of Omega at the least |u|, so that the frame is never limited.
+#[must_use]
+pub fn net_level(parameters: &ExtendedParameters, gravity: f32) -> f64 {
+    let p = parameters;
+    let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(f64::from);
+    let least = f64::from(gravity - p.a_down);
+    // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d and x + d start within M.
+    math::lesser_f64(0.5 * reserve * least / (2.0 * k_f * (k_s + k_f)), 0.5 * rate * least / (2.0 * k_f))
+}
+
+/// What makes s(x; `level`) of a vector x with this `square`.
+fn unit_factor(level: f32, square: f32) -> f32 {
+    level / math::sqrt(level * level + square)
 }

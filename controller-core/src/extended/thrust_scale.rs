@@ -1,29 +1,49 @@
-//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 7 of
-//! `docs/extended-law.md`.
+//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 7 of `docs/extended-law.md`.
 //!
-//! Rotors are commanded f / s. With F the mean of what was commanded, through lag and delay, and y = v_z' + g, the vertical
-//! equation is y = s c with c = b_z F / m, and s is regressed on it:
+//! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from what varies alone. With
+//! y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
-//! s += clip(gamma h (y - s c) c / ((F / m)^2 + c_0^2); ± r h), s in [s_lo, s_hi].
+//! y - ybar = s (f - fbar) for any constant force,   s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
 //!
-//! Only the vertical equation: along the thrust axis wind across would leak in. A steady wind along the vertical reads as scale.
+//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are commanded f / s.
 
-use super::parameters::EstimateParameters;
+use super::parameters::ExtendedParameters;
 use crate::math;
+use nalgebra::Vector3;
 
-/// c_0, m/s^2: below it a thrust says little about the scale.
-pub const LEAST_THRUST: f32 = 2.0;
+/// c_0, m/s^2: variations below it say little about the scale.
+const LEAST_VARIATION: f32 = 2.0;
 
-/// r, 1/s: how fast the scale may change at most.
-const RATE_MAX: f32 = 0.2;
+/// Bandwidth of the slow averages, 1/s.
+const SLOW: f64 = 0.7;
+
+/// The slow averages and the scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaleEstimate {
+    /// ybar, m/s^2.
+    pub made: Vector3<f32>,
+    /// fbar, m/s^2.
+    pub commanded: Vector3<f32>,
+    /// s.
+    pub scale: f32,
+}
+
+impl ScaleEstimate {
+    /// The scale known, hovering under `gravity`, m/s^2.
+    #[must_use]
+    pub fn at(scale: f32, gravity: f32) -> Self {
+        let hover = Vector3::new(0.0, 0.0, gravity);
+        Self { made: hover, commanded: hover / scale, scale }
+    }
+}
 
 /// The estimate's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrustScale {
-    /// gamma h.
+    /// gamma_s h.
     gain: f32,
-    /// r h.
-    most: f32,
+    /// 1 - e^(-h SLOW).
+    slow: f32,
     least: f32,
     greatest: f32,
 }
@@ -31,17 +51,26 @@ pub struct ThrustScale {
 impl ThrustScale {
     /// For steps of `period`, s.
     #[must_use]
-    pub fn new(parameters: &EstimateParameters, period: f32) -> Self {
-        let EstimateParameters { scale_least, scale_greatest, scale_rate, .. } = *parameters;
-        Self { gain: scale_rate * period, most: RATE_MAX * period, least: scale_least, greatest: scale_greatest }
+    pub fn new(parameters: &ExtendedParameters, period: f32) -> Self {
+        Self {
+            gain: parameters.scale_rate * period,
+            slow: -math::exp_m1(-SLOW * f64::from(period)) as f32,
+            least: parameters.scale_least,
+            greatest: parameters.scale_greatest,
+        }
     }
 
-    /// The scale after an interval with the mean of the commanded thrust per mass `thrust` = F / m, m/s^2, its vertical part
-    /// `upwards` = b_z F / m, and the vertical acceleration less gravity's, `lift` = v_z' + g, m/s^2.
+    /// The estimate after an interval in which `made` was observed and `commanded` acted, both m/s^2, world frame.
     #[must_use]
-    pub fn learnt(&self, scale: f32, thrust: f32, upwards: f32, lift: f32) -> f32 {
-        let weight = self.gain * upwards / (thrust * thrust + LEAST_THRUST * LEAST_THRUST);
-        let step = math::within(weight * (lift - scale * upwards), self.most);
-        math::between(scale + step, self.least, self.greatest)
+    pub fn learnt(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
+        let averages = ScaleEstimate {
+            made: estimate.made + (made - estimate.made) * self.slow,
+            commanded: estimate.commanded + (commanded - estimate.commanded) * self.slow,
+            ..*estimate
+        };
+        let (made, commanded) = (made - averages.made, commanded - averages.commanded);
+        let weight = self.gain / (commanded.norm_squared() + LEAST_VARIATION * LEAST_VARIATION);
+        let step = weight * (made - commanded * estimate.scale).dot(&commanded);
+        ScaleEstimate { scale: math::between(estimate.scale + step, self.least, self.greatest), ..averages }
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! The estimate is subtracted from the torque; nothing else depends on it, so that no derivative of it is needed.
 
-use super::parameters::EstimateParameters;
+use super::parameters::ExtendedParameters;
 use crate::math;
 use nalgebra::Vector3;
 
@@ -28,10 +28,10 @@ pub struct TorqueBias {
 impl TorqueBias {
     /// For steps of `period`, s, and the diagonal of J, kg m^2.
     #[must_use]
-    pub fn new(parameters: &EstimateParameters, inertia: &Vector3<f32>, period: f32) -> Self {
-        let EstimateParameters { torque_tilt, torque_yaw, torque_smoothing, .. } = *parameters;
+    pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>, period: f32) -> Self {
+        let ExtendedParameters { torque_tilt, torque_yaw, torque_bandwidth, .. } = *parameters;
         Self {
-            averaging: -math::exp_m1(-f64::from(torque_smoothing) * f64::from(period)) as f32,
+            averaging: -math::exp_m1(-f64::from(torque_bandwidth) * f64::from(period)) as f32,
             level: Vector3::new(torque_tilt, torque_tilt, torque_yaw),
             inertia_per_period: inertia / period,
             quarter_differences: (inertia.zxy() - inertia.yzx()) * 0.25,

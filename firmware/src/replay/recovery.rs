@@ -48,9 +48,7 @@ impl Recovery {
         let Quaternion { coords } = diagnostics.attitude_error;
         self.add(coords.as_slice());
         if let Some(estimates) = self.law.estimates() {
-            self.add(estimates.force.average.as_slice());
-            self.add(estimates.force.value.as_slice());
-            self.add(estimates.force.rate.as_slice());
+            self.add(estimates.force.as_slice());
             self.add(estimates.torque.as_slice());
         }
         Ok(wrench)

@@ -1,7 +1,8 @@
 //! The scenario with a vehicle's own numbers: the original text, comments kept.
 //!
-//! Replaced are mass, inertia, what the rotors deliver (thrust and drag coefficient alike), lag, the delay, rounded to whole plant
-//! steps, `drag`, as linear drag in place of all its keys, and the rotors' positions, which count from the centre of mass.
+//! Replaced are mass, inertia, what the rotors deliver (thrust and drag coefficient alike, or the thrusts that stand
+//! for them), lag, the delay, rounded to whole plant steps, `drag`, as linear drag in place of all its keys, and the
+//! rotors' positions, which count from the centre of mass.
 
 use super::quantities::{Quantities, Quantity};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -53,9 +54,11 @@ pub fn rewritten(original: &str, name: &str, values: &Values, step: f64) -> Resu
     document["vehicle"]["mass"] = value(digits(values.mass));
     document["vehicle"]["inertia"] = list(&values.inertia);
     let rotors = document.get_mut("rotors").ok_or("rotors: is missing")?;
-    for key in ["thrust_coefficient", "drag_coefficient"] {
-        let old = rotors.get(key).and_then(number).ok_or_else(|| format!("rotors.{key}: is missing"))?;
-        rotors[key] = value(digits(old * values.thrust_scale));
+    // Two of them in either form, and thrust_min only where it is not zero.
+    for key in ["thrust_coefficient", "drag_coefficient", "thrust_max", "thrust_min"] {
+        if let Some(old) = rotors.get(key).and_then(number) {
+            rotors[key] = value(digits(old * values.thrust_scale));
+        }
     }
     rotors["lag"] = value(digits(values.lag));
     let positions = rotors.get_mut("position").and_then(Item::as_array_mut).ok_or("rotors.position: is missing")?;

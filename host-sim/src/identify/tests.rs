@@ -330,4 +330,15 @@ fn the_written_scenario_has_the_numbers_and_keeps_the_rest() {
     for kept in ["k_p_across = 48.45521", "# RK4", "Flies a 1 m circle"] {
         assert!(text.contains(kept) || !HUMMINGBIRD.contains(kept), "{kept}");
     }
+    // Rotors that the file knows by their thrust.
+    let by_thrust = HUMMINGBIRD.lines().map(|line| match line.split(' ').next() {
+        Some("thrust_coefficient") => "thrust_max = 10.0",
+        Some("drag_coefficient") => "thrust_min = 0.1",
+        Some("speed") => "torque_per_thrust = 0.0244",
+        _ => line,
+    });
+    let by_thrust = by_thrust.collect::<Vec<_>>().join("\n");
+    let new = rotor(&parse(&rewritten(&by_thrust, "mine", &values, 1e-3).unwrap()));
+    assert!((new.thrust_max - 9.0).abs() < 1e-5 && (new.thrust_min - 0.09).abs() < 1e-6, "{new:?}");
+    assert!((new.drag_coefficient / new.thrust_coefficient - 0.0244).abs() < 1e-7);
 }

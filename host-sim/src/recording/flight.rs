@@ -37,7 +37,7 @@ impl<W: Write> Recording<W> {
         }
         if let Some(estimates) = &tick.estimates {
             let estimates = json!({
-                "force": vector(&estimates.force.value.cast()),
+                "force": vector(&estimates.force.cast()),
                 "torque": vector(&estimates.torque.cast()),
                 "thrust_scale": estimates.scale,
             });

@@ -60,7 +60,7 @@ impl RivalPilot {
         let limits = configuration.limits();
         let drag = match configuration.law() {
             LawParameters::Paper(_) => 0.0,
-            LawParameters::Extended(law) => law.parameters.estimates.drag_across.into(),
+            LawParameters::Extended(law) => law.parameters.drag_across.into(),
         };
         Self {
             rival,

@@ -1,9 +1,8 @@
 //! The search space: which constants of a law are searched, and a point of it as a configuration.
 //!
 //! A point holds natural logarithms. Under the paper's law: nine gains, and the thrust floor as a fraction of its greatest
-//! admissible value; delta and alpha stay as the file has them: they are about noise. Under the extended law: every gain of the
-//! position and attitude law and the speeds of the force estimate. What else it has is a promise about the vehicle's surroundings
-//! (levels of the estimates, drag, limits of the thrust scale) or about noise, and stays.
+//! admissible value; delta and alpha stay as the file has them: they are about noise. Under the extended law: what its
+//! table of constants says ([`ExtendedParameters::TABLE`]).
 
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
@@ -39,7 +38,9 @@ impl Space {
                 let floor = thrust_floor.map_or(0.5, |floor| floor / self.configuration.least_thrust());
                 logarithms(&[g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor])
             }
-            LawParameters::Extended(law) => logarithms(&searched(&mut { *law.parameters }).map(|(_, value)| *value)),
+            LawParameters::Extended(law) => {
+                logarithms(&searched(&law.parameters).map(|named| named.2).collect::<Vec<_>>())
+            }
         }
     }
 
@@ -49,10 +50,13 @@ impl Space {
         match self.configuration.law() {
             LawParameters::Paper(law) => self.papers(law, point),
             LawParameters::Extended(law) => {
-                let mut parameters: ExtendedParameters = *law.parameters;
-                for ((_, value), x) in searched(&mut parameters).into_iter().zip(point) {
+                let mut values = law.parameters.values();
+                let searched =
+                    values.iter_mut().zip(&ExtendedParameters::TABLE).filter(|(_, constant)| constant.searched);
+                for ((value, _), x) in searched.zip(point) {
                     *value = x.exp() as f32;
                 }
+                let parameters = ExtendedParameters::from_values(values);
                 let own = &self.configuration;
                 let parameters = Extended::new(parameters, own.vehicle()).ok()?;
                 let law = ExtendedLaw { parameters, ..*law };
@@ -99,45 +103,12 @@ pub fn named(configuration: &Configuration) -> Vec<Named> {
             ];
             gains.map(|(key, value)| ("gains", key, value)).to_vec()
         }
-        LawParameters::Extended(law) => {
-            let section = |key: &str| if key.starts_with("force") { "estimates" } else { "gains" };
-            searched(&mut { *law.parameters }).map(|(key, value)| (section(key), key, *value)).to_vec()
-        }
+        LawParameters::Extended(law) => searched(&law.parameters).collect(),
     }
 }
 
 /// The extended law's searched constants.
-fn searched(parameters: &mut ExtendedParameters) -> [(&'static str, &mut f32); 29] {
-    let ExtendedParameters { position: p, attitude: a, estimates: e, .. } = parameters;
-    [
-        ("k_p_across", &mut p.k_p_across),
-        ("k_p_vertical", &mut p.k_p_vertical),
-        ("k_v_across", &mut p.k_v_across),
-        ("k_v_vertical", &mut p.k_v_vertical),
-        ("k_f_across", &mut p.k_f_across),
-        ("k_f_vertical", &mut p.k_f_vertical),
-        ("k_s_across", &mut p.k_s_across),
-        ("k_s_vertical", &mut p.k_s_vertical),
-        ("m_across", &mut p.m_across),
-        ("m_up", &mut p.m_up),
-        ("m_down", &mut p.m_down),
-        ("v_across", &mut p.v_across),
-        ("v_up", &mut p.v_up),
-        ("v_down", &mut p.v_down),
-        ("w", &mut a.w),
-        ("eta", &mut a.eta),
-        ("k_t", &mut a.k_t),
-        ("m_t", &mut a.m_t),
-        ("eta_t", &mut a.eta_t),
-        ("k_omega_t", &mut a.k_omega_t),
-        ("m_omega_t", &mut a.m_omega_t),
-        ("k_omega_z", &mut a.k_omega_z),
-        ("m_omega_z", &mut a.m_omega_z),
-        ("force_bandwidth_across", &mut e.force_bandwidth_across),
-        ("force_bandwidth_vertical", &mut e.force_bandwidth_vertical),
-        ("force_snap_across", &mut e.force_snap_across),
-        ("force_snap_vertical", &mut e.force_snap_vertical),
-        ("force_smoothing_across", &mut e.force_smoothing_across),
-        ("force_smoothing_vertical", &mut e.force_smoothing_vertical),
-    ]
+fn searched(parameters: &ExtendedParameters) -> impl Iterator<Item = Named> {
+    let named = ExtendedParameters::TABLE.into_iter().zip(parameters.values());
+    named.filter(|(constant, _)| constant.searched).map(|(constant, value)| (constant.section, constant.key, value))
 }

@@ -1,7 +1,10 @@
 //! `[rotors]` and `[sampling]` as users may write them, and as they must not.
 
 use super::*;
+use crate::verdict::Verdict;
 use crate::{PAPER, Scenario};
+use controller_core::allocation::Mixer;
+use controller_core::state::Wrench;
 use nalgebra::Vector3;
 
 const ROTORS: &str = "
@@ -96,4 +99,113 @@ fn more_than_eight_and_fewer_than_four_rotors_are_refused() {
         let what = read(&text).err().unwrap();
         assert!(what.starts_with("rotors: ") && what.contains(words), "{what}");
     }
+}
+
+/// Files of six to eight rotors, even ones clockwise; the coaxial have two on each arm, one above the other, that spin
+/// against each other.
+fn multirotors() -> [(&'static str, String); 5] {
+    let ring = |count: usize, phase: f64| -> Vec<([f64; 3], usize)> {
+        let angle = |k: usize| (k as f64 + phase) * std::f64::consts::TAU / count as f64;
+        (0..count).map(|k| ([0.25 * angle(k).cos(), 0.25 * angle(k).sin(), 0.0], k)).collect()
+    };
+    let coaxial = |arms: Vec<([f64; 3], usize)>| -> Vec<([f64; 3], usize)> {
+        arms.into_iter().flat_map(|([x, y, _], k)| [([x, y, 0.03], k), ([x, y, -0.03], k + 1)]).collect()
+    };
+    let file = |rotors: Vec<([f64; 3], usize)>| {
+        let places: Vec<String> = rotors.iter().map(|(place, _)| format!("{place:?}")).collect();
+        let spins = rotors.iter().map(|(_, k)| if k % 2 == 0 { "\"cw\"" } else { "\"ccw\"" }).collect::<Vec<_>>();
+        let gains = &PAPER[PAPER.find("[gains]").unwrap()..PAPER.find("[control]").unwrap()];
+        format!(
+            "name = \"many\"\n[vehicle]\nmass = 1.5\ninertia = [0.035, 0.046, 0.08]\n{gains}\n[rotors]\n\
+             position = [{}]\nspin = [{}]\nthrust_max = 6.0\nthrust_min = 0.2\n\
+             torque_per_thrust = 0.016\nlag = 0.025\n",
+            places.join(", "),
+            spins.join(", ")
+        )
+    };
+    [
+        ("hexacopter +", file(ring(6, 0.0))),
+        ("hexacopter X", file(ring(6, 0.5))),
+        ("octocopter", file(ring(8, 0.5))),
+        ("coaxial X8", file(coaxial(ring(4, 0.5)))),
+        ("coaxial Y6", file(coaxial(ring(3, 0.0)))),
+    ]
+}
+
+#[test]
+fn six_to_eight_rotors_deliver_what_they_can_deliver() {
+    for (name, text) in multirotors() {
+        let scenario = Scenario::parse(&text, name).unwrap();
+        let rotors = scenario.configuration.rotors().unwrap();
+        assert_eq!(rotors.len(), if name.contains('8') || name.contains("octo") { 8 } else { 6 }, "{name}");
+        let (mixer, limits) = (Mixer::new(rotors), scenario.configuration.limits());
+        assert!((limits.thrust_max - 6.0 * rotors.len() as f32).abs() < 1e-4);
+        let hover = Wrench { thrust: 1.5 * 9.81, torque: Vector3::zeros() };
+        let given = mixer.allocate(&hover).unwrap();
+        assert!(given.is_exact() && given.thrusts.iter().all(|f| (f - given.thrusts[0]).abs() < 1e-4), "{name}");
+        // All patterns of rotors at a third and at two thirds of their range: every wrench among them can be had.
+        for pattern in 0..1_u32 << rotors.len() {
+            let thrusts: Vec<f32> = (0..rotors.len()).map(|k| if pattern >> k & 1 == 1 { 4.0 } else { 2.0 }).collect();
+            let asked = mixer.wrench(&thrusts);
+            let given = mixer.allocate(&asked).unwrap();
+            let delivered = mixer.wrench(&given.thrusts);
+            let error = (delivered.torque - asked.torque).norm().max((delivered.thrust - asked.thrust).abs());
+            assert!(given.is_exact() && error < 1e-4, "{name}: {asked:?} {delivered:?}");
+        }
+        // The certificate reaches every rotor, whatever it says of these gains.
+        let verdict = Verdict::of(&scenario).unwrap();
+        let last = format!("rotor {}", rotors.len());
+        assert!(verdict.certificate().inequalities().any(|inequality| inequality.name.contains(&last)), "{name}");
+    }
+}
+
+#[test]
+fn the_limits_are_the_rotors_where_the_file_has_none() {
+    let (before, rest) = PAPER.split_once("[limits]").unwrap();
+    let after = &rest[rest.find("\n[").unwrap()..];
+    let scenario = Scenario::parse(&format!("{before}{after}{ROTORS}"), "f").unwrap();
+    let limits = scenario.configuration.limits();
+    let (least, greatest) = (5.57e-6 * 100.0_f32.powi(2), 5.57e-6 * 1500.0_f32.powi(2));
+    // Two rotors at their greatest thrust and two at their least.
+    let tilt = 2.0 * 0.12 * (greatest - least);
+    let yaw = 2.0 * 1.36e-7 / 5.57e-6 * (greatest - least);
+    assert!((limits.thrust_max / (4.0 * greatest) - 1.0).abs() < 1e-5);
+    let apart = (limits.torque_max - Vector3::new(tilt, tilt, yaw)).component_div(&limits.torque_max);
+    assert!(apart.amax() < 1e-5, "{limits:?}");
+    // One of the two keys alone.
+    let thrust = Scenario::parse(&format!("{before}[limits]\nthrust_max = 9.0{after}{ROTORS}"), "f").unwrap();
+    assert_eq!(thrust.configuration.limits().thrust_max, 9.0);
+    assert_eq!(thrust.configuration.limits().torque_max, limits.torque_max);
+    // Not without rotors.
+    for (limits, field) in
+        [("", "limits"), ("[limits]\nthrust_max = 9.0", "limits.torque_max"), ("[limits]", "limits.thrust_max")]
+    {
+        let what = Scenario::parse(&format!("{before}{limits}{after}"), "f").err().unwrap().what;
+        assert!(
+            what.starts_with(&format!("{field}: missing, must be a")) && what.contains("beside [rotors]"),
+            "{what}"
+        );
+    }
+    let what = Scenario::parse(&format!("{before}[limits]\nthrust = 9.0{after}{ROTORS}"), "f").err().unwrap().what;
+    assert!(what.starts_with("limits.thrust: unknown key, did you mean \"thrust_max\"?"), "{what}");
+}
+
+#[test]
+fn rotors_that_do_not_surround_the_centre_of_mass_are_refused() {
+    let (before, rest) = PAPER.split_once("[limits]").unwrap();
+    let after = &rest[rest.find("\n[").unwrap()..];
+    let ahead = ROTORS.replace("[0.12,", "[0.52,").replace("[-0.12,", "[0.28,");
+    let what = Scenario::parse(&format!("{before}{after}{ahead}"), "f").err().unwrap().what;
+    assert!(what.starts_with("rotors.position: ") && what.contains("must lie amid the rotors"), "{what}");
+    // With limits of its own the extended law refuses it: its thrust floor could not lift the rotors behind.
+    let extended = include_str!("../../../vehicles/hummingbird.toml");
+    let (_, rotors) = extended.split_once("[rotors]").unwrap();
+    let ahead = rotors.replacen("[0.120208, 0.120208", "[0.9, 0.120208", 1).replacen(
+        "[0.120208, -0.120208",
+        "[0.9, -0.120208",
+        1,
+    );
+    let ahead = ahead.replace("[-0.120208, ", "[0.1, ");
+    let what = Scenario::parse(&extended.replace(rotors, &ahead), "f").err().unwrap().what;
+    assert!(what.starts_with("rotors.position: leaves rotor 1 without a share of the thrust"), "{what}");
 }

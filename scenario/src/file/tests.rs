@@ -43,10 +43,56 @@ fn sections_left_out_take_their_defaults() {
     assert!((placed.initial.position - Vector3::new(-2.0, 1.0, 5.5)).norm() < 1e-6);
     assert_eq!((placed.initial.velocity, placed.initial.angular_velocity), (Vector3::zeros(), Vector3::zeros()));
     assert_eq!(placed.initial.attitude.w, 1.0);
-    for head in ["[vehicle]", "[limits]", "[gains]", "[reference]"] {
+    for head in ["[vehicle]", "[gains]"] {
         let name = head.trim_matches(['[', ']']);
         let error = Scenario::parse(&without(head), "f").err().unwrap();
         assert_eq!(error.what, format!("{name}: missing, must be a section"));
+    }
+    let brief = Scenario::parse(&PAPER.replace("duration = 40.0", ""), "f").unwrap();
+    assert_eq!(brief.timing.duration(), 20.0);
+    assert!(Scenario::parse(&PAPER.replace("gravity = 9.81", ""), "f").unwrap().flies_like(&paper));
+}
+
+#[test]
+fn without_a_reference_it_hovers_where_it_starts() {
+    let hovering = |text: &str| {
+        let scenario = Scenario::parse(text, "f").unwrap();
+        let reference = scenario.trajectory.at(1_000_000);
+        assert_eq!(scenario.initial.position, reference.position.cast::<f64>());
+        assert_eq!(reference.heading.direction().x, 1.0);
+        reference.position
+    };
+    let without_reference = without("[reference]");
+    assert_eq!(hovering(&without_reference), Vector3::new(5.0, 5.0, 10.0));
+    let line = "position = [5.0, 5.0, 10.0]";
+    assert!(without_reference.contains(line));
+    assert_eq!(hovering(&without_reference.replace(line, "")), Vector3::new(0.0, 0.0, 1.0));
+    for (position, words) in [("[5.0, 1e20, 10.0]", "initial.position: must be within"), ("[1, 2]", "three numbers")] {
+        let text = without_reference.replace(line, &format!("position = {position}"));
+        let error = Scenario::parse(&text, "f").err().unwrap().what;
+        assert!(error.starts_with("initial.position: ") && error.contains(words), "{error}");
+    }
+}
+
+/// With gains a name, a vehicle and rotors are all that a file needs.
+#[test]
+fn a_file_of_name_vehicle_rotors_and_gains_is_complete() {
+    const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
+    let kept = ["[vehicle]", "[gains]", "[rotors]"].map(|head| {
+        let section = &EXTENDED[EXTENDED.find(head).unwrap()..];
+        &section[..section[1..].find("\n[").unwrap() + 2]
+    });
+    let text = format!("name = \"short\"\n{}[control]\nlaw = \"extended\"\n", kept.concat());
+    let short = Scenario::parse(&text, "f").unwrap();
+    assert!((short.configuration.limits().thrust_max - 50.13).abs() < 1e-3);
+    assert_eq!((short.timing.ticks, short.timing.period_us), (2000, 10_000));
+    assert_eq!(short.initial.position, Vector3::new(0.0, 0.0, 1.0));
+    Certified::new(short.configuration).unwrap();
+    // Without gains the law's own will be taken.
+    let bare = text.replace(kept[1], "");
+    for bare in [bare.clone(), bare.replace("law = \"extended\"", "")] {
+        let error = Scenario::parse(&bare, "f").err().unwrap();
+        assert_eq!(error.what, "gains: missing, must be a section");
     }
 }
 

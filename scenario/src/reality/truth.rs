@@ -15,6 +15,7 @@
 //! from which the rotors' positions are measured: it is where the markers and the flight controller are.
 
 use super::numbers::Allowed;
+use crate::inertia;
 use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
@@ -67,10 +68,13 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     section.allow(&keys)?;
     let modelled = Truth::of_model(model);
     let mass = section.number_or("mass", modelled.mass)?;
-    let inertia = section.vector_or("inertia", modelled.inertia)?;
+    let moments = if section.has("inertia") { inertia::read(&section, "inertia")? } else { modelled.inertia };
     let parameters =
-        VehicleParameters { mass: mass as f32, inertia: inertia.map(|moment| moment as f32), gravity: model.gravity };
-    Vehicle::new(parameters).map_err(|error| root.refused(&in_truth(error)))?;
+        VehicleParameters { mass: mass as f32, inertia: moments.map(|moment| moment as f32), gravity: model.gravity };
+    Vehicle::new(parameters).map_err(|error| {
+        let impossible = inertia::impossible("truth.inertia", &moments, &error);
+        impossible.unwrap_or_else(|| root.refused(&in_truth(error)))
+    })?;
     let scale = Allowed::new(0.0..=10.0, "");
     let rotor_scales = read_rotor_scales(&section, rotors, &scale)?;
     if let Some(key) = ["thrust_curve", "lag"].into_iter().find(|key| section.has(key) && rotors.is_none()) {
@@ -79,7 +83,7 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     let lag = section.has("lag").then(|| Allowed::new(0.0..=1.0, "s").number(&section, "lag")).transpose()?;
     Ok(Some(Truth {
         mass,
-        inertia,
+        inertia: moments,
         centre_of_mass: Allowed::new(-100.0..=100.0, "m").vector_or_zero(&section, "centre_of_mass")?,
         thrust_scale: scale.number_or(&section, "thrust_scale", 1.0)?,
         rotor_scales,

@@ -14,6 +14,8 @@ pub(super) struct PositionGains {
     pub k_f: f64,
     /// k_s h.
     pub k_s: f64,
+    /// Whether x' is held between ticks, as under the extended law, and not ubar.
+    pub holds_drive: bool,
 }
 
 /// Gains of the attitude law about one axis.
@@ -30,8 +32,6 @@ pub(super) struct TorqueGains {
 pub(super) struct ForceGains {
     /// 1 - e^(-L h).
     pub averaging: f64,
-    /// k_d h.
-    pub bandwidth: f64,
     /// kappa h.
     pub drag: f64,
 }
@@ -41,8 +41,23 @@ pub(super) struct ForceGains {
 pub(super) struct EstimateGains {
     /// The force.
     pub force: Option<ForceGains>,
-    /// The thrust scale: gamma h g^2 / (g^2 + c_0^2), the share of a difference that it takes up in a tick.
-    pub scale: Option<f64>,
     /// The torque bias: 1 - e^(-L_tau h).
     pub torque: Option<f64>,
+    /// The lag and the delay that the errors are projected over; zero projects nothing.
+    pub late: LateGains,
+}
+
+/// T: lag, whole and broken part of the delay, in samples.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct LateGains {
+    pub lag: f64,
+    pub whole_delay: usize,
+    pub broken_delay: f64,
+}
+
+impl LateGains {
+    /// All of it.
+    pub fn time(&self) -> f64 {
+        self.lag + self.whole_delay as f64 + self.broken_delay
+    }
 }

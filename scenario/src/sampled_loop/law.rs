@@ -4,7 +4,7 @@
 //! mass is left; and time is counted in periods h, so a gain per second is multiplied by h. With y_m the
 //! m-th integral of the actual command a (see [`super::lag`]):
 //!
-//! | axis | a | y_1 | y_2 | y_3 | y_4 | u_f, u_s, d |
+//! | axis | a | y_1 | y_2 | y_3 | y_4 | u_f, u_s (c, x), d |
 //! |---|---|---|---|---|---|---|
 //! | attitude about body axis i | tau_i / J_i | body rate | angle | | | |
 //! | vertical | thrust / m - g | velocity | position | | | as they are |
@@ -12,16 +12,16 @@
 //!
 //! Slopes at the origin: every saturation has slope one, the MRP of a small angle is angle / 4 and (1 + |theta|^2) / 4 is 1/4.
 //! Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and B = k_omega / J_i under the paper's law;
-//! laterally the desired tilt is u_f - d, with omega_d and omega_d' its derivatives.
+//! laterally the desired tilt is u_f, with omega_d and omega_d' its derivatives. The extended law sees the attitude's errors projected over the
+//! lag and delay of its actuators, T: angle~ + T rate~, and rate~ + (what is under way + T bias) - T omega_d' of the last tick.
 //!
 //! Where the velocity comes from the positions, by an alpha-beta filter with a double pole ([`Tracker`]), the law sees the filter's.
 //!
 //! [`Law::tick`] is one tick in the flight code's order, estimates first; the matrices are its columns.
 
 use super::compensator::Compensator;
-use super::gains::{EstimateGains, ForceGains, PositionGains, TorqueGains};
+use super::gains::{EstimateGains, LateGains, PositionGains, TorqueGains};
 use super::lag::{Arrival, INTEGRATORS};
-use core::ops::Sub;
 
 /// What an axis is, with the gains of the laws that act along it.
 #[derive(Debug, Clone, Copy)]
@@ -65,18 +65,6 @@ struct Moving {
     acceleration: f64,
 }
 
-impl Sub for Moving {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            rate: self.rate - other.rate,
-            acceleration: self.acceleration - other.acceleration,
-        }
-    }
-}
-
 /// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is remembered as
 /// (1 - share) x + share past, to which the next tick adds share now.
 #[derive(Debug, Clone, Default)]
@@ -90,12 +78,8 @@ struct Memory {
     intermediate: f64,
     /// Of zeta, such an average.
     average: f64,
-    /// d.
-    force: f64,
-    /// d'.
-    force_rate: f64,
-    /// Of g (s - 1), such an average.
-    scale: f64,
+    /// omega_d' of the last tick.
+    wanted: f64,
     /// Of the torque bias, such an average.
     torque: f64,
     /// What acts of what was commanded.
@@ -107,19 +91,18 @@ struct Memory {
 impl Law {
     /// The attitude law about one axis, its reference at rest.
     pub fn attitude(torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
-        let estimates = EstimateGains { force: None, scale: None, ..estimates };
+        let estimates = EstimateGains { force: None, ..estimates };
         Self { chain: Chain::Attitude(torque), estimates, actuator, tracker: None }
     }
 
     /// The position law along the thrust.
     pub fn vertical(position: PositionGains, estimates: EstimateGains, actuator: Arrival) -> Self {
-        let estimates = EstimateGains { torque: None, ..estimates };
+        let estimates = EstimateGains { torque: None, late: LateGains::default(), ..estimates };
         Self { chain: Chain::Vertical(position), estimates, actuator, tracker: None }
     }
 
     /// The position law across the thrust, realised by tilting through the attitude law.
     pub fn lateral(position: PositionGains, torque: TorqueGains, estimates: EstimateGains, actuator: Arrival) -> Self {
-        let estimates = EstimateGains { scale: None, ..estimates };
         Self { chain: Chain::Lateral(position, torque), estimates, actuator, tracker: None }
     }
 
@@ -155,7 +138,7 @@ impl Law {
 
     /// The part of the memory that this law has.
     fn used<'a>(&self, memory: &'a mut Memory) -> Vec<&'a mut f64> {
-        let EstimateGains { force, scale, torque } = self.estimates;
+        let EstimateGains { force, torque, late } = &self.estimates;
         let mut used = Vec::new();
         if !matches!(self.chain, Chain::Attitude(_)) {
             used.extend([&mut memory.filtered, &mut memory.intermediate]);
@@ -163,18 +146,19 @@ impl Law {
                 used.extend([&mut memory.tracked, &mut memory.speed]);
             }
         }
-        if force.is_some() {
-            used.extend([&mut memory.average, &mut memory.force, &mut memory.force_rate]);
+        let projects = late.time() > 0.0;
+        if matches!(self.chain, Chain::Lateral(..)) && projects {
+            used.push(&mut memory.wanted);
         }
-        if scale.is_some() {
-            used.push(&mut memory.scale);
+        if force.is_some() {
+            used.push(&mut memory.average);
         }
         if torque.is_some() {
             used.push(&mut memory.torque);
         }
         // Across, the force is observed beside the thrust's direction, which is measured.
-        let thrust_observed = matches!(self.chain, Chain::Vertical(_)) && (force.is_some() || scale.is_some());
-        if torque.is_some() || thrust_observed {
+        let thrust_observed = matches!(self.chain, Chain::Vertical(_)) && force.is_some();
+        if torque.is_some() || thrust_observed || projects {
             used.push(&mut memory.acting);
             used.extend(&mut memory.commanded);
         }
@@ -183,27 +167,24 @@ impl Law {
 
     /// One tick: the command for `measured`, the memory as it is at the next tick.
     fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS]) -> f64 {
-        let EstimateGains { force, scale, torque: bias } = self.estimates;
+        let EstimateGains { force, torque: bias, late } = &self.estimates;
         let share = force.map_or(0.0, |force| force.averaging);
-        let scale_share = scale.unwrap_or(0.0);
         let bias_share = bias.unwrap_or(0.0);
         match &self.chain {
             Chain::Attitude(torque) => {
                 let [rate, angle, ..] = *measured;
                 let bias = memory.torque + bias_share * rate;
-                let command = -torque.rate * rate - torque.angle * angle - bias;
+                let projected = rate + self.pending(memory) + late.time() * bias;
+                let command = -torque.rate * projected - torque.angle * (angle + late.time() * rate) - bias;
                 memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
                 command
             }
             Chain::Vertical(position) => {
                 let [velocity, height, ..] = *measured;
                 let velocity = self.tracked(memory, velocity, height);
-                let scale = memory.scale + scale_share * velocity;
-                let average = memory.average + share * (velocity - scale);
-                let force = self.force(memory, average);
-                let command = (filters(position, memory, height, velocity) - force).value - scale;
+                let average = memory.average + share * velocity;
+                let command = filters(position, memory, [height, velocity], average).value;
                 let past = -velocity - self.acted(memory, command);
-                memory.scale = averaged(scale, scale_share, past);
                 memory.average = averaged(average, share, past);
                 command
             }
@@ -213,16 +194,27 @@ impl Law {
                 let half_drag = force.map_or(0.0, |force| 0.5 * force.drag);
                 let average = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt);
                 let bias = memory.torque + bias_share * rate;
-                let force = self.force(memory, average);
-                let desired = filters(position, memory, place, velocity) - force;
-                let command =
-                    torque.rate * (desired.rate - rate) + torque.angle * (desired.value - tilt) + desired.acceleration
-                        - bias;
+                let desired = filters(position, memory, [place, velocity], average);
+                let (angle_error, rate_error) = (tilt - desired.value, rate - desired.rate);
+                let projected = rate_error + self.pending(memory) + late.time() * (bias - memory.wanted);
+                let command = desired.acceleration
+                    - torque.rate * projected
+                    - torque.angle * (angle_error + late.time() * rate_error)
+                    - bias;
+                memory.wanted = desired.acceleration;
                 memory.average = averaged(average, share, velocity * (half_drag - 1.0) - 0.5 * tilt);
                 memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
                 command
             }
         }
+    }
+
+    /// What commands of the past will still deliver of rate.
+    fn pending(&self, memory: &Memory) -> f64 {
+        let LateGains { lag, whole_delay, broken_delay } = self.estimates.late;
+        let commanded = |age: usize| memory.commanded.get(age).copied().unwrap_or(0.0);
+        let whole: f64 = (0..whole_delay).map(commanded).sum();
+        lag * memory.acting + whole + broken_delay * commanded(whole_delay)
     }
 
     /// The velocity that the law is told.
@@ -235,18 +227,6 @@ impl Law {
         memory.tracked = predicted + tracker.position * residual;
         memory.speed += tracker.velocity * residual;
         memory.speed
-    }
-
-    /// d as it stands, with the second derivative that `average`, zeta, gives it; then it advances.
-    fn force(&self, memory: &mut Memory, average: f64) -> Moving {
-        let Some(ForceGains { bandwidth, .. }) = self.estimates.force else {
-            return Moving { value: 0.0, rate: 0.0, acceleration: 0.0 };
-        };
-        let (value, rate) = (memory.force, memory.force_rate);
-        let acceleration = bandwidth * (bandwidth * (average - value) - 2.0 * rate);
-        memory.force_rate = rate + acceleration;
-        memory.force = value + 0.5 * (rate + memory.force_rate);
-        Moving { value, rate, acceleration }
     }
 
     /// What the law takes for the mean of what acts until the next tick, `command` being given.
@@ -270,24 +250,28 @@ fn averaged(x: f64, share: f64, past: f64) -> f64 {
     x + share * (past - x)
 }
 
-/// u_f as it stands, with its derivatives; then the filters advance, ubar held.
-fn filters(gains: &PositionGains, memory: &mut Memory, position: f64, velocity: f64) -> Moving {
-    let PositionGains { k_p, k_v, k_f, k_s } = *gains;
+/// u_f as it stands, with its derivatives, against the force d; then the filters advance, ubar or the drive held.
+fn filters(gains: &PositionGains, memory: &mut Memory, [position, velocity]: [f64; 2], force: f64) -> Moving {
+    let PositionGains { k_p, k_v, k_f, k_s, holds_drive } = *gains;
     let (u_f, u_s) = (memory.filtered, memory.intermediate);
-    let z_1 = position + (1.0 / k_f + 1.0 / k_s) * velocity + u_f / (k_f * k_s);
-    let z_2 = velocity + u_f / k_f + u_s / k_s;
-    let ubar = -(k_p * z_1 + k_v * z_2);
+    let z_1 = position + (1.0 / k_f + 1.0 / k_s) * velocity + (u_f + force) / (k_f * k_s);
+    let z_2 = velocity + (u_f + force) / k_f + (u_s + force) / k_s;
+    let ubar = -(k_p * z_1 + k_v * z_2) - force;
     let rate = k_f * (u_s - u_f);
-    let acceleration = k_f * (k_s * (ubar - u_s) - rate);
-
     let (keep_filtered, keep_intermediate) = ((-k_f).exp(), (-k_s).exp());
+    if holds_drive {
+        let drive = (1.0 - keep_intermediate) * (ubar - u_s);
+        memory.filtered = u_f + (1.0 - keep_filtered) * (u_s - u_f) + (1.0 - (1.0 - keep_filtered) / k_f) * drive;
+        memory.intermediate = u_s + drive;
+        return Moving { value: u_f, rate, acceleration: k_f * (drive - rate) };
+    }
     // k_f (e^-k_f - e^-k_s) / (k_s - k_f), from the slower exponential so that nothing overflows.
     let spread = (k_s - k_f).abs();
     let mean = if spread > 0.0 { -(-spread).exp_m1() / spread } else { 1.0 };
     let mixed = k_f * (-k_f.min(k_s)).exp() * mean;
     memory.filtered = keep_filtered * u_f + mixed * u_s + (1.0 - keep_filtered - mixed) * ubar;
     memory.intermediate = keep_intermediate * u_s + (1.0 - keep_intermediate) * ubar;
-    Moving { value: u_f, rate, acceleration }
+    Moving { value: u_f, rate, acceleration: k_f * (k_s * (ubar - u_s) - rate) }
 }
 
 #[cfg(test)]

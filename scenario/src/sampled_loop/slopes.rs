@@ -1,12 +1,10 @@
 //! The slopes of a law at hover, SI units, and the same in samples.
 
-use super::gains::{EstimateGains, ForceGains, PositionGains, TorqueGains};
+use super::gains::{EstimateGains, ForceGains, LateGains, PositionGains, TorqueGains};
 use super::lag::Arrival;
 use controller_core::certificate::configuration::{ExtendedLaw, LawParameters};
-use controller_core::extended::parameters::{AttitudeParameters, EstimateParameters};
-use controller_core::extended::thrust_scale::LEAST_THRUST;
+use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::gains::Gains;
-use controller_core::vehicle::Vehicle;
 
 /// A law near hover.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,27 +24,25 @@ pub(super) struct Slopes {
 /// What the extended law estimates, and by which model of its actuators.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Estimates {
-    parameters: EstimateParameters,
-    /// g, m/s^2.
-    gravity: f64,
+    parameters: ExtendedParameters,
     /// The actuator's lag and delay, s.
     lag: f64,
     delay: f64,
 }
 
 impl Slopes {
-    /// Of `law` on `vehicle`.
-    pub fn of(law: &LawParameters, vehicle: &Vehicle) -> Self {
+    /// Of `law`.
+    pub fn of(law: &LawParameters) -> Self {
         match law {
             LawParameters::Paper(law) => Self::paper(&law.gains),
-            LawParameters::Extended(law) => Self::extended(law, f64::from(vehicle.gravity)),
+            LawParameters::Extended(law) => Self::extended(law),
         }
     }
 
     /// Of the paper's law: the MRP of a small angle is angle / 4, and (1 + |theta|^2) / 4 is 1/4.
     fn paper(gains: &Gains) -> Self {
         let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
-        let position = PositionGains { k_p, k_v, k_f, k_s };
+        let position = PositionGains { k_p, k_v, k_f, k_s, holds_drive: false };
         Self {
             stiffness: [f64::from(gains.k_theta) / 16.0; 3],
             damping: [f64::from(gains.k_omega); 3],
@@ -56,26 +52,26 @@ impl Slopes {
         }
     }
 
-    /// Of the extended law: sections 1, 2, 4, 5 and 7 of `docs/extended-law.md`.
-    fn extended(ExtendedLaw { parameters, actuators }: &ExtendedLaw, gravity: f64) -> Self {
-        let p = &parameters.position;
-        let AttitudeParameters { w, eta, k_t, eta_t, k_omega_t, k_omega_z, .. } = parameters.attitude;
-        let [w, eta, k_t, eta_t] = [w, eta, k_t, eta_t].map(f64::from);
+    /// Of the extended law: sections 1, 2, 6, 7 and 10 of `docs/extended-law.md`.
+    fn extended(ExtendedLaw { parameters, actuators }: &ExtendedLaw) -> Self {
+        let p = parameters;
+        let [w, eta, k_t, eta_t] = [p.w, p.eta, p.k_t, p.eta_t].map(f64::from);
         let tilt = w / 4.0 + k_t / (2.0 * eta_t.hypot(1.0));
         let yaw = w * eta / (4.0 * (1.0 + eta));
-        let gains = |[k_p, k_v, k_f, k_s]: [f32; 4]| PositionGains {
+        let gains = |k_p: f32, k_v: f32| PositionGains {
             k_p: k_p.into(),
             k_v: k_v.into(),
-            k_f: k_f.into(),
-            k_s: k_s.into(),
+            k_f: p.k_f.into(),
+            k_s: p.k_s.into(),
+            holds_drive: true,
         };
         let [lag, delay] = [actuators.lag, actuators.delay].map(f64::from);
         Self {
             stiffness: [tilt, tilt, yaw],
-            damping: [k_omega_t, k_omega_t, k_omega_z].map(f64::from),
-            across: gains([p.k_p_across, p.k_v_across, p.k_f_across, p.k_s_across]),
-            vertical: gains([p.k_p_vertical, p.k_v_vertical, p.k_f_vertical, p.k_s_vertical]),
-            estimates: Some(Estimates { parameters: parameters.estimates, gravity, lag, delay }),
+            damping: [p.k_omega_t, p.k_omega_t, p.k_omega_z].map(f64::from),
+            across: gains(p.k_p_across, p.k_v_across),
+            vertical: gains(p.k_p_vertical, p.k_v_vertical),
+            estimates: Some(Estimates { parameters: **parameters, lag, delay }),
         }
     }
 
@@ -105,57 +101,58 @@ impl Slopes {
 
     /// What is estimated across, with the torque about the tilt's axes.
     pub fn estimated_across(&self, period: f64) -> EstimateGains {
-        self.estimates.map_or_else(EstimateGains::default, |Estimates { parameters: e, .. }| EstimateGains {
-            force: force(
-                [e.force_across, e.force_snap_across],
-                [e.force_smoothing_across, e.force_bandwidth_across, e.drag_across],
-                period,
-            ),
-            scale: None,
-            torque: torque(e.torque_tilt, e.torque_smoothing, period),
+        self.estimates.map_or_else(EstimateGains::default, |estimates| {
+            let p = &estimates.parameters;
+            EstimateGains {
+                force: force(p.force_across, p.force_bandwidth_across, p.drag_across, period),
+                torque: torque(p.torque_tilt, p.torque_bandwidth, period),
+                late: estimates.late(period),
+            }
         })
     }
 
-    /// What is estimated along and about the vertical.
+    /// What is estimated along and about the vertical. The thrust scale is learnt from what varies alone: near hover it stands still.
     pub fn estimated_vertical(&self, period: f64) -> EstimateGains {
-        self.estimates.map_or_else(EstimateGains::default, |Estimates { parameters: e, gravity, .. }| {
-            let weight = gravity * gravity / (gravity * gravity + f64::from(LEAST_THRUST).powi(2));
-            let learns = e.scale_rate > 0.0 && e.scale_least < e.scale_greatest;
+        self.estimates.map_or_else(EstimateGains::default, |estimates| {
+            let p = &estimates.parameters;
             EstimateGains {
-                force: force(
-                    [e.force_vertical, e.force_snap_vertical],
-                    [e.force_smoothing_vertical, e.force_bandwidth_vertical, 0.0],
-                    period,
-                ),
-                scale: learns.then(|| f64::from(e.scale_rate) * period * weight),
-                torque: torque(e.torque_yaw, e.torque_smoothing, period),
+                force: force(p.force_up.min(p.force_down), p.force_bandwidth_vertical, 0.0, period),
+                torque: torque(p.torque_yaw, p.torque_bandwidth, period),
+                late: estimates.late(period),
             }
         })
     }
 
     /// The law's model of its actuators.
     pub fn actuator(&self, period: f64) -> Arrival {
-        let Some(Estimates { lag, delay, .. }) = self.estimates else {
+        let Some(estimates) = self.estimates else {
             return Arrival::new(0.0, 0.0);
         };
-        let samples = delay / period;
+        let LateGains { lag, whole_delay, broken_delay } = estimates.late(period);
+        Arrival::new(lag, whole_delay as f64 + broken_delay)
+    }
+}
+
+impl Estimates {
+    /// Lag and delay in samples.
+    fn late(&self, period: f64) -> LateGains {
+        let samples = self.delay / period;
         // As the law does: a delay of whole samples that rounding put just below is one.
         let whole = (samples + 1e-6).floor();
-        Arrival::new(lag / period, whole + (samples - whole).max(0.0))
+        LateGains { lag: self.lag / period, whole_delay: whole as usize, broken_delay: (samples - whole).max(0.0) }
     }
 }
 
 /// With the period for the unit of time.
 fn in_samples(gains: &PositionGains, period: f64) -> PositionGains {
-    let PositionGains { k_p, k_v, k_f, k_s } = *gains;
-    PositionGains { k_p: k_p * period * period, k_v: k_v * period, k_f: k_f * period, k_s: k_s * period }
+    let PositionGains { k_p, k_v, k_f, k_s, .. } = *gains;
+    PositionGains { k_p: k_p * period * period, k_v: k_v * period, k_f: k_f * period, k_s: k_s * period, ..*gains }
 }
 
-/// The force estimate along an axis with these limits (D, S) and rates (L, k_d, kappa); none where a limit is zero.
-fn force(limits: [f32; 2], rates: [f32; 3], period: f64) -> Option<ForceGains> {
-    let [averaging, bandwidth, drag] = rates.map(|rate| f64::from(rate) * period);
-    let on = limits.iter().all(|limit| *limit > 0.0);
-    on.then(|| ForceGains { averaging: -(-averaging).exp_m1(), bandwidth, drag })
+/// The force estimate along an axis of this level, bandwidth and known drag; none where the level is zero.
+fn force(level: f32, bandwidth: f32, drag: f32, period: f64) -> Option<ForceGains> {
+    let [averaging, drag] = [bandwidth, drag].map(|rate| f64::from(rate) * period);
+    (level > 0.0).then(|| ForceGains { averaging: -(-averaging).exp_m1(), drag })
 }
 
 /// The torque bias of this level and rate; none where the level is zero.

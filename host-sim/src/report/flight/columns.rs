@@ -94,7 +94,7 @@ fn law(columns: &mut Columns) {
 
 fn estimates(columns: &mut Columns) {
     let of = |tick: &Tick| tick.estimates.unwrap_or(Estimates::NONE);
-    three(columns, ["d_x", "d_y", "d_z"], move |tick| of(tick).force.value.cast());
+    three(columns, ["d_x", "d_y", "d_z"], move |tick| of(tick).force.cast());
     three(columns, ["tau_d_x", "tau_d_y", "tau_d_z"], move |tick| of(tick).torque.cast());
     add(columns, "thrust_scale", move |tick| of(tick).scale.into());
 }

@@ -1,0 +1,216 @@
+//! What turning the desired frame may cost: the thrust and the torque at hand in a tick. Section 4 of `docs/extended-law.md`.
+//!
+//! Tilt and yaw torques fit the rotors, and the limits, if for each of at most three rows
+//!
+//! ```text
+//! t |tau_tilt| + y |tau_yaw| <= R
+//! ```
+//!
+//! | row | t | y | R |
+//! |---|---|---|---|
+//! | two rotors k, i at their ends at once | max \|b_12,k/b_T,k - b_12,i/b_T,i\| | the same of b_3 | min (s_lo f_max,k/b_T,k - s_hi f_min,i/b_T,i) - 2 margin |
+//! | limits of roll and pitch | 1 | 0 | the lesser of the two |
+//! | limit of yaw | 0 | 1 | it |
+//!
+//! What does not change from tick to tick is taken off beforehand ([`TorqueBudget::room`]): the bias estimate at its level, yaw's feedback, J_33 A,
+//! and the gyroscopic torque at Omega and W_max. What is left is the tilt feedback's |P + lambda D| of this tick and J R~^T omega_d', which tilts by
+//! at most J_max |omega'| and leaks J_33 |omega'| sin theta into yaw, theta from b to rho. So the frame may turn with
+//!
+//! ```text
+//! |omega'_12| <= alpha = min( alpha_max, ((1 - mu) m n - N_0) / L, min over rows (R - t |tau_fb|) / (t J_max + y J_33 sin theta) )
+//! ```
+//!
+//! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
+
+use super::parameters::ExtendedParameters;
+use crate::allocation::Rotors;
+use crate::allocation::geometry::ROTORS_MAX;
+use crate::math;
+use crate::vehicle::{Limits, Vehicle};
+use heapless::Vec;
+use nalgebra::{Vector3, Vector4};
+
+/// mu: the part of a thrust that the budget leaves.
+pub const THRUST_LEFT: f64 = 0.05;
+
+/// The part of a room that a tick leaves: what moves between two ticks.
+const ROOM_LEFT: f64 = 0.01;
+
+/// t, y and what is left of R.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// t.
+    pub tilt: f64,
+    /// y.
+    pub yaw: f64,
+    /// R without the fixed parts.
+    pub room: f64,
+}
+
+/// Everything about the budget that does not change from tick to tick, in double precision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TorqueBudget {
+    /// The rows.
+    pub rows: Vec<Row, 3>,
+    /// The greatest moment of inertia of the tilt, and J_33, kg m^2.
+    pub inertia: [f64; 2],
+    /// Tilt and yaw torque beside the feedback and the frame's turning, N m.
+    pub fixed: [f64; 2],
+    /// N_0, N.
+    pub floor: f64,
+    /// L, N per rad/s^2.
+    pub floor_per_acceleration: f64,
+    /// The thrust of all rotors for each unit of s, and what bias and yaw take of it, N.
+    pub ceiling: [f64; 2],
+}
+
+/// Rows of B+ over b_T with the rotor's range.
+struct Share {
+    least: f64,
+    greatest: f64,
+    torque: Vector3<f64>,
+}
+
+impl TorqueBudget {
+    /// For a vehicle, its limits, its rotors if it has any, and the law's constants.
+    #[must_use]
+    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
+        let p = parameters;
+        let j = vehicle.inertia.map(f64::from);
+        let inertia = [math::greater_f64(j.x, j.y), j.z];
+        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate].map(f64::from);
+        let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(f64::from);
+        // Half of |omega_d|^2: the greatest product of two orthogonal components.
+        let product = 0.5 * (turn_rate * turn_rate + rate * rate);
+        let across = math::greater_f64((j.z - j.x).abs(), (j.z - j.y).abs());
+        let yaw_feedback = 0.5 * f64::from(p.w) * f64::from(p.eta) + f64::from(p.m_omega_z);
+        let fixed = [
+            inertia[0] * acceleration + across * product,
+            j.z * acceleration + (j.x - j.y).abs() * product + yaw_feedback,
+        ];
+
+        let torque_max = limits.torque_max.map(f64::from);
+        let mut rows = Vec::new();
+        // Three at most: they fit.
+        let mut push = |row: Row| {
+            let _ = rows.push(row);
+        };
+        push(Row { tilt: 1.0, yaw: 0.0, room: math::lesser_f64(torque_max.x, torque_max.y) - fixed[0] - bias_tilt });
+        push(Row { tilt: 0.0, yaw: 1.0, room: torque_max.z - fixed[1] - bias_yaw });
+        let shares = shares(rotors);
+        let scales = [p.scale_least, p.scale_greatest].map(f64::from);
+        let margin = f64::from(p.floor_margin);
+        if let Some(room) = least_range(&shares, scales, margin) {
+            let (mut tilt, mut yaw, mut corner) = (0.0, 0.0, 0.0);
+            for a in &shares {
+                for b in &shares {
+                    let difference = a.torque - b.torque;
+                    tilt = math::greater_f64(tilt, math::hypot(difference.x, difference.y));
+                    yaw = math::greater_f64(yaw, difference.z.abs());
+                    corner = math::greater_f64(corner, difference.x.abs() + difference.y.abs());
+                }
+            }
+            let room = room - corner * bias_tilt - yaw * (fixed[1] + bias_yaw) - tilt * fixed[0];
+            push(Row { tilt, yaw, room });
+        }
+
+        let beside = |torque: &Vector3<f64>| {
+            (torque.x.abs() + torque.y.abs()) * bias_tilt + torque.z.abs() * (bias_yaw + j.z * acceleration)
+        };
+        let (mut floor, mut per_acceleration) = (0.0, 0.0);
+        let mut ceiling = [f64::from(limits.thrust_max), 0.0];
+        for share in &shares {
+            floor = math::greater_f64(floor, scales[1] * share.least + beside(&share.torque));
+            per_acceleration =
+                math::greater_f64(per_acceleration, math::hypot(j.x * share.torque.x, j.y * share.torque.y));
+            ceiling[0] = math::lesser_f64(ceiling[0], share.greatest);
+            ceiling[1] = math::greater_f64(ceiling[1], beside(&share.torque) + margin);
+        }
+        Self { rows, inertia, fixed, floor: floor + margin, floor_per_acceleration: per_acceleration, ceiling }
+    }
+
+    /// What is left of each row with a tilt feedback of `feedback`, N m, and the frame turning with `acceleration`, rad/s^2, at the worst
+    /// angle: what is needed and what there is.
+    pub fn reserves(&self, feedback: f64, acceleration: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let [tilt, yaw] = self.inertia;
+        self.rows
+            .iter()
+            .map(move |row| [row.tilt * (feedback + tilt * acceleration) + row.yaw * yaw * acceleration, row.room])
+    }
+
+    /// The greatest feedback about the tilt's axes with which every row has room for `acceleration`, N m.
+    #[must_use]
+    pub fn feedback(&self, acceleration: f64) -> f64 {
+        let [tilt, yaw] = self.inertia;
+        let of = |row: &Row| (row.room - row.yaw * yaw * acceleration) / row.tilt - tilt * acceleration;
+        self.rows.iter().filter(|row| row.tilt > 0.0).map(of).fold(f64::INFINITY, math::lesser_f64)
+    }
+}
+
+fn shares(rotors: Option<&Rotors>) -> Vec<Share, ROTORS_MAX> {
+    let mut shares = Vec::new();
+    for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
+        let row: &Vector4<f64> = row;
+        let torque = Vector3::new(row.y, row.z, row.w) / row.x;
+        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| f64::from(thrust) / row.x);
+        // As many as there are rotors: it fits.
+        let _ = shares.push(Share { least, greatest, torque });
+    }
+    shares
+}
+
+/// The least of s_lo f_max,k / b_T,k - s_hi f_min,i / b_T,i, less both margins; none without rotors.
+fn least_range(shares: &[Share], [least_scale, greatest_scale]: [f64; 2], margin: f64) -> Option<f64> {
+    let greatest = shares.iter().map(|share| share.greatest).reduce(math::lesser_f64)?;
+    let least = shares.iter().map(|share| share.least).reduce(math::greater_f64)?;
+    Some(least_scale * greatest - greatest_scale * least - 2.0 * margin)
+}
+
+/// The budget as a tick spends it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningBudget {
+    /// t, y and R of each row; rows that are not there never bind.
+    rows: [[f32; 3]; 3],
+    inertia: [f32; 2],
+    /// (1 - mu) m / L, per s^2/m, and N_0 / L, rad/s^2.
+    thrust: f32,
+    floor: f32,
+    most: f32,
+}
+
+impl TurningBudget {
+    /// Of `budget` for a vehicle of `mass`, kg, and at most `most`, rad/s^2.
+    #[must_use]
+    pub fn new(budget: &TorqueBudget, mass: f32, most: f32) -> Self {
+        let mut rows = [[0.0, 1.0, f32::MAX]; 3];
+        for (kept, row) in rows.iter_mut().zip(&budget.rows) {
+            *kept = [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
+        }
+        let per_acceleration = math::greater_f64(budget.floor_per_acceleration, 1e-12);
+        Self {
+            rows,
+            inertia: budget.inertia.map(|x| x as f32),
+            thrust: ((1.0 - THRUST_LEFT) * f64::from(mass) / per_acceleration) as f32,
+            floor: (budget.floor / per_acceleration) as f32,
+            most,
+        }
+    }
+
+    /// alpha, rad/s^2, at |u| = `magnitude`, m/s^2, with `feedback` N m about the tilt's axes and the sine of the angle from b to rho, one beyond a
+    /// right angle. May be negative: the reserve is the caller's.
+    #[must_use]
+    pub fn acceleration(&self, magnitude: f32, feedback: f32, sine: f32) -> f32 {
+        let [tilt, yaw] = self.inertia;
+        let leak = yaw * sine;
+        let mut alpha = math::lesser(self.most, self.thrust * magnitude - self.floor);
+        for [t, y, room] in &self.rows {
+            let left = room - t * feedback;
+            let cost = t * tilt + y * leak;
+            // Without a division where the row does not bind.
+            if left < alpha * cost {
+                alpha = left / cost;
+            }
+        }
+        alpha
+    }
+}

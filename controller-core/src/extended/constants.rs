@@ -1,0 +1,112 @@
+//! The one declaration of every constant of the extended law, and the macro that reads it.
+//!
+//! A constant is one entry: section and key as in scenario files, symbol and meaning, unit, range, and whether `tune` searches it. The
+//! struct, its table, the checks, the scenario's keys, the search space, the board's image and the documents' table follow from it.
+
+use crate::error::{ParameterError, Reason, require, require_finite};
+
+/// What a constant may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Least.
+    pub least: f32,
+    /// Greatest.
+    pub greatest: f32,
+}
+
+impl Range {
+    /// A gain or a level: its square stays above zero and below what overflows, with the largest states.
+    pub const POSITIVE: Self = Self { least: 1e-7, greatest: 1e3 };
+    /// A level that may be zero: what it limits is then off.
+    pub const LEVEL: Self = Self { least: 0.0, greatest: 1e3 };
+    /// A bandwidth of a filter, 1/s: slower ones add up rounding, faster ones are beyond every tick.
+    pub const BANDWIDTH: Self = Self { least: 0.2, greatest: 100.0 };
+    /// A share of one, above zero.
+    pub const SHARE: Self = Self { least: 1e-7, greatest: 1.0 };
+
+    /// A range of its own.
+    #[must_use]
+    pub const fn between(least: f32, greatest: f32) -> Self {
+        Self { least, greatest }
+    }
+
+    /// Checks one value.
+    ///
+    /// # Errors
+    /// Names `field`.
+    pub fn check(&self, value: f32, field: &'static str) -> Result<(), ParameterError> {
+        require_finite(value, field)?;
+        require(value >= self.least, field, Reason::Below(self.least))?;
+        require(value <= self.greatest, field, Reason::Above(self.greatest))
+    }
+}
+
+/// A constant as declared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constant {
+    /// Section and key in scenario files.
+    pub path: &'static str,
+    /// Section in scenario files.
+    pub section: &'static str,
+    /// Key in that section.
+    pub key: &'static str,
+    /// Symbol, meaning and unit.
+    pub about: &'static str,
+    /// What it may be.
+    pub range: Range,
+    /// Whether `tune` searches it.
+    pub searched: bool,
+}
+
+/// Declares a struct of constants, each with its entry of the table.
+macro_rules! constants {
+    (
+        $(#[$outer:meta])*
+        pub struct $name:ident {
+            $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident; )*
+        }
+    ) => {
+        $(#[$outer])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name {
+            $( #[doc = $about] pub $key: f32, )*
+        }
+
+        impl $name {
+            /// How many constants there are.
+            pub const COUNT: usize = [$(stringify!($key)),*].len();
+
+            /// Every constant, in the order of [`Self::values`].
+            pub const TABLE: [$crate::extended::constants::Constant; Self::COUNT] = [
+                $( $crate::extended::constants::Constant {
+                    path: concat!(stringify!($section), ".", stringify!($key)),
+                    section: stringify!($section),
+                    key: stringify!($key),
+                    about: $about,
+                    range: $range,
+                    searched: $crate::extended::constants::$searched,
+                } ),*
+            ];
+
+            /// The values, in the table's order.
+            #[must_use]
+            pub fn values(&self) -> [f32; Self::COUNT] {
+                [$(self.$key),*]
+            }
+
+            /// The struct of these values, in the table's order.
+            #[must_use]
+            pub fn from_values(values: [f32; Self::COUNT]) -> Self {
+                let [$($key),*] = values;
+                Self { $($key),* }
+            }
+        }
+    };
+}
+
+pub(crate) use constants;
+
+/// `tune` searches it.
+pub const SEARCHED: bool = true;
+/// `tune` leaves it.
+pub const FIXED: bool = false;

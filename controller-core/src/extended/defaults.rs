@@ -1,0 +1,297 @@
+//! Every constant from a vehicle's numbers. Section 14 of `docs/extended-law.md` says why each formula is what it is.
+//!
+//! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and what the rotors give:
+//!
+//! | what | formula |
+//! |---|---|
+//! | w_a, bandwidth of the tilt, rad/s | min(15, 0.3 / (h/2 + 0.15 T)) |
+//! | M_all | what the rows of the budget leave: see [`constants`] |
+//! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 2.1 w_a J |
+//! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), as much as keeps \|P\| below 0.93 M_all |
+//! | r_0 | M_all / (12 J w_a^2): beyond it M_all brakes along a parabola |
+//! | alpha_max, alpha_0 | 0.75 M_all / J, 0.15 M_all / J or less where yaw is weak |
+//! | Omega | between 2.5 and 5 rad/s, 0.07 of what the rotors give / J |
+//! | k_f, k_s | 0.75 w_a, 4 k_f |
+//! | k_v, k_p across; vertical | min(8, 0.41 w_a), 0.42 k_v^2; 1.2 and 1.3 times that |
+//! | A_h, gamma | 0.8 of the thrust held level; 75 degrees or what the least lift allows |
+//! | D_h | 0.58 A_h, or nine tenths of what the weakest thrust holds |
+//! | L across; vertical | min(23, 1.55 w_a); twice that |
+//! | yaw: feedback, A, bias | 6.5, 5 and 4 % of the greatest yaw torque |
+
+use super::actuators::ActuatorParameters;
+use super::budget::{THRUST_LEFT, TorqueBudget};
+use super::parameters::ExtendedParameters;
+use super::position::net_level;
+use crate::allocation::Rotors;
+use crate::math::{self, greater_f64, lesser_f64};
+use crate::reference::ReferenceBounds;
+use crate::vehicle::{Limits, Vehicle};
+
+/// What is known of a vehicle.
+#[derive(Debug, Clone, Copy)]
+pub struct Airframe<'a> {
+    /// The body.
+    pub vehicle: &'a Vehicle,
+    /// Its limits.
+    pub limits: &'a Limits,
+    /// Its rotors, if it has any.
+    pub rotors: Option<&'a Rotors>,
+    /// How they respond.
+    pub actuators: ActuatorParameters,
+    /// Between ticks, s.
+    pub period: f32,
+    /// Known drag across per velocity and mass, 1/s.
+    pub drag: f32,
+}
+
+/// The least eta: above qbar, which delta makes.
+const ETA_LEAST: f64 = 0.03;
+/// eta_t.
+const ETA_T: f64 = 0.5;
+/// delta, alpha, c_1 and c_2.
+const SHARED: [f32; 4] = [0.02, 0.25, 9.0, 6.0];
+/// The least and the greatest thrust scale that are learnt.
+const SCALE: [f64; 2] = [0.9, 1.15];
+/// A vehicle that falls with this acceleration still has thrust to turn, m/s^2; in shares of g.
+const FALL: f64 = 0.54;
+/// Vertical acceleration of references that the thrust floor leaves room for, m/s^2.
+const FALL_LEAST: f64 = 1.0;
+
+/// Constants that somebody chose, in the table's order; the others follow from them.
+pub type Given = [Option<f32>; ExtendedParameters::COUNT];
+
+/// Nothing chosen.
+pub const NOTHING_GIVEN: Given = [None; ExtendedParameters::COUNT];
+
+/// The constants for `airframe`, those that are `given` as they are.
+#[must_use]
+pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
+    let or = |key: &str, formula: f64| {
+        let chosen = ExtendedParameters::TABLE.iter().zip(given).find(|(constant, _)| constant.key == key);
+        chosen.and_then(|(_, value)| *value).map_or(formula, f64::from)
+    };
+    let Airframe { vehicle, limits, rotors, actuators, period, drag } = *airframe;
+    let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(f64::from);
+    let j = vehicle.inertia.map(f64::from);
+    let (tilt_inertia, greatest_inertia) = (0.5 * (j.x + j.y), greater_f64(j.x, j.y));
+    let late = f64::from(actuators.lag) + f64::from(actuators.delay);
+    let w_a = lesser_f64(15.0, 0.3 / (0.5 * f64::from(period) + 0.15 * late));
+
+    // What the rotors give, with constants that take nothing of it.
+    let scale = [or("scale_least", SCALE[0]), or("scale_greatest", SCALE[1])];
+    let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
+    let bare = Numbers { scale, floor_margin, ..Numbers::NOTHING };
+    let free = TorqueBudget::new(&bare.parameters(), vehicle, limits, rotors);
+    let most = |of: fn(&super::budget::Row) -> f64| {
+        let rows = free.rows.iter().filter(|row| of(row) > 0.0).map(|row| row.room / of(row));
+        rows.fold(f64::INFINITY, lesser_f64)
+    };
+    let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
+
+    // Yaw torque raises the thrust floor, by half a row's y for each N m.
+    let raised = free.rows.iter().filter(|row| row.tilt > 0.0).map(|row| 0.5 * row.yaw).fold(1e-12, greater_f64);
+    let light = lesser_f64(0.07 * yaw_most, 0.15 * mass * gravity / raised);
+    let nimble = tilt_most / greatest_inertia;
+    let turn_rate = or("turn_rate", (0.07 * nimble).clamp(2.0, 5.0));
+    let yaw_rate = or("yaw_rate", 2.5);
+    let yaw_feedback = 0.065 * yaw_most;
+    let mut n = Numbers {
+        turn_rate,
+        yaw_rate,
+        yaw_acceleration: or("yaw_acceleration", lesser_f64(light / j.z, 20.0)),
+        torque_tilt: or("torque_tilt", 0.03 * tilt_most),
+        torque_yaw: or("torque_yaw", 0.04 * yaw_most),
+        m_omega_z: or("m_omega_z", 0.5 * yaw_feedback),
+        w_eta: yaw_feedback,
+        ..bare
+    };
+
+    // What they leave for the tilt: M_all and the reserve alpha_0 = share M_all / J pay one another.
+    let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
+    let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
+    let weak = joint.map(|row| 0.28 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.15, lesser_f64);
+    let a_down = or("a_down", FALL * gravity);
+    let up = or("force_up", 0.4 * a_down);
+    // The thrust floor with the frame turning at alpha_0 stays below the least thrust near the target.
+    let floor = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST) - budget.floor;
+    let lifted = 0.9 * floor / greater_f64(budget.floor_per_acceleration, 1e-12);
+    let reserve = |m_all: f64| or("turn_reserve", lesser_f64(weak * m_all / greatest_inertia, lifted));
+    let mut m_all = 0.0;
+    for _ in 0..20 {
+        m_all = greater_f64(0.98 * budget.feedback(reserve(m_all)), 0.02 * tilt_most);
+    }
+    let m_all = or("m_all", m_all);
+    let stiffness = tilt_inertia * w_a * w_a;
+    let w = or("w", lesser_f64(lesser_f64(1.45 * m_all, 3.2 * stiffness), n.w_eta / ETA_LEAST));
+    let eta = or("eta", (n.w_eta / w).clamp(ETA_LEAST, 0.5));
+    // The potential is greatest where the tilt's own part falls: three places of r tell.
+    let own = [(0.15, 0.885), (0.35, 0.82), (0.45, 0.66)].map(|(of_w, of_level)| (0.93 * m_all - of_w * w) / of_level);
+    let m_t = own.into_iter().fold(m_all, lesser_f64);
+    n = Numbers { m_all, w, eta, ..n };
+    let yaw_stiffness = 0.25 * w * eta / (1.0 + eta);
+    let yaw_damping = 3.2 * math::sqrt_f64(yaw_stiffness * j.z);
+
+    let [weakest, greatest] = held(&budget, airframe, [scale[0], 1.0]);
+    // The least lift within the cone at the greatest |u|.
+    let cosine = lesser_f64(1.05 * (gravity - a_down) / greatest, 1.0);
+    let steepest = math::sqrt_of_rounded(1.0 - cosine * cosine) / cosine;
+    let tangent = lesser_f64(lesser_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
+    let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
+    let a_across = or("a_across", lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent));
+    let force_across = or("force_across", lesser_f64(0.58 * a_across, 0.85 * level(weakest)));
+    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
+
+    let k_f = or("k_f", lesser_f64(0.75 * w_a, 100.0));
+    let k_v = or("k_v_across", lesser_f64(8.0, 0.41 * w_a));
+    let k_p = 0.42 * k_v * k_v;
+    let follow = lesser_f64(23.0, 1.55 * w_a);
+    let single = |value: f64| value as f32;
+    let [delta, alpha, c_1, c_2] = SHARED;
+    let formulas = ExtendedParameters {
+        k_p_across: single(k_p),
+        k_p_vertical: single(1.3 * k_p),
+        k_v_across: single(k_v),
+        k_v_vertical: single(1.2 * k_v),
+        k_f: single(k_f),
+        k_s: single(lesser_f64(4.0 * k_f, 100.0)),
+        a_across: single(a_across),
+        a_down: single(a_down),
+        tilt_max: single(math::atan(tangent)),
+        v_across: 9.6,
+        v_up: 3.7,
+        v_down: 2.7,
+        turn_acceleration: single(0.75 * m_all / greatest_inertia),
+        turn_reserve: single(reserve(m_all)),
+        k_t: single(greater_f64((stiffness - 0.25 * w) * 2.0 * math::hypot(1.0, ETA_T), 1e-6)),
+        m_t: single(m_t),
+        eta_t: single(ETA_T),
+        k_omega_t: single(2.1 * w_a * tilt_inertia),
+        r_0: single((m_all / (12.0 * stiffness)).clamp(1e-3, 1e3)),
+        k_omega_z: single(lesser_f64(yaw_damping, 0.3 * j.z / (0.5 * f64::from(period) + 0.15 * late))),
+        delta,
+        alpha,
+        c_1,
+        c_2,
+        force_across: single(force_across),
+        force_heading: single(lesser_f64(force_across, 2.5)),
+        force_up: single(up),
+        force_down: single(force_down),
+        force_bandwidth_across: single(follow),
+        force_bandwidth_vertical: single(2.0 * follow),
+        drag_across: drag,
+        torque_bandwidth: 3.0,
+        scale_rate: 0.3,
+        ..n.parameters()
+    };
+    let mut values = formulas.values();
+    for (value, given) in values.iter_mut().zip(given) {
+        *value = given.unwrap_or(*value);
+    }
+    ExtendedParameters::from_values(values)
+}
+
+/// The acceleration that the rotors hold near the target where they deliver these shares of what is commanded, m/s^2.
+fn held<const N: usize>(budget: &TorqueBudget, airframe: &Airframe, scales: [f64; N]) -> [f64; N] {
+    let [each, taken] = budget.ceiling;
+    let limit = f64::from(airframe.limits.thrust_max);
+    let used = (1.0 - THRUST_LEFT) / f64::from(airframe.vehicle.mass);
+    scales.map(|scale| lesser_f64(scale * each - taken, limit) * used)
+}
+
+/// The numbers that the budget reads.
+#[derive(Debug, Clone, Copy)]
+struct Numbers {
+    turn_rate: f64,
+    yaw_rate: f64,
+    yaw_acceleration: f64,
+    torque_tilt: f64,
+    torque_yaw: f64,
+    m_omega_z: f64,
+    /// w eta: twice yaw's share of the potential, N m.
+    w_eta: f64,
+    m_all: f64,
+    w: f64,
+    eta: f64,
+    floor_margin: f64,
+    scale: [f64; 2],
+}
+
+impl Numbers {
+    const NOTHING: Self = Self {
+        turn_rate: 0.0,
+        yaw_rate: 0.0,
+        yaw_acceleration: 0.0,
+        torque_tilt: 0.0,
+        torque_yaw: 0.0,
+        m_omega_z: 0.0,
+        w_eta: 0.0,
+        m_all: 0.0,
+        w: 1.0,
+        eta: 0.0,
+        floor_margin: 0.0,
+        scale: [1.0, 1.0],
+    };
+
+    /// As constants; what the budget does not read is zero.
+    fn parameters(&self) -> ExtendedParameters {
+        // Before w is known, w eta is all that counts.
+        let eta = if self.eta > 0.0 { self.eta } else { self.w_eta / self.w };
+        ExtendedParameters {
+            turn_rate: self.turn_rate as f32,
+            yaw_rate: self.yaw_rate as f32,
+            yaw_acceleration: self.yaw_acceleration as f32,
+            torque_tilt: self.torque_tilt as f32,
+            torque_yaw: self.torque_yaw as f32,
+            m_omega_z: self.m_omega_z as f32,
+            m_all: self.m_all as f32,
+            w: self.w as f32,
+            eta: eta as f32,
+            floor_margin: self.floor_margin as f32,
+            scale_least: self.scale[0] as f32,
+            scale_greatest: self.scale[1] as f32,
+            ..ExtendedParameters::from_values([0.0; ExtendedParameters::COUNT])
+        }
+    }
+}
+
+/// Bounds of the motions that `parameters` can fly on `airframe`: what the governor may ask for.
+#[must_use]
+pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
+    let p = parameters;
+    let budget = TorqueBudget::new(p, airframe.vehicle, airframe.limits, airframe.rotors);
+    let [weakest] = held(&budget, airframe, [f64::from(p.scale_least)]);
+    let [gravity, across, down, up, rate, reserve, yaw_rate, yaw_acceleration] = [
+        airframe.vehicle.gravity,
+        p.a_across,
+        p.a_down,
+        p.force_up,
+        p.turn_rate,
+        p.turn_reserve,
+        p.yaw_rate,
+        p.yaw_acceleration,
+    ]
+    .map(f64::from);
+    let held_beyond = weakest - gravity;
+    let horizontal = lesser_f64(lesser_f64(3.0, 0.2 * across), math::sqrt_of_rounded(0.1 * gravity * held_beyond));
+    let spare = 0.5 * (held_beyond - f64::from(p.force_down));
+    let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
+    // What the net leaves of Omega and alpha_0, with the least |u|.
+    let net = net_level(p, airframe.vehicle.gravity);
+    let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
+    let least = gravity - up - vertical - net;
+    let jerk = lesser_f64(8.0, 0.5 * lesser_f64(rate, math::sqrt_f64(0.2 * reserve)) * least - 2.0 * k_f * net);
+    let turned = (jerk + 2.0 * k_f * net) / least;
+    let snap = 0.8 * ((reserve - 2.0 * turned * turned) * least - 2.0 * k_f * (k_s + k_f) * net);
+    // The heading of a tilted frame turns faster by 1 / cos of its tilt.
+    let tilt = math::hypot(1.0, (f64::from(p.force_heading) + horizontal) / (gravity - up));
+    let single = |value: f64| greater_f64(value, 0.0) as f32;
+    ReferenceBounds {
+        horizontal_speed: 5.0,
+        horizontal_acceleration: single(horizontal),
+        vertical_acceleration: single(vertical),
+        jerk: single(jerk),
+        snap: single(lesser_f64(snap, 40.0)),
+        heading_rate: single(0.5 * yaw_rate / tilt),
+        heading_second_derivative: single(0.3 * yaw_acceleration / tilt),
+    }
+}

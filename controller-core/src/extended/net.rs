@@ -1,0 +1,67 @@
+//! The net: every flight arrives, by proven gains if need be. Section 13 of `docs/extended-law.md`.
+//!
+//! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle arrives. That the limiter falls
+//! silent is proven near the target; from far away no proof is known for strong gains. So the law counts the time for which it acted since the
+//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = 0) and the
+//! feedback is cut to the level of the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides
+//! alone. Near the target the law's own level returns.
+//!
+//! | state | counts | leaves |
+//! |---|---|---|
+//! | own level | time with a changed drive or a cut thrust; from zero again near the target | to the net after [`PATIENCE`] |
+//! | the net | nothing | to its own level near the target |
+//!
+//! So a flight changes over at most once for each time that it is away from its target.
+
+/// The time of changed drives after which the net is used, s.
+pub const PATIENCE: f32 = 60.0;
+
+/// Near the target: |z_1|, m, and |z_2|, m/s.
+const NEAR: f32 = 0.05;
+
+/// What the net remembers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Net {
+    /// Time with a changed drive since the vehicle was last near its target, s.
+    acted: f32,
+    /// Whether the net's level is in force.
+    caught: bool,
+    /// How often it came into force since the reset.
+    times: u32,
+}
+
+impl Net {
+    /// After a reset.
+    pub const FRESH: Self = Self { acted: 0.0, caught: false, times: 0 };
+
+    /// Whether the net's level is in force.
+    #[must_use]
+    pub fn is_caught(&self) -> bool {
+        self.caught
+    }
+
+    /// How often it came into force since the reset.
+    #[must_use]
+    pub fn times(&self) -> u32 {
+        self.times
+    }
+
+    /// Whether the time is over: the filters are to start afresh, with the net's level.
+    #[must_use]
+    pub fn catches(&mut self) -> bool {
+        let catches = self.acted > PATIENCE && !self.caught;
+        if catches {
+            *self = Self { acted: 0.0, caught: true, times: self.times.saturating_add(1) };
+        }
+        catches
+    }
+
+    /// A tick of `period`, s: `squares` are |z_1|^2 and |z_2|^2; `limited`, whether drive or thrust was changed.
+    pub fn observe(&mut self, [z_1, z_2]: [f32; 2], limited: bool, period: f32) {
+        if z_1 < NEAR * NEAR && z_2 < NEAR * NEAR {
+            (self.acted, self.caught) = (0.0, false);
+        } else if limited {
+            self.acted += period;
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! What one rotor of `[rotors]` delivers, in either of two forms:
+//!
+//! ```toml
+//! thrust_coefficient = 5.57e-6          # k_eta, N/(rad/s)^2
+//! drag_coefficient = 1.36e-7            # k_m, N m/(rad/s)^2
+//! speed = [0.0, 1500.0]                 # least and greatest while flying, rad/s
+//! ```
+//!
+//! or, where the speeds are not known,
+//!
+//! ```toml
+//! thrust_max = 12.5                     # N, each rotor's
+//! thrust_min = 0.0                      # N, each rotor's; 0 where it is left out
+//! torque_per_thrust = 0.0244            # k_m / k_eta, m
+//! ```
+//!
+//! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED`]
+//! at its greatest thrust: k_eta = thrust_max / [`NOMINAL_SPEED`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
+//! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power that it
+//! draws from a `[battery]` do.
+
+use crate::section::{FieldError, Section, in_line};
+use controller_core::error::{ParameterError, Reason};
+use toml::Value;
+
+/// What a rotor of the second form turns with at its greatest thrust, rad/s.
+pub const NOMINAL_SPEED: f64 = 1000.0;
+
+/// The keys of the first form.
+pub const SPEEDS: [&str; 3] = ["thrust_coefficient", "drag_coefficient", "speed"];
+
+/// The keys of the second form.
+pub const THRUSTS: [&str; 3] = ["thrust_max", "thrust_min", "torque_per_thrust"];
+
+/// What each rotor delivers; all are alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Propulsion {
+    form: Form,
+    /// k_eta, N/(rad/s)^2.
+    pub thrust_coefficient: f32,
+    /// k_m, N m/(rad/s)^2.
+    pub drag_coefficient: f32,
+    /// Least thrust while flying, N.
+    pub thrust_min: f32,
+    /// Greatest thrust, N.
+    pub thrust_max: f32,
+}
+
+/// How the file says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Speeds,
+    Thrusts,
+}
+
+impl Propulsion {
+    /// Reads it from `[rotors]`.
+    ///
+    /// # Errors
+    /// Names the field that is missing or no number, or keys of both forms.
+    pub fn read(section: &Section) -> Result<Self, FieldError> {
+        match form(section)? {
+            Form::Speeds => read_speeds(section),
+            Form::Thrusts => read_thrusts(section),
+        }
+    }
+
+    /// The field of the file that a refused field of one rotor comes from.
+    #[must_use]
+    pub fn in_file(&self, error: ParameterError) -> ParameterError {
+        // Without the rotor's number.
+        let refused = error.field.split(',').next().unwrap_or_default();
+        let (field, reason) = match (self.form, refused, error.reason) {
+            (Form::Speeds, "rotors.thrust_min" | "rotors.thrust_max", reason) => ("rotors.speed", reason),
+            (Form::Speeds, "rotors.thrust_coefficient" | "rotors.drag_coefficient", reason) => (refused, reason),
+            (Form::Thrusts, "rotors.thrust_min", reason) => (refused, reason),
+            (Form::Thrusts, "rotors.thrust_max" | "rotors.thrust_coefficient", reason) => ("rotors.thrust_max", reason),
+            (Form::Thrusts, "rotors.drag_coefficient", Reason::NotBelow(limit)) => {
+                ("rotors.torque_per_thrust", Reason::NotBelow(limit / self.thrust_coefficient))
+            }
+            (Form::Thrusts, "rotors.drag_coefficient", reason) => ("rotors.torque_per_thrust", reason),
+            (Form::Thrusts, "rotors.speed", reason @ Reason::NotBelow(_)) => ("rotors.thrust_min", reason),
+            (Form::Thrusts, "rotors.speed", reason) => ("rotors.thrust_max", reason),
+            (_, _, reason) => (error.field, reason),
+        };
+        ParameterError { field, reason }
+    }
+
+    /// The unit of what the file says of the thrust's range.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        match self.form {
+            Form::Speeds => "rad/s",
+            Form::Thrusts => "N",
+        }
+    }
+}
+
+/// Which form the file has.
+fn form(section: &Section) -> Result<Form, FieldError> {
+    let first = |keys: [&'static str; 3]| keys.into_iter().find(|key| section.has(key));
+    let either = format!("{}, or thrust_max, torque_per_thrust and, unless it is zero, thrust_min", SPEEDS.join(", "));
+    match (first(SPEEDS), first(THRUSTS)) {
+        (Some(_), None) => Ok(Form::Speeds),
+        (None, Some(_)) => Ok(Form::Thrusts),
+        (Some(of_speeds), Some(of_thrusts)) => Err(FieldError::new(
+            section.path_of(of_thrusts),
+            format!("cannot stand beside {of_speeds}; these belong together: {either}"),
+        )),
+        (None, None) => Err(FieldError::new(
+            section.path_of("thrust_max"),
+            format!("missing, and so is every other key that says what a rotor delivers: give {either}"),
+        )),
+    }
+}
+
+fn read_speeds(section: &Section) -> Result<Propulsion, FieldError> {
+    let thrust_coefficient = section.number("thrust_coefficient")? as f32;
+    let drag_coefficient = section.number("drag_coefficient")? as f32;
+    let (slowest, fastest) = read_range(section)?;
+    let thrust = |speed: f64| thrust_coefficient * (speed * speed) as f32;
+    let (thrust_min, thrust_max) = (thrust(slowest), thrust(fastest));
+    Ok(Propulsion { form: Form::Speeds, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
+}
+
+fn read_thrusts(section: &Section) -> Result<Propulsion, FieldError> {
+    const LEVER: &str = "torque_per_thrust";
+    let thrust_max = section.number("thrust_max")?;
+    let thrust_min = section.number_or("thrust_min", 0.0)? as f32;
+    if !section.has(LEVER) {
+        let problem = "missing, must be the propeller's drag torque over its thrust, m: yaw cannot be known without it \
+                       (a thrust stand or the propeller's data have it)";
+        return Err(FieldError::new(section.path_of(LEVER), problem));
+    }
+    let thrust_coefficient = thrust_max / (NOMINAL_SPEED * NOMINAL_SPEED);
+    let drag_coefficient = (section.number(LEVER)? * thrust_coefficient) as f32;
+    let (thrust_coefficient, thrust_max) = (thrust_coefficient as f32, thrust_max as f32);
+    Ok(Propulsion { form: Form::Thrusts, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
+}
+
+fn read_range(section: &Section) -> Result<(f64, f64), FieldError> {
+    const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
+    let elements = section.elements("speed", WANTED)?;
+    let found = || elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
+    let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}, found [{}]", found()));
+    let numbers: Vec<f64> = elements.iter().filter_map(|(_, value)| number(value)).collect();
+    match numbers.as_slice() {
+        [least, greatest] if elements.len() == 2 && 0.0 <= *least && least < greatest && greatest.is_finite() => {
+            Ok((*least, *greatest))
+        }
+        _ => Err(refuse()),
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+#[cfg(test)]
+mod tests;
