@@ -107,7 +107,8 @@ pub fn identity(scenario: &Scenario) -> u32 {
 mod tests {
     use super::*;
     use crate::STUDY;
-    use controller_core::tuning::Percent;
+    use controller_core::certificate::Certificate;
+    use controller_core::tuning::{Figures, Percent, Tuning};
 
     /// The study with another k_omega_t: its own gains follow its rotors, however late they are.
     fn damped(k_omega_t: f64) -> Scenario {
@@ -117,7 +118,7 @@ mod tests {
     #[test]
     fn the_bits_say_what_the_analysis_says_of_each_choice() {
         // Damped so hard that some choices of factors have no margin.
-        let study = damped(std::env::var("KO").unwrap_or("0.15".into()).parse().unwrap());
+        let study = damped(0.35);
         let judged = judged(&study);
         let held = |factors: &Factors| {
             let configuration = &study.configuration;
@@ -144,6 +145,40 @@ mod tests {
         }
         println!("{good} choices hold, {bad} do not");
         assert!(good > 0 && bad > 0);
+    }
+
+    #[test]
+    fn every_factor_alone_certifies_and_keeps_its_margins() {
+        for text in [STUDY, include_str!("../../vehicles/hummingbird.toml")] {
+            let scenario = Scenario::parse(text, "a test").unwrap();
+            let (configuration, loops) = (&scenario.configuration, judged(&scenario));
+            for (percent, gain) in Percent::all().flat_map(|percent| (0..6).map(move |gain| (percent, gain))) {
+                let mut factors = Factors::BUILT;
+                let Factors { attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical } =
+                    &mut factors;
+                let each = [attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical];
+                *each.into_iter().nth(gain).unwrap() = percent;
+                let tuning = Tuning { figures: Figures::of(configuration), factors };
+                let certificate = Certificate::new(&tuning.apply(configuration).unwrap()).unwrap();
+                assert!(certificate.holds() && loops.hold(&factors), "{}: {factors:?}", scenario.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_attitudes_factor_multiplies_the_tilts_stiffness() {
+        let study = Scenario::parse(STUDY, "a test").unwrap();
+        let stiffness = |attitude| {
+            let factors = Factors { attitude, ..Factors::BUILT };
+            let law = factors.law(study.configuration.law(), study.configuration.vehicle()).unwrap();
+            let LawParameters::Extended(law) = law else { panic!() };
+            let p = &law.parameters;
+            p.w / 4.0 + p.k_t / (2.0 * p.eta_t.hypot(1.0))
+        };
+        for percent in Percent::all() {
+            let factor = stiffness(percent) / stiffness(Percent::FULL);
+            assert!((factor - percent.percent() / 100.0).abs() < 1e-6, "{factor}");
+        }
     }
 
     /// What the firmware's build would be told of the study, changed.

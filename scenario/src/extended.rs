@@ -60,7 +60,7 @@ pub fn written(parameters: &ExtendedParameters) -> String {
     let mut before = "";
     for (constant, value) in ExtendedParameters::TABLE.iter().zip(parameters.values()) {
         if constant.section != before {
-            let _ = write!(text, "{}[{}]\n", if before.is_empty() { "" } else { "\n" }, constant.section);
+            let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
             before = constant.section;
         }
         let _ = writeln!(text, "{:37} #{}", format!("{} = {value:?}", constant.key), constant.about);
