@@ -46,6 +46,18 @@ fn hovering_asks_for_the_weight_and_no_torque() {
     assert!((controller.thrust_scale() - 1.0).abs() < 1e-6);
 }
 
+#[test]
+fn rotors_that_deliver_more_than_commanded_show_no_force_once_their_scale_is_known() {
+    let mut controller = of(&Craft::example(), &example::parameters());
+    controller.memory.averages.scale.scale = 1.1;
+    controller.restart();
+    for _ in 0..300 {
+        let (wrench, _) = controller.step(&resting(Vector3::zeros()), &hover()).unwrap();
+        assert!((wrench.thrust - 0.5 * 9.81).abs() < 1e-4, "{wrench:?}");
+    }
+    assert!(controller.estimates().force.norm() < 1e-4 && controller.thrust_scale() == 1.1);
+}
+
 fn anywhere(random: &mut Random) -> State {
     State {
         position: random.vector(5.0),
