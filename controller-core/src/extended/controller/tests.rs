@@ -1,4 +1,5 @@
-//! The extended law's step as a whole: hovering, refusals, what it learns between two of them, what no state makes it exceed.
+//! The extended law's step as a whole: hovering, refusals, what it learns between two of them, what no state makes it
+//! exceed.
 
 extern crate std;
 use super::*;
@@ -128,8 +129,8 @@ fn held_estimates_stay_as_they_are() {
     assert!(fly(&mut controller, 5).force.x > learnt.force.x);
 }
 
-/// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of, not the one to
-/// come.
+/// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of,
+/// not the one to come.
 #[test]
 fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
     let parameters = ExtendedParameters { drag_across: 0.0, ..example::parameters() };

@@ -12,7 +12,8 @@ use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-/// How much of the bounds that the formulas allow are certified, in steps of a tenth; what fails where not even a hundredth is.
+/// How much of the bounds that the formulas allow are certified, in steps of a tenth; what fails where not even a
+/// hundredth is.
 fn certified(craft: &Craft, parameters: &ExtendedParameters) -> Result<f32, String> {
     let most = defaults::reference_bounds(&craft.airframe(), parameters);
     let mut share = 1.0;
@@ -51,7 +52,8 @@ fn every_plausible_vehicle_is_certified_with_constants_in_their_ranges() {
     }
 }
 
-/// What turns about x and y at once pulls about z with the difference of their inertias, here as much as the rotors give.
+/// What turns about x and y at once pulls about z with the difference of their inertias, here as much as the rotors
+/// give.
 #[test]
 fn a_vehicle_whose_yaw_is_weak_and_whose_tilt_is_uneven_is_certified() {
     let inertia = Vector3::new(0.1, 0.14, 0.22);

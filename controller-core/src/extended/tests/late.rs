@@ -24,8 +24,8 @@ fn what_is_pending_is_what_was_commanded_less_what_has_acted() {
     }
 }
 
-/// A body on rotors with a lag, small motions in fine ticks: the projected angle moves with the projected rate, and that with the acceleration
-/// that is commanded now, whatever was commanded before.
+/// A body on rotors with a lag, small motions in fine ticks: the projected angle moves with the projected rate, and
+/// that with the acceleration that is commanded now, whatever was commanded before.
 #[test]
 fn the_projected_errors_move_as_if_the_rotors_were_ideal() {
     let inertia = example::vehicle().inertia;
