@@ -15,6 +15,7 @@ use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::extended::ExtendedBounds;
 use controller_core::extended::controller::Controller;
 use controller_core::extended::parameters::Extended;
+use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::{Quaternion, Vector3};
@@ -26,6 +27,9 @@ const PERIOD: f32 = 0.01;
 /// Ticks of a flight, and how many of its states are searched for worse ones.
 const TICKS: u32 = 300;
 const SEARCHED: f64 = 0.02;
+
+/// Flights on a vehicle.
+const FLIGHTS: usize = 400;
 
 /// The single-precision error of one evaluation, relative to a bound.
 const EVALUATION_ERROR: f64 = 1e-5;
@@ -83,6 +87,14 @@ struct World {
 impl World {
     fn new(configuration: Configuration) -> Option<Self> {
         let certified = Certified::new(configuration.clone()).ok()?;
+        // No row of the certificate keeps the thrust floor of the greatest torque below T_max.
+        let torque = bounds(&configuration).torque.cast();
+        let p = law(&configuration).parameters;
+        let range = ThrustRange::new(configuration.rotors(), p.floor_margin, configuration.limits().thrust_max);
+        let raised = range.least(&torque, p.scale_greatest).max(range.least(&-torque, p.scale_greatest));
+        if raised > configuration.limits().thrust_max {
+            return None;
+        }
         let allocation = configuration.rotors().map(|rotors| (MinimumNorm::new(rotors), Mixer::new(rotors)));
         Some(Self { bounds: bounds(&configuration), parameters: law(&configuration).parameters, certified, allocation })
     }
@@ -246,7 +258,7 @@ fn attack(world: &World, flights: usize, rng: &mut ChaCha8Rng) -> Shown {
 
 fn nearly_reached(name: &str, configuration: Configuration, seed: u64, share: f64) {
     let world = World::new(configuration).unwrap();
-    let shown = attack(&world, 60, &mut random::generator(seed));
+    let shown = attack(&world, FLIGHTS, &mut random::generator(seed));
     println!("{name}: found / bound {shown:.3?}");
     let rotors = if world.allocation.is_some() { &shown.rotors[..] } else { &[] };
     let weak: Vec<_> = shown.torque.iter().chain(rotors).filter(|found| **found < share).collect();
@@ -260,7 +272,7 @@ fn on_the_hummingbird_every_bound_stands_and_is_nearly_reached() {
 
 #[test]
 fn on_the_study_every_bound_stands_and_is_nearly_reached() {
-    nearly_reached("study", vehicle("study").configuration, 202, 0.8);
+    nearly_reached("study", vehicle("study").configuration, 202, 0.7);
 }
 
 #[test]
@@ -276,7 +288,7 @@ fn the_bounds_stand_with_random_configurations() {
         match World::new(random_configuration(&mut rng)) {
             Some(world) => {
                 worlds += 1;
-                shown.join(&attack(&world, 4, &mut rng));
+                shown.join(&attack(&world, 10, &mut rng));
             }
             None => refused += 1,
         }
