@@ -112,6 +112,28 @@ pub fn around_the_formulas(rng: &mut ChaCha8Rng) -> Configuration {
     if rng.random_bool(0.2) { all } else { all.with_rotors(base.rotors().unwrap().clone()).unwrap() }
 }
 
+/// A configuration with other constants.
+pub fn with_constants(configuration: &Configuration, change: impl FnOnce(&mut ExtendedParameters)) -> Configuration {
+    let ExtendedLaw { parameters, actuators } = law(configuration);
+    let mut changed = *parameters;
+    change(&mut changed);
+    let (vehicle, limits) = (*configuration.vehicle(), *configuration.limits());
+    let law = ExtendedLaw { parameters: Extended::new(changed, &vehicle).unwrap(), actuators };
+    let changed = Configuration::extended(vehicle, limits, law, *configuration.bounds()).unwrap();
+    match configuration.rotors() {
+        Some(rotors) => changed.with_rotors(rotors.clone()).unwrap(),
+        None => changed,
+    }
+}
+
+/// A configuration with the same constants and nothing estimated.
+pub fn without_estimates(configuration: &Configuration) -> Configuration {
+    with_constants(configuration, |p| {
+        (p.force_across, p.force_up, p.force_down) = (0.0, 0.0, 0.0);
+        (p.torque_tilt, p.torque_yaw, p.scale_rate) = (0.0, 0.0, 0.0);
+    })
+}
+
 /// The law of a configuration of the extended law.
 pub fn law(configuration: &Configuration) -> ExtendedLaw {
     match configuration.law() {
