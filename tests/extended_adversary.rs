@@ -119,7 +119,11 @@ impl World {
     fn places(&self, wrench: &Wrench, scale: f32) -> Vec<f64> {
         let thrusts = self.thrusts(wrench, scale);
         let ends = self.bounds.rotors.iter();
-        thrusts.iter().zip(ends).map(|(f, end)| 2.0 * (f64::from(*f) - end.least) / (end.greatest - end.least) - 1.0).collect()
+        thrusts
+            .iter()
+            .zip(ends)
+            .map(|(f, end)| 2.0 * (f64::from(*f) - end.least) / (end.greatest - end.least) - 1.0)
+            .collect()
     }
 
     /// One tick, judged.
@@ -168,7 +172,14 @@ impl World {
     }
 
     /// Looks for the state that asks for the most of something next, from what the law remembers now.
-    fn search(&self, controller: &Controller, start: &State, reference: &Reference, rng: &mut ChaCha8Rng, shown: &mut Shown) {
+    fn search(
+        &self,
+        controller: &Controller,
+        start: &State,
+        reference: &Reference,
+        rng: &mut ChaCha8Rng,
+        shown: &mut Shown,
+    ) {
         let objective = self.objective(rng);
         let mut value = |code: &[f64; 13]| {
             let mut controller = controller.clone();

@@ -32,9 +32,8 @@ const EITHER_SIDE: f64 = 1e-5;
 const OF_THE_LIFT: [&str; 6] = ["thrust", "torque", "omega_d'", "c", "x", "chi, W"];
 
 /// What the branches are called.
-const BRANCHES: [&str; 8] = [
-    "frame's rate", "frame's acceleration", "cone", "|u| below U", "c_z above -A_-", "lambda < 1", "floor", "ceiling",
-];
+const BRANCHES: [&str; 8] =
+    ["frame's rate", "frame's acceleration", "cone", "|u| below U", "c_z above -A_-", "lambda < 1", "floor", "ceiling"];
 
 fn reference(rng: &mut ChaCha8Rng, configuration: &Configuration) -> Reference {
     let room = configuration.vehicle().gravity - configuration.greatest_fall();
@@ -150,14 +149,8 @@ fn fly(configuration: &Configuration, plan: &Plan, rng: &mut ChaCha8Rng, shown: 
     let extended = law(configuration);
     let (vehicle, period) = (configuration.vehicle(), plan.period);
     let (lag, delay) = (extended.actuators.lag, extended.actuators.delay);
-    let oracle = Law::new(
-        vehicle,
-        configuration.limits(),
-        &extended.parameters,
-        configuration.rotors(),
-        lag + delay,
-        period,
-    );
+    let oracle =
+        Law::new(vehicle, configuration.limits(), &extended.parameters, configuration.rotors(), lag + delay, period);
     let Flown::Extended(mut controller) = Flown::uncertified(configuration, period).unwrap() else {
         panic!("another law")
     };

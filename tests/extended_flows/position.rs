@@ -200,7 +200,10 @@ fn v_0_never_rises_along_flows() {
             let steep = 6e-8 * (gain * (x.position.norm() + x.velocity.norm()) + rate * (c + driven));
             let forced = level + flying.force.norm() + f64::from(GRAVITY);
             let allowed = z_2.norm() * (2e-6 * forced + 4.0 * steep) + 1e-15 * v_0(&x) / step;
-            assert!(v_dot <= allowed, "case {number}, {vertical}: V_0' = {v_dot:e} beyond {allowed:e} at {x:?} with {p:?}");
+            assert!(
+                v_dot <= allowed,
+                "case {number}, {vertical}: V_0' = {v_dot:e} beyond {allowed:e} at {x:?} with {p:?}"
+            );
             *falls += u32::from(v_dot < -100.0 * allowed);
         }
     }
@@ -258,7 +261,9 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         let [z_1, z_2] = flying.z(&x);
         let core = flying.core(&x);
         let size = 1.0 + z_1.norm() + z_2.norm() + flying.force.norm();
-        assert!((core.z_1.cast::<f64>() - z_1).norm() < 1e-5 * size && (core.z_2.cast::<f64>() - z_2).norm() < 1e-5 * size);
+        assert!(
+            (core.z_1.cast::<f64>() - z_1).norm() < 1e-5 * size && (core.z_2.cast::<f64>() - z_2).norm() < 1e-5 * size
+        );
         // z is linear in the state, so that any step will do.
         let [after, before] = [0.5, -0.5].map(|time| flying.z(&x.after(&along, time)));
         let [k_f, k_s] = [flying.p.k_f, flying.p.k_s].map(f64::from);

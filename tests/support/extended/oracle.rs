@@ -276,9 +276,8 @@ impl Law {
             Row { tilt: 1.0, yaw: 0.0, room: torque_max.x.min(torque_max.y) - tilt - bias_tilt },
             Row { tilt: 0.0, yaw: 1.0, room: torque_max.z - yaw - bias_yaw },
         ];
-        let beside = |b: &Vector3<f64>| {
-            (b.x.abs() + b.y.abs()) * bias_tilt + b.z.abs() * (bias_yaw + j.z * yaw_acceleration)
-        };
+        let beside =
+            |b: &Vector3<f64>| (b.x.abs() + b.y.abs()) * bias_tilt + b.z.abs() * (bias_yaw + j.z * yaw_acceleration);
         self.floor = [margin, 0.0];
         if !self.rotors.is_empty() {
             let pairs = || self.rotors.iter().flat_map(|k| self.rotors.iter().map(move |i| (k, i)));
@@ -603,9 +602,7 @@ impl Law {
     fn thrusts(&self, torque: &Vector3<f64>, scale: f64) -> [f64; 2] {
         let margin = double(self.p.floor_margin);
         let each = |end: fn(&Rotor) -> f64| {
-            self.rotors
-                .iter()
-                .map(move |rotor| scale * end(rotor) / rotor.row[0] - rotor.per_thrust().dot(torque))
+            self.rotors.iter().map(move |rotor| scale * end(rotor) / rotor.row[0] - rotor.per_thrust().dot(torque))
         };
         let least = each(|rotor| rotor.least).fold(0.0, f64::max) + margin;
         [least, each(|rotor| rotor.greatest).map(|most| most - margin).fold(self.thrust_max, f64::min)]

@@ -123,11 +123,7 @@ fn difference(scenario: &Scenario, axis: Axis) -> f64 {
 /// `text` with no force across estimated.
 fn without_force(text: &str) -> String {
     let section = "[estimates]\nforce_across = 0.0\n";
-    if text.contains("[estimates]\n") {
-        text.replace("[estimates]\n", section)
-    } else {
-        format!("{text}\n{section}")
-    }
+    if text.contains("[estimates]\n") { text.replace("[estimates]\n", section) } else { format!("{text}\n{section}") }
 }
 
 #[test]
