@@ -7,7 +7,6 @@ use controller_core::extended::attitude::{AttitudeFeedback, AttitudeLaw};
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::path_lifting::{self, Lift};
 use nalgebra::{Quaternion, Vector3, Vector4};
-use rand::RngExt;
 
 /// V less its kinetic part, at a unit quaternion.
 fn potential(p: &ExtendedParameters, q: &Vector4<f64>) -> f64 {
