@@ -98,7 +98,7 @@ fn the_status_says_what_became_of_ours() {
     assert!(stdout(&lost).contains("NOT every random flight of ours settles"), "{}", stdout(&lost));
     assert_eq!((status(&lost), files(&directory.join("lost")).len()), (1, COMPARED.len()));
 
-    let hungry = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "yaw_acceleration =", "m_all = 9.0");
+    let hungry = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "yaw_acceleration =", "m_all = 2.0");
     fs::write(directory.join("hungry.toml"), hungry).unwrap();
     let refused = host_sim(&directory, &["compare", "hungry.toml", "--flights", "2", "--out", "out"]);
     let message = stderr(&refused);

@@ -2,7 +2,7 @@
 //!
 //! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle arrives. That the limiter falls
 //! silent is proven near the target; from far away no proof is known for strong gains. So the law counts the time for which it acted since the
-//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = 0) and the
+//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = -d) and the
 //! feedback is cut to the level of the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides
 //! alone. Near the target the law's own level returns.
 //!
