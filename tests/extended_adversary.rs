@@ -150,6 +150,8 @@ impl World {
         let most = 1.0 + EVALUATION_ERROR;
         assert!(tick.torque.iter().chain(&tick.motion[2..]).all(|share| *share <= most), "{tick:?}: {wrench:?}");
         assert!(f64::from(wrench.thrust) >= self.bounds.thrust.least);
+        // No proof says how far beyond its envelope c may go; it may not run away.
+        assert!(tick.envelope[0] < 4.0 && tick.envelope[1] < 1.3, "{tick:?}");
         shown.join(&tick);
         wrench
     }

@@ -100,7 +100,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
     let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / by_yaw);
     let by_tilt = greater_f64(by_tilt, 1e-12);
-    let bias_tilt = lesser_f64(0.035 * tilt_most, 0.1 * mass * gravity / by_tilt);
+    let bias_tilt = lesser_f64(0.055 * tilt_most, 0.1 * mass * gravity / by_tilt);
     let bias_yaw = lesser_f64(0.04 * yaw_most, 0.06 * mass * gravity / by_yaw);
     let all = bias_tilt * by_tilt + (bias_yaw + light) * by_yaw;
     let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));

@@ -565,17 +565,18 @@ impl Law {
 
         let tangential = (q - wanted) * *n;
         let k = SOFTNESS.min(0.5 / h);
-        let (mut along, swelling) = (0.0, radial + n * p.norm_squared());
-        let shrinking = -2.0 * k * r - k * k * (n - greatest);
-        let swells = swelling > shrinking;
-        if swells {
-            along = shrinking - swelling;
-        }
-        let falling = c_second + tangential.z + along * rho.z;
+        let mut along = 0.0;
+        let falling = c_second + tangential.z;
         let climbing = -2.0 * k * c_rate - k * k * (c + double(parameters.a_down));
         let falls = falling < climbing;
         if falls {
-            along += (climbing - falling) / rho.z;
+            along = (climbing - falling) / rho.z;
+        }
+        let swelling = radial + along + n * p.norm_squared();
+        let shrinking = -2.0 * k * r - k * k * (n - greatest);
+        let swells = swelling > shrinking;
+        if swells {
+            along += shrinking - swelling;
         }
         let taken = [faster, sooner, tilted, swells, falls, false, false, false];
         (tangential + rho * along, Branches { taken, jump })
@@ -623,7 +624,10 @@ impl Law {
             c += (k_1 + 2.0 * k_2 + 2.0 * k_3 + k_4) * (h / 6.0);
             x = end;
         }
-        c.z = c.z.max(-double(self.p.a_down));
+        let lowest = -double(self.p.a_down);
+        if c.z < lowest {
+            (c.z, x.z) = (lowest, x.z.max(lowest));
+        }
         [c, x]
     }
 }
