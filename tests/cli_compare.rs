@@ -149,16 +149,100 @@ fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
             assert!(!directory.join("out").exists(), "{to}");
         }
     }
-    // Another vehicle is told that there are no gains for it, and how to find some.
-    let heavier = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "mass =", "mass = 0.52");
-    fs::write(directory.join("heavier.toml"), heavier).unwrap();
+    // A campaign of another vehicle is told that there are no gains for it, and how to find some.
+    heavier(&directory);
     let refused = host_sim(&directory, &["campaign", "heavier.toml", "--law", "lee", "--flights", "1"]);
     let message = stderr(&refused);
     assert!(
         status(&refused) == 2 && message.contains("the built-in gains: no table is of hummingbird's vehicle"),
         "{message}"
     );
-    assert!(message.contains("those there are of: hummingbird, ") && message.contains("--tune 40"), "{message}");
+    assert!(message.contains("those there are of: hummingbird, ") && message.contains("gains.toml"), "{message}");
+}
+
+/// A vehicle of which no gains are built in, in `directory`.
+fn heavier(directory: &Path) {
+    let heavier = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "mass =", "mass = 0.52");
+    fs::write(directory.join("heavier.toml"), heavier).unwrap();
+}
+
+#[test]
+fn a_vehicle_without_gains_has_them_searched_and_kept_for_the_next_time() {
+    let directory = directory("searched", GENTLE);
+    heavier(&directory);
+    let compare = ["compare", "heavier.toml", "--flights", "1", "--out", "out"];
+    let least = ["--generations", "1", "--population", "4"];
+    let found = host_sim(&directory, &[&compare[..], &least].concat());
+    let (text, message) = (stdout(&found), stderr(&found));
+    assert!(status(&found) < 2, "{message}");
+    let first = message.lines().next().unwrap_or_default();
+    assert!(first.starts_with("hummingbird: no gains of the other laws are built in for this vehicle"), "{message}");
+    assert!(text.contains("gains found in out/gains.toml: --gains out/gains.toml takes them the next time"), "{text}");
+    assert_eq!(files(&directory.join("out")), [&COMPARED[..1], &["gains.toml"], &COMPARED[1..]].concat());
+    let gains = fs::read_to_string(directory.join("out/gains.toml")).unwrap();
+    assert!(
+        gains.starts_with(
+            "# host-sim compare heavier.toml --tune 1 --population 4 --seed 1
+"
+        ),
+        "{gains}"
+    );
+
+    // They are taken without another search.
+    let (_, rows) = table(&directory.join("out"));
+    let again = host_sim(&directory, &[&compare[..], &["--gains", "out/gains.toml"]].concat());
+    assert_eq!((status(&again), stderr(&again)), (status(&found), String::new()));
+    assert_eq!(table(&directory.join("out")).1.len(), rows.len());
+    let thrown = ["campaign", "heavier.toml", "--law", "lee", "--gains", "out/gains.toml", "--flights", "1"];
+    assert!(status(&host_sim(&directory, &thrown)) < 2);
+
+    // They are not those of another vehicle: nobody is to take them for what flew.
+    let refused = host_sim(&directory, &["compare", "h.toml", "--flights", "1", "--out", "out"]);
+    let message = stderr(&refused);
+    assert!(status(&refused) == 2 && message.contains("out/gains.toml: holds other gains"), "{message}");
+}
+
+#[test]
+fn a_search_does_not_begin_where_its_end_is_known() {
+    let directory = directory("in vain", GENTLE);
+    heavier(&directory);
+    let text = fs::read_to_string(directory.join("heavier.toml")).unwrap();
+    fs::write(directory.join("hungry.toml"), with(&text, "m_across =", "m_across = 9.0")).unwrap();
+    let refused = host_sim(&directory, &["compare", "hungry.toml", "--out", "out"]);
+    let message = stderr(&refused);
+    assert!(status(&refused) == 1 && message.contains("not certified (") && message.lines().count() == 1, "{message}");
+    fs::write(directory.join("file"), "in the way").unwrap();
+    for out in ["file", "file/out"] {
+        let refused = host_sim(&directory, &["compare", "heavier.toml", "--out", out]);
+        let message = stderr(&refused);
+        assert!(status(&refused) == 2 && message.contains(&format!("{out}: cannot be written")), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+    let refused = host_sim(&directory, &["compare", "heavier.toml", "--generations", "0"]);
+    assert_eq!((status(&refused), stderr(&refused).lines().count()), (2, 1), "{}", stderr(&refused));
+}
+
+#[test]
+fn a_rival_without_gains_is_left_out_and_named() {
+    let directory = directory("left out", GENTLE);
+    let (before, rest) = BUILT_IN.split_once("[hummingbird.lee]").unwrap();
+    let (_, after) = rest.split_once("[hummingbird.px4]").unwrap();
+    let without = format!("{before}[hummingbird.lee]\ncost = inf\n\n[hummingbird.px4]{after}");
+    fs::write(directory.join("g.toml"), without).unwrap();
+    let compared = host_sim(&directory, &["compare", "h.toml", "--flights", "1", "--gains", "g.toml", "--out", "out"]);
+    let text = stdout(&compared);
+    assert_eq!((status(&compared), stderr(&compared)), (0, String::new()), "{text}");
+    assert!(text.starts_with("hummingbird: our law and 6 others;"), "{text}");
+    let why = "eft out: lee; a search found no gains with which every trial is flown to its end";
+    assert!(text.contains(why), "{text}");
+    assert!(fs::read_to_string(directory.join("out/report.html")).unwrap().contains(why));
+    let (head, _) = table(&directory.join("out"));
+    assert_eq!(head[3..10], ["ours", "px4", "mellinger", "indi", "nested", "continuous", "memoryless"]);
+
+    let campaign = ["campaign", "h.toml", "--law", "lee", "--gains", "g.toml", "--flights", "1"];
+    let refused = host_sim(&directory, &campaign);
+    let message = stderr(&refused);
+    assert!(status(&refused) == 2 && message.contains("there are no gains of lee"), "{message}");
 }
 
 #[test]

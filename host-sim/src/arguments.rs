@@ -7,7 +7,8 @@ mod sessions;
 
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
-pub use compare::CompareArguments;
+pub use compare::{CompareArguments, GainsWanted};
+use host_sim::tune::effort::Effort;
 use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
@@ -144,13 +145,13 @@ pub struct TuneArguments {
     #[arg(long)]
     no_projection: bool,
     /// Generations of each of the two stages
-    #[arg(long, default_value_t = 150)]
+    #[arg(long, default_value_t = Effort::default().generations)]
     pub generations: u32,
     /// Candidates of each generation, 4 to 1000
-    #[arg(long, default_value_t = 48)]
+    #[arg(long, default_value_t = Effort::default().population)]
     pub population: usize,
     /// Seed of the search
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = Effort::default().seed)]
     pub seed: u64,
     /// Also report the largest factor by which the reference bounds could grow with these gains
     #[arg(long)]
@@ -169,6 +170,10 @@ nothing yet, it writes nothing.";
 const COMPARE_HELP: &str = "\
 Each figure is better the less it is; rows that begin with a star are those where another law does better than ours. docs/rivals.md says
 what the laws are and what is fair about it. Random flights are those of `campaign --law NAME`, the same for every law.
+
+The rivals' gains are built in for the Hummingbird, the study vehicle and the paper's. For any other vehicle they are searched first, each
+rival's as hard as `tune` searches ours by default. That takes minutes; progress shows on stderr. gains.toml, beside compare.csv, has what was
+found, for --gains. A rival of which no gains fly every trial to its end is left out, and named.
 
 Exit status 0: every random flight of ours settles, and no command of it is cut or leaves its certified bounds; 1: one does not, or the
 scenario is not certified.";

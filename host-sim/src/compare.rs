@@ -83,6 +83,19 @@ impl From<PlotError> for CompareError {
     }
 }
 
+/// Ours, certified: it flies in a comparison as boards fly it, or not at all.
+///
+/// # Errors
+/// [`CompareError::Parameter`] and [`CompareError::NotCertified`].
+pub fn certified(file: &Scenario) -> Result<Certified, CompareError> {
+    Certified::new(file.configuration.clone()).map_err(|refused| match refused {
+        Refused::Undefined(error) => CompareError::Parameter(error),
+        Refused::Fails(certificate) => {
+            CompareError::NotCertified(certificate.tightest().map_or("", |tightest| tightest.name))
+        }
+    })
+}
+
 /// Flies all laws of `set`, and ours, in all scenes of `file`, which was read from `text`, and in `flights` random flights.
 ///
 /// # Errors
@@ -94,12 +107,7 @@ pub fn compare(
     flights: u64,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
-    let certified = Certified::new(file.configuration.clone()).map_err(|refused| match refused {
-        Refused::Undefined(error) => CompareError::Parameter(error),
-        Refused::Fails(certificate) => {
-            CompareError::NotCertified(certificate.tightest().map_or("", |tightest| tightest.name))
-        }
-    })?;
+    let certified = certified(file)?;
     let certificate = certified.certificate();
     let fliers: Vec<Flier> = std::iter::once(LawChoice::Ours)
         .chain(set.laws())
@@ -154,6 +162,16 @@ pub fn compare(
         ("random.svg", pictures::random(&names, &thrown, &shown)?),
     ];
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
+}
+
+/// Whether `directory` could be written into, or made: for asking before long work. Nothing is left behind.
+///
+/// # Errors
+/// [`CompareError::Output`].
+pub fn writable(directory: &Path) -> Result<(), CompareError> {
+    let nearest = directory.ancestors().find(|path| path.exists()).unwrap_or(Path::new("."));
+    let failed = |error| CompareError::Output(directory.to_owned(), error);
+    WholeFile::try_name(&nearest.join("compare.csv")).map_err(failed)
 }
 
 /// Writes all files of `comparison` into `directory`, after all of them were written in full.

@@ -16,7 +16,7 @@
 //! | [`rival`], [`pilot`] | what a rival is told and asked; how it comes into a flight |
 //! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | what several of them are made of |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
-//! | [`tuning`] | the search for them |
+//! | [`start`], [`tuning`] | where the search for them starts; the search |
 //! | [`half_turn`] | what laws do about the half turn, with noise against them: unwinding and chattering |
 
 pub mod cascade;
@@ -35,6 +35,7 @@ pub mod nested;
 pub mod pilot;
 pub mod quaternion_feedback;
 pub mod rival;
+pub mod start;
 pub mod tuning;
 
 #[cfg(test)]

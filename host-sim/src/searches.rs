@@ -1,10 +1,11 @@
 //! The two commands that search for gains: `tune` for our law, `compare` for others.
 
-use crate::arguments::{CompareArguments, TuneArguments};
+use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::campaign::fly::grounded;
 use host_sim::certify::certify;
 use host_sim::compare::{self, CompareError, compare};
+use host_sim::progress::spoken;
 use host_sim::rivals::gains::Set;
 use host_sim::rivals::tuning;
 use host_sim::table::{percent, short};
@@ -16,8 +17,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What a comparison calls the gains that it found.
+/// What a comparison calls gains that it found because it was asked to.
 const RIVALS: &str = "rivals.toml";
+/// What it calls those that it found because none are built in.
+const FOUND: &str = "gains.toml";
 
 pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
@@ -61,7 +64,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
 }
 
 pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
-    let effort = arguments.effort()?;
+    let wanted = arguments.gains()?;
     let text = text_of(Some(&arguments.file))?;
     let scenario = Scenario::parse(&text, &arguments.file.display().to_string()).map_err(|error| error.to_string())?;
     if let Some(problem) = grounded(&scenario) {
@@ -69,40 +72,68 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     }
     let directory = arguments.directory(&scenario.name);
     not_a_campaigns(&directory)?;
-    if effort.is_none() {
-        none_but(arguments.gains.as_deref(), &directory)?;
-    }
-    let interrupt = watch()?;
-    let mut found = None;
-    let set = match (&effort, &arguments.gains) {
-        (Some(effort), _) => match tuning::tune(&scenario, *effort, &interrupt) {
-            Ok(set) => {
-                found = Some((RIVALS, set.written(&scenario, &arguments.command(effort))));
-                set
-            }
-            Err(message) => {
-                complain(format_args!("error: {}: {message}", scenario.name));
-                return Ok(status(false, interrupt.signal()));
-            }
+    let (known, search) = match wanted {
+        GainsWanted::Of(file) => (Some(Set::read(&scenario, Some(&file)).map_err(|error| error.to_string())?), None),
+        GainsWanted::Searched(effort) => (None, Some((effort, RIVALS))),
+        GainsWanted::BuiltInOr(effort) => match Set::built_in(&scenario) {
+            Some(set) => (Some(set), None),
+            None => (None, Some((effort, FOUND))),
         },
-        (None, file) => Set::read(&scenario, file.as_deref()).map_err(|error| error.to_string())?,
+    };
+    none_but(arguments.gains.as_deref(), search.map(|(_, name)| name), &directory)?;
+    let interrupt = watch()?;
+    let failed = |error: CompareError| match error {
+        CompareError::NotCertified(_) | CompareError::Interrupted(_) => {
+            complain(format_args!("error: {}: {error}", scenario.name));
+            Ok(status(false, interrupt.signal()))
+        }
+        error => Err(error.to_string()),
+    };
+    let (set, found) = match (known, search) {
+        (Some(set), _) => (set, None),
+        (None, None) => (Set::default(), None),
+        (None, Some((effort, name))) => {
+            // A search takes minutes: whatever is wrong with the rest shows now.
+            if let Err(error) = compare::certified(&scenario).map(drop).and_then(|()| compare::writable(&directory)) {
+                return failed(error);
+            }
+            if name == FOUND {
+                complain(format_args!(
+                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard as \
+                     `tune` searches ours, which may take {}",
+                    scenario.name,
+                    spoken(tuning::expected(&scenario, &effort).as_secs_f64())
+                ));
+            }
+            match tuning::tune(&scenario, effort, &interrupt) {
+                Ok(set) => {
+                    let written = set.written(&scenario, &arguments.command(&effort));
+                    (set, Some((name, written)))
+                }
+                Err(message) => {
+                    complain(format_args!("error: {}: {message}", scenario.name));
+                    return Ok(status(false, interrupt.signal()));
+                }
+            }
+        }
     };
     let mut comparison = match compare(&scenario, &text, &set, arguments.flights, &interrupt) {
         Ok(comparison) => comparison,
-        Err(error @ (CompareError::NotCertified(_) | CompareError::Interrupted(_))) => {
-            complain(format_args!("error: {}: {error}", scenario.name));
-            return Ok(status(false, interrupt.signal()));
-        }
-        Err(error) => return Err(error.to_string()),
+        Err(error) => return failed(error),
     };
+    let kept = found.as_ref().map_or_else(String::new, |(name, _)| {
+        let file = directory.join(name);
+        format!("gains found in {0}: --gains {0} takes them the next time\n", file.display())
+    });
     comparison.files.extend(found);
     compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
     print_text(&format!(
-        "{}: our law and {} others; {} random flights of each\n\n{}\n* another law does better; {}; table, pictures, report in {}\n",
+        "{}: our law and {} others; {} random flights of each\n\n{}\n{}* another law does better; {}; table, pictures, report in {}\n{kept}",
         scenario.name,
         set.rivals.len(),
         arguments.flights,
         comparison.text,
+        set.left_out().map_or_else(String::new, |left_out| left_out + "\n"),
         if comparison.holds {
             "every random flight of ours settles, unclipped, within its bounds"
         } else {
@@ -113,15 +144,20 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     Ok(status(comparison.holds, None))
 }
 
-/// Refuses a directory that holds other gains than those that are to fly: they would pass for those that flew. They are not removed,
-/// because a search for them takes long.
-fn none_but(gains: Option<&Path>, directory: &Path) -> Result<(), String> {
-    let there = directory.join(RIVALS);
-    if !there.exists() || gains.is_some_and(|gains| same_file(gains, &there)) {
-        return Ok(());
+/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`: they would pass
+/// for those that flew. They are not removed, because a search for them takes long.
+fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Result<(), String> {
+    for name in [RIVALS, FOUND] {
+        let there = directory.join(name);
+        let flies = written == Some(name) || gains.is_some_and(|gains| same_file(gains, &there));
+        if there.exists() && !flies {
+            let there = there.display();
+            return Err(format!(
+                "{there}: holds other gains than are to fly: take them with --gains {there}, or choose another --out"
+            ));
+        }
     }
-    let there = there.display();
-    Err(format!("{there}: holds other gains than are to fly: take them with --gains {there}, or choose another --out"))
+    Ok(())
 }
 
 /// The name of a tuned scenario and the file it goes to. Whatever is wrong with them shows now, not after the search.

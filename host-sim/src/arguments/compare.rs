@@ -15,40 +15,68 @@ pub struct CompareArguments {
     /// Directory for table, pictures, report and gains [default: flights/<name>-compared]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// File with the rivals' gains [default: those built in for the vehicles of docs/rivals.md; others need --tune]
+    /// File with the rivals' gains [default: those built in for this vehicle, or else a search that writes gains.toml]
     #[arg(long, value_name = "FILE", conflicts_with = "tune")]
     pub gains: Option<PathBuf>,
-    /// Search the rivals' gains first, in so many generations, and write them to rivals.toml
+    /// Search the rivals' gains even if some are built in, in so many generations, and write them to rivals.toml
     #[arg(long, value_name = "GENERATIONS")]
     tune: Option<u32>,
-    /// Candidates of each generation of that search, 4 to 1000
-    #[arg(long, default_value_t = 32)]
-    population: usize,
+    /// Generations of the search where none are built in: a few, for tests
+    #[arg(long, hide = true, conflicts_with_all = ["tune", "gains"])]
+    generations: Option<u32>,
+    /// Candidates of each generation of a search, 4 to 1000 [default: 32 with --tune, else as many as tune's]
+    #[arg(long)]
+    population: Option<usize>,
     /// Seed of that search
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = Effort::default().seed)]
     seed: u64,
 }
 
 /// The most random flights that are held in memory.
 const FLIGHTS_MAX: u64 = 100_000;
+/// Candidates of each generation of a search that --tune asks for.
+const TUNE_POPULATION: usize = 32;
+
+/// Which gains of the rivals fly.
+pub enum GainsWanted {
+    /// Those of this file.
+    Of(PathBuf),
+    /// Those that are built in; where there are none, those of a search that tries so hard.
+    BuiltInOr(Effort),
+    /// Those of a search.
+    Searched(Effort),
+}
 
 impl CompareArguments {
-    /// How hard to search for the rivals' gains; none if they are known.
+    /// Which gains of the rivals are to fly.
     ///
     /// # Errors
     /// Names the argument that asks for something impossible.
-    pub fn effort(&self) -> Result<Option<Effort>, String> {
+    pub fn gains(&self) -> Result<GainsWanted, String> {
         if !(1..=FLIGHTS_MAX).contains(&self.flights) {
             return Err(format!("--flights: must be from 1 to {FLIGHTS_MAX}, found {}", self.flights));
         }
-        if self.tune == Some(0) {
-            return Err("--tune: must be at least 1, found 0".to_owned());
+        for (name, generations) in [("--tune", self.tune), ("--generations", self.generations)] {
+            if generations == Some(0) {
+                return Err(format!("{name}: must be at least 1, found 0"));
+            }
         }
-        if !(4..=1000).contains(&self.population) {
-            return Err(format!("--population: must be from 4 to 1000, found {}", self.population));
+        if let Some(population) = self.population.filter(|population| !(4..=1000).contains(population)) {
+            return Err(format!("--population: must be from 4 to 1000, found {population}"));
         }
-        let effort = |generations| Effort { generations, population: self.population, seed: self.seed };
-        Ok(self.tune.map(effort))
+        let usual = Effort::default();
+        let effort = |generations, population| Effort {
+            generations,
+            population: self.population.unwrap_or(population),
+            seed: self.seed,
+        };
+        Ok(match (&self.gains, self.tune) {
+            (Some(file), _) => GainsWanted::Of(file.clone()),
+            (None, Some(generations)) => GainsWanted::Searched(effort(generations, TUNE_POPULATION)),
+            (None, None) => {
+                GainsWanted::BuiltInOr(effort(self.generations.unwrap_or(usual.generations), usual.population))
+            }
+        })
     }
 
     /// How to find the same gains again.

@@ -72,7 +72,7 @@ pub fn page(compared: &Compared) -> Page {
             "Laws",
             vec![
                 Block::Table(laws(compared)),
-                Block::Text(LAWS.into()),
+                Block::Text(about_laws(compared)),
                 Block::Folded("The rivals' gains".into(), gains(compared)),
             ],
         ),
@@ -121,7 +121,7 @@ pub fn page(compared: &Compared) -> Page {
 const STARS: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
                      come to its reference for good, or that could not be flown to its end.";
 const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
-const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by, in a shorter search; the cost of each stands \
+const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each stands \
                     above its gains, less is better. Continuous and memoryless differ in their choice of quaternion alone.";
 
 /// What is flown in each scene.
@@ -225,6 +225,10 @@ fn laws(compared: &Compared) -> Table {
     let rows = std::iter::once((OURS, own)).chain(rivals);
     table.rows.extend(rows.map(|(law, about)| vec![Cell::text(law), Cell::text(about)]));
     table
+}
+
+fn about_laws(compared: &Compared) -> String {
+    compared.set.left_out().map_or_else(|| LAWS.to_owned(), |left_out| format!("{LAWS} {}.", titled(&left_out)))
 }
 
 /// A table for each rival.

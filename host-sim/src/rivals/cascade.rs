@@ -22,6 +22,7 @@ use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::low_pass::LowPass;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted, gyroscopic, paired};
+use super::start::Pace;
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 /// The gains' names.
@@ -48,6 +49,27 @@ pub const NAMES: [&str; 18] = [
 /// Where a search starts: PX4's defaults, in accelerations.
 pub const START: [f64; 18] =
     [0.95, 1.0, 1.8, 0.4, 0.2, 4.0, 2.0, 0.01, 12.0, 3.0, 6.5, 0.4, 18.0, 6.0, 0.05, 4.0, 1.0, 100.0];
+/// What each of them follows.
+pub const PACES: [Pace; 18] = [
+    Pace::Position(1),
+    Pace::Position(1),
+    Pace::Position(1),
+    Pace::Position(2),
+    Pace::Kept,
+    Pace::Position(1),
+    Pace::Position(2),
+    Pace::Kept,
+    Pace::Kept,
+    Pace::Kept,
+    Pace::Attitude(1),
+    Pace::Kept,
+    Pace::Attitude(1),
+    Pace::Attitude(2),
+    Pace::Kept,
+    Pace::Attitude(1),
+    Pace::Attitude(2),
+    Pace::Kept,
+];
 
 /// Greatest tilt asked for, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and `MC_YAWRATE_MAX`.
 const TILT_MAX: f64 = 0.785;

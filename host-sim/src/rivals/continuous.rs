@@ -11,7 +11,7 @@ use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::{Commanded, Rival, Seen, Wanted};
 use nalgebra::Quaternion;
 
-pub use super::quaternion_feedback::{NAMES, START};
+pub use super::quaternion_feedback::{NAMES, PACES, START};
 
 /// The law and the quaternion it was at.
 #[derive(Debug, Clone)]

@@ -12,6 +12,9 @@
 //! [hummingbird.lee]
 //! cost = 9.4                  # what the search made of it
 //! k_x_across = 5.0
+//!
+//! [hummingbird.mellinger]
+//! cost = inf                  # a search found no gains that fly every trial to its end: it is left out of comparisons
 //! ```
 //!
 //! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle that its table
@@ -26,17 +29,19 @@ use std::fs;
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Gains that were found with `host-sim compare --tune`, with the commands that find them again.
+/// Gains that were found with `host-sim compare --tune`, with the commands.
 pub const BUILT_IN: &str = include_str!("gains.toml");
 
 /// What messages call them.
 const BUILT_IN_NAME: &str = "the built-in gains";
 
 /// The gains of every rival on one vehicle.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Set {
     /// Each rival's, in the order of its names, with what the search made of them.
     pub rivals: Vec<(Kind, Vec<f64>, f64)>,
+    /// Those of which a search found no gains that fly every trial to its end.
+    pub lost: Vec<Kind>,
 }
 
 /// A file of gains that cannot be used, in one line.
@@ -66,17 +71,22 @@ impl Set {
             let there: Vec<&str> = document.iter().map(|(name, _)| name).collect();
             let said: Vec<String> = own.iter().map(|(key, values)| line(key, values)).collect();
             return Err(failed(format!(
-                "no table is of {}'s vehicle ({}); those there are of: {}; `host-sim compare FILE --tune 40` finds the rivals' gains \
-                 for it and writes them to rivals.toml, which --gains reads",
+                "no table is of {}'s vehicle ({}); those there are of: {}; `host-sim compare FILE` finds the rivals' gains for \
+                 it and writes them to gains.toml, which --gains reads",
                 scenario.name,
                 said.join(", "),
                 if there.is_empty() { "none".to_owned() } else { there.join(", ") }
             )));
         };
-        let rivals = Kind::ALL.map(|kind| {
+        let mut set = Self::default();
+        for kind in Kind::ALL {
             let of = format!("{name}.{}", kind.name());
             let table =
                 item.get(kind.name()).and_then(Item::as_table).ok_or_else(|| failed(format!("{of}: missing")))?;
+            if table.len() == 1 && table.get("cost").and_then(Item::as_float) == Some(f64::INFINITY) {
+                set.lost.push(kind);
+                continue;
+            }
             let number = |key: &str| {
                 let found = table.get(key).ok_or_else(|| failed(format!("{of}.{key}: missing")))?;
                 let number = found.as_float().or(found.as_integer().map(|whole| whole as f64));
@@ -90,9 +100,15 @@ impl Set {
             if kind.build(scenario, &gains).is_none() {
                 return Err(failed(format!("{of}: the law is undefined for these gains")));
             }
-            Ok((kind, gains, number("cost")?))
-        });
-        Ok(Self { rivals: rivals.into_iter().collect::<Result<_, _>>()? })
+            set.rivals.push((kind, gains, number("cost")?));
+        }
+        Ok(set)
+    }
+
+    /// The set that is built in for the vehicle of `scenario`, if there is one.
+    #[must_use]
+    pub fn built_in(scenario: &Scenario) -> Option<Self> {
+        Self::of(scenario, BUILT_IN, BUILT_IN_NAME).ok()
     }
 
     /// The set in `file`, or the one that is built in.
@@ -130,7 +146,19 @@ impl Set {
                 let _ = writeln!(text, "{key} = {}", rounded(*gain));
             }
         }
+        for kind in &self.lost {
+            let _ =
+                writeln!(text, "\n[{name}.{}]\ncost = inf  # no gains were found that fly every trial", kind.name());
+        }
         text
+    }
+
+    /// Which rivals are left out, and why; none if all fly.
+    #[must_use]
+    pub fn left_out(&self) -> Option<String> {
+        let names: Vec<&str> = self.lost.iter().map(|kind| kind.name()).collect();
+        let why = "a search found no gains with which every trial is flown to its end";
+        (!names.is_empty()).then(|| format!("left out: {}; {why}", names.join(", ")))
     }
 }
 

@@ -10,8 +10,12 @@ use super::nested::{self, Nested};
 use super::pilot::model;
 use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::Rival;
+use super::start::{Pace, Start};
 use crate::flight::Flight;
 use scenario::Scenario;
+
+/// About x and y, of a vehicle that the starts serve, kg m^2: the Hummingbird's.
+const START_INERTIA: f64 = 3.665e-3;
 
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,18 +91,19 @@ impl Kind {
         }
     }
 
-    /// Where a search for its gains starts.
+    /// Where a search for its gains starts on the vehicle of `scenario`.
     #[must_use]
-    pub fn start(self) -> &'static [f64] {
-        match self {
-            Self::Lee => &lee::START,
-            Self::Cascade => &cascade::START,
-            Self::Mellinger => &mellinger::START,
-            Self::Indi => &indi::START,
-            Self::Nested => &nested::START,
-            Self::Continuous => &continuous::START,
-            Self::Memoryless => &memoryless::START,
-        }
+    pub fn start(self, scenario: &Scenario) -> Start {
+        let (gains, paces): (&[f64], &[Pace]) = match self {
+            Self::Lee => (&lee::START, &lee::PACES),
+            Self::Cascade => (&cascade::START, &cascade::PACES),
+            Self::Mellinger => (&mellinger::START, &mellinger::PACES),
+            Self::Indi => (&indi::START, &indi::PACES),
+            Self::Nested => (&nested::START, &nested::PACES),
+            Self::Continuous => (&continuous::START, &continuous::PACES),
+            Self::Memoryless => (&memoryless::START, &memoryless::PACES),
+        };
+        Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA }
     }
 
     /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; none if there are too many or too few of

@@ -18,13 +18,25 @@ use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::lee::attitude_error;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted, gyroscopic, paired};
+use super::start::Pace;
 use nalgebra::Vector3;
 
 /// The gains' names.
 pub const NAMES: [&str; 8] =
     ["k_p_across", "k_v_across", "k_p_vertical", "k_v_vertical", "k_r_tilt", "k_w_tilt", "k_r_yaw", "k_w_yaw"];
-/// Where a search starts.
+/// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
+/// What each of them follows.
+pub const PACES: [Pace; 8] = [
+    Pace::Position(2),
+    Pace::Position(1),
+    Pace::Position(2),
+    Pace::Position(1),
+    Pace::Attitude(2),
+    Pace::Attitude(1),
+    Pace::Attitude(2),
+    Pace::Attitude(1),
+];
 
 /// The law.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@
 use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::{Commanded, Rival, Seen, Wanted};
 
-pub use super::quaternion_feedback::{NAMES, START};
+pub use super::quaternion_feedback::{NAMES, PACES, START};
 
 /// The law; it remembers nothing.
 #[derive(Debug, Clone)]

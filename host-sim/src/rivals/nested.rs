@@ -19,6 +19,7 @@
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};
+use super::start::Pace;
 use controller_core::attitude::AttitudeLaw;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::path_lifting::{Lift, lift, switching_scalar};
@@ -28,8 +29,21 @@ use nalgebra::{Quaternion, Vector3};
 /// The gains' names.
 pub const NAMES: [&str; 10] =
     ["k_v", "k_p", "k_i", "m_v", "m_p_share", "m_i_share", "k_theta", "m_theta", "k_omega", "m_omega"];
-/// Where a search starts: for a vehicle with rotors that lag. Table I's attitude gains bear no lag.
+/// Where a search starts, on a vehicle like the Hummingbird with rotors that lag. Table I's attitude gains bear no lag.
 pub const START: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
+/// What each of them follows.
+pub const PACES: [Pace; 10] = [
+    Pace::Position(1),
+    Pace::Position(2),
+    Pace::Position(3),
+    Pace::Kept,
+    Pace::Kept,
+    Pace::Kept,
+    Pace::Torque(2),
+    Pace::Torque(2),
+    Pace::Torque(1),
+    Pace::Torque(1),
+];
 
 /// The paper's hysteresis and memory.
 const DELTA: f32 = 0.02;

@@ -3,7 +3,11 @@
 
 use super::gains::{BUILT_IN, Set};
 use super::kind::Kind;
+use super::start::Speed;
+use super::tuning::RivalJudge;
 use crate::course::Course;
+use crate::interrupt::Interrupt;
+use crate::tune::candidate::Judging;
 use crate::tune::trials::hover;
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
@@ -73,6 +77,32 @@ fn gains_survive_being_written_and_read() {
 }
 
 #[test]
+fn a_rival_without_gains_survives_being_written_and_read() {
+    let file = hummingbird();
+    let mut set = Set::built_in(&file).unwrap();
+    set.rivals.retain(|(kind, ..)| !matches!(kind, Kind::Lee | Kind::Indi));
+    set.lost = vec![Kind::Lee, Kind::Indi];
+    let again = Set::of(&file, &set.written(&file, "a test"), "written").unwrap();
+    assert_eq!((again.rivals.len(), &again.lost), (Kind::ALL.len() - 2, &set.lost));
+    assert!(again.left_out().unwrap().starts_with("left out: lee, indi; "));
+    assert_eq!(Set::built_in(&file).unwrap().left_out(), None);
+}
+
+#[test]
+fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
+    let mut file = hummingbird();
+    file.rotor_lag = 0.05;
+    let calm = Interrupt::default();
+    for kind in [Kind::Lee, Kind::Indi, Kind::Nested] {
+        let own = RivalJudge::new(&file, kind, &kind.start(&file).at(Speed::OWN));
+        let best = RivalJudge::at_best_start(&file, kind, &calm);
+        let [own, best] = [own, best].map(|judge| judge.judge(&judge.start()).cost);
+        println!("{}: {own} at START, {best} where the search starts", kind.name());
+        assert!(best < own, "{}: {own} {best}", kind.name());
+    }
+}
+
+#[test]
 fn gains_that_cannot_be_used_are_refused_by_name() {
     let file = hummingbird();
     let refused = |from: &str, to: &str| {
@@ -83,7 +113,7 @@ fn gains_that_cannot_be_used_are_refused_by_name() {
     for (from, to) in [("mass = 0.5", "mass = 0.6"), ("lag = 0.005", "lag = 0.006"), ("delay = 0.0", "delay = 0.01")] {
         let message = refused(from, to);
         assert!(message.starts_with("mine.toml: no table is of hummingbird's vehicle (mass = 0.5, "), "{message}");
-        assert!(message.contains("--tune 40"), "{message}");
+        assert!(message.contains("`host-sim compare FILE` finds"), "{message}");
     }
     assert!(refused("[hummingbird.lee]", "[hummingbird.lea]").contains("hummingbird.lee: missing"));
     assert!(refused("k_w_yaw = ", "k_w_yaw = -").contains("hummingbird.lee.k_w_yaw: must be a finite number"));

@@ -6,6 +6,7 @@
 
 use super::gains::Set;
 use super::kind::Kind;
+use super::start::Speed;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::tune::candidate::{Judging, Verdict};
@@ -14,7 +15,12 @@ use crate::tune::evolution::Evolution;
 use crate::tune::frontier::Frontier;
 use crate::tune::space::Point;
 use crate::tune::trials::{MODELS, Shown, show};
+use rayon::prelude::*;
 use scenario::Scenario;
+use std::time::{Duration, Instant};
+
+/// The rivals that have a search of their own.
+const SEARCHED: [Kind; 6] = [Kind::Lee, Kind::Cascade, Kind::Mellinger, Kind::Indi, Kind::Nested, Kind::Memoryless];
 
 /// How long a recovery may take, s: as in `host-sim tune`.
 const RECOVERY: f64 = 20.0;
@@ -31,6 +37,24 @@ impl<'a> RivalJudge<'a> {
     #[must_use]
     pub fn new(scenario: &'a Scenario, kind: Kind, start: &[f64]) -> Self {
         Self { scenario, kind, start: start.to_vec() }
+    }
+
+    /// Likewise; the search begins at START, made as fast as flies best on this vehicle: [`super::start`].
+    #[must_use]
+    pub fn at_best_start(scenario: &'a Scenario, kind: Kind, interrupt: &Interrupt) -> Self {
+        let start = kind.start(scenario);
+        let judged = |speed: Speed| {
+            let judge = Self::new(scenario, kind, &start.at(speed));
+            let verdict = interrupt.signal().map_or_else(|| judge.judge(&judge.start()), |_| Verdict::missing());
+            (speed, [verdict.violation, verdict.cost])
+        };
+        let best = |speeds: Vec<Speed>| {
+            let all: Vec<_> = speeds.into_par_iter().map(judged).collect();
+            let better = |a: (Speed, [f64; 2]), b: (Speed, [f64; 2])| if b.1 < a.1 { b } else { a };
+            all.into_iter().reduce(better).map_or(Speed::OWN, |(speed, _)| speed)
+        };
+        let speed = best(best(start.attitudes()).positions());
+        Self { scenario, kind, start: start.at(speed) }
     }
 
     /// The gains of `point`.
@@ -65,36 +89,70 @@ impl Judging for RivalJudge<'_> {
     }
 }
 
-/// Searches gains of every rival for the vehicle of `scenario`. The continuous law takes the memoryless one's, so that the two differ in
-/// nothing but their choice of quaternion.
+/// Searches gains of every rival for the vehicle of `scenario`, with the same `effort` for each. The continuous law takes the memoryless
+/// one's, so that the two differ in nothing but their choice of quaternion. A rival of which no gains fly all trials to their end is left
+/// out of the set, and named there.
 ///
 /// # Errors
-/// Names the rival of which no gains fly all trials to their end, or the signal that came.
+/// Names the signal that came.
 pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
-    let search = |kind: Kind| {
-        let judge = RivalJudge::new(scenario, kind, kind.start());
-        let mut frontier = Frontier::default();
-        let mut progress = Progress::new(kind.name(), u64::from(effort.generations));
-        let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
-        for generation in 0..effort.generations {
-            if let Some(signal) = interrupt.signal() {
-                return Err(format!("interrupted by signal {signal}; nothing is written"));
-            }
-            evolution.generation(&judge, &mut frontier, interrupt);
-            progress.show(u64::from(generation));
-        }
-        let (point, verdict) =
-            evolution.best().ok_or_else(|| format!("{}: no gains fly every trial to its end", kind.name()))?;
-        Ok((kind, RivalJudge::gains(&point), verdict.cost))
+    let mut progress = Progress::new("searching gains", SEARCHED.len() as u64 * rounds(&effort));
+    let mut done = 0;
+    let mut next = |kind: Kind| {
+        progress.about(kind.name());
+        progress.show(done);
+        done += 1;
+        interrupt.signal().map_or(Ok(()), |signal| Err(format!("interrupted by signal {signal}; nothing is written")))
     };
-    let mut rivals = Vec::new();
-    for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Continuous) {
-        rivals.push(search(kind)?);
+    let mut search = |kind: Kind| {
+        next(kind)?;
+        let judge = RivalJudge::at_best_start(scenario, kind, interrupt);
+        next(kind)?;
+        let mut frontier = Frontier::default();
+        let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
+        for _ in 0..effort.generations {
+            next(kind)?;
+            evolution.generation(&judge, &mut frontier, interrupt);
+        }
+        Ok::<_, String>(evolution.best().map(|(point, verdict)| (RivalJudge::gains(&point), verdict.cost)))
+    };
+    let mut set = Set::default();
+    let mut keep = |kind: Kind, found: Option<(Vec<f64>, f64)>| match found {
+        Some((gains, cost)) => set.rivals.push((kind, gains, cost)),
+        None => set.lost.push(kind),
+    };
+    for kind in SEARCHED {
+        let found = search(kind)?;
+        if kind == Kind::Memoryless {
+            let of_continuous = |(gains, _): &(Vec<f64>, f64)| {
+                let judge = RivalJudge::new(scenario, Kind::Continuous, gains);
+                let verdict = judge.judge(&judge.start());
+                verdict.accepted().then(|| (gains.clone(), verdict.cost))
+            };
+            keep(Kind::Continuous, found.as_ref().and_then(of_continuous));
+        }
+        keep(kind, found);
     }
-    if let Some((_, gains, _)) = rivals.iter().find(|(kind, ..)| *kind == Kind::Memoryless).cloned() {
-        let judge = RivalJudge::new(scenario, Kind::Continuous, &gains);
-        let cost = judge.judge(&judge.start()).cost;
-        rivals.insert(rivals.len() - 1, (Kind::Continuous, gains, cost));
-    }
-    Ok(Set { rivals })
+    // An interrupt in the last generation leaves it half judged.
+    next(Kind::Memoryless)?;
+    Ok(set)
+}
+
+/// About how long [`tune`] takes here, from how long one candidate of the first rival does.
+#[must_use]
+pub fn expected(scenario: &Scenario, effort: &Effort) -> Duration {
+    let (began, threads) = (Instant::now(), rayon::current_num_threads());
+    let [kind, ..] = SEARCHED;
+    let start = kind.start(scenario);
+    let judge = RivalJudge::new(scenario, kind, &start.at(Speed::OWN));
+    judge.judge(&judge.start());
+    let one = began.elapsed();
+    let starts = start.attitudes().len() + Speed::OWN.positions().len();
+    let of_each = starts + (1 + effort.generations as usize) * effort.population;
+    one.mul_f64((SEARCHED.len() * of_each) as f64 / threads as f64)
+}
+
+/// What is judged of each rival, one after the other: starts, the first population, and the generations.
+fn rounds(effort: &Effort) -> u64 {
+    2 + u64::from(effort.generations)
 }

@@ -10,3 +10,10 @@ pub struct Effort {
     /// Seed of the search.
     pub seed: u64,
 }
+
+impl Default for Effort {
+    /// What `host-sim tune` spends on our law and `host-sim compare` on each rival, unless they are asked for another effort.
+    fn default() -> Self {
+        Self { generations: 150, population: 48, seed: 1 }
+    }
+}
