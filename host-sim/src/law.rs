@@ -12,7 +12,6 @@
 //! only. A line that cannot be used is answered by `error: …` on its turn and changes nothing.
 
 use crate::flight;
-use controller_core::certificate::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::law::Law;

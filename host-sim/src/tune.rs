@@ -1,4 +1,4 @@
-//! The `tune` command: gains that certify and make the most of a vehicle.
+//! The `tune` command: constants that certify and make the most of a vehicle.
 //!
 //! What is asked, in this order:
 //!
@@ -8,13 +8,13 @@
 //! 2. the least cost: what a pilot feels of the trials in [`trials`], averaged over the vehicle as it may really be.
 //!
 //! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`] searches;
-//! [`frontier`] keeps what was learnt about the trade between height lost and gusts. Seeds are fixed: the same file gives the
-//! same constants.
+//! [`output`] writes what was found. A search starts from the file's constants and never ends with worse ones. Seeds are fixed: the same
+//! file gives the same constants.
 
 pub mod candidate;
+pub mod chosen;
 pub mod effort;
 pub mod evolution;
-pub mod frontier;
 pub mod output;
 pub mod requirements;
 pub mod space;
@@ -22,6 +22,7 @@ pub mod trials;
 
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
+use crate::table::{aligned, percent, short};
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
@@ -29,24 +30,53 @@ use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use effort::Effort;
 use evolution::Evolution;
-use frontier::Frontier;
 use requirements::Requirements;
 use scenario::Scenario;
+use trials::{BEYOND, FIGURES};
 
 /// What the search found.
 #[derive(Clone)]
 pub struct Tuned {
-    /// The scenario with the gains found.
+    /// The scenario with the constants found.
     pub scenario: Scenario,
     /// What it showed.
     pub verdict: Verdict,
-    /// The trade between height lost and gusts.
-    pub frontier: Frontier,
+    /// What the file's own constants showed.
+    pub before: Verdict,
     /// Candidates judged.
     pub judged: u64,
 }
 
-/// Searches gains for `scenario`; an interrupt ends the search with the best found so far.
+impl Tuned {
+    /// Whether something better was found than what the search started from.
+    #[must_use]
+    pub fn improved(&self) -> bool {
+        self.verdict != self.before
+    }
+
+    /// Every figure before and after, as a table for a terminal.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let values = |verdict: &Verdict| {
+            let shown = &verdict.shown;
+            let beyond = shown.beyond.map_or([f64::INFINITY; 5], |beyond| beyond.values());
+            [&shown.values()[..], &beyond, &[verdict.cost]].concat()
+        };
+        let names = FIGURES.iter().chain(&BEYOND).map(|(name, unit, ..)| (*name, *unit));
+        let number = |value: f64| if value.is_finite() { short(value) } else { "-".to_owned() };
+        let mut rows = vec![["", "", "before", "after", "change"].map(str::to_owned).to_vec()];
+        for (((name, unit), before), after) in
+            names.chain([("cost", "")]).zip(values(&self.before)).zip(values(&self.verdict))
+        {
+            let change = after / before - 1.0;
+            let change = if change.abs() < 5e-4 { "0 %".to_owned() } else { percent(change) };
+            rows.push(vec![name.to_owned(), unit.to_owned(), number(before), number(after), change]);
+        }
+        aligned(&rows)
+    }
+}
+
+/// Searches constants for `scenario`; an interrupt ends the search with the best found so far.
 ///
 /// # Errors
 /// If no candidate met the requirements: the verdict of the one that came closest.
@@ -57,20 +87,20 @@ pub fn tune(
     interrupt: &Interrupt,
 ) -> Result<Tuned, Box<Verdict>> {
     let judge = Judge::new(scenario, requirements);
-    let mut frontier = Frontier::default();
-    let mut progress = Progress::new("tuning", u64::from(effort.generations));
-    let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
+    let mut progress = Progress::new("tuning", u64::from(effort.generations) + 1);
+    let mut evolution = Evolution::new(&judge, &effort, interrupt);
     let wanted = |generation: &u32| *generation < effort.generations && interrupt.signal().is_none();
     for generation in (0..).take_while(wanted) {
-        evolution.generation(&judge, &mut frontier, interrupt);
-        progress.show(u64::from(generation));
+        progress.show(u64::from(generation) + 1);
+        evolution.generation(&judge, interrupt);
     }
     drop(progress);
     let Some((point, verdict)) = evolution.best() else {
         return Err(Box::new(evolution.closest()));
     };
+    let (before, judged) = (evolution.start().clone(), evolution.judged());
     match judge.scenario(&point) {
-        Some(scenario) => Ok(Tuned { scenario, verdict, frontier, judged: evolution.judged() }),
+        Some(scenario) => Ok(Tuned { scenario, verdict, before, judged }),
         None => Err(Box::new(verdict)),
     }
 }

@@ -12,7 +12,6 @@ use crate::progress::Progress;
 use crate::tune::candidate::{Judging, Verdict};
 use crate::tune::effort::Effort;
 use crate::tune::evolution::Evolution;
-use crate::tune::frontier::Frontier;
 use crate::tune::space::Point;
 use crate::tune::trials::{MODELS, Shown, show};
 use rayon::prelude::*;
@@ -108,11 +107,10 @@ pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Resul
         next(kind)?;
         let judge = RivalJudge::at_best_start(scenario, kind, interrupt);
         next(kind)?;
-        let mut frontier = Frontier::default();
-        let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
+        let mut evolution = Evolution::new(&judge, &effort, interrupt);
         for _ in 0..effort.generations {
             next(kind)?;
-            evolution.generation(&judge, &mut frontier, interrupt);
+            evolution.generation(&judge, interrupt);
         }
         Ok::<_, String>(evolution.best().map(|(point, verdict)| (RivalJudge::gains(&point), verdict.cost)))
     };

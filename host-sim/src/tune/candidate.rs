@@ -88,6 +88,7 @@ const NOTHING: Shown = Shown {
     step: f64::INFINITY,
     activity: f64::INFINITY,
     noise: f64::INFINITY,
+    beyond: None,
     clipped: 0,
 };
 
@@ -103,7 +104,7 @@ impl Judge {
     #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
         let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
-        let space = Space::new(&scenario.configuration, floor);
+        let space = Space::new(scenario, floor);
         Self { scenario: scenario.clone(), space, requirements }
     }
 

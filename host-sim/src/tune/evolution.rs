@@ -7,7 +7,6 @@
 
 use super::candidate::{Judging, Verdict};
 use super::effort::Effort;
-use super::frontier::Frontier;
 use super::space::Point;
 use crate::interrupt::Interrupt;
 use rand::rngs::ChaCha8Rng;
@@ -27,37 +26,38 @@ fn better(a: &Verdict, b: &Verdict) -> bool {
 /// The population.
 pub struct Evolution {
     members: Vec<(Point, Verdict)>,
+    start: Verdict,
     random: ChaCha8Rng,
     judged: u64,
 }
 
 impl Evolution {
-    /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
+    /// The first population, scattered around where the search starts, which is judged first and belongs to it.
     #[must_use]
-    pub fn new(judge: &impl Judging, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
+    pub fn new(judge: &impl Judging, effort: &Effort, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
-        let mut points = vec![start.clone()];
-        points.resize_with(effort.population.max(4), || {
-            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
-        });
-        let (members, judged) = judge_all(judge, points, interrupt);
-        for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
-            frontier.offer(point, verdict);
-        }
-        Self { members, random, judged }
+        let own = judge.judge(&start);
+        let scattered = (1..effort.population.max(4))
+            .map(|_| start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+        let (others, judged) = judge_all(judge, scattered.collect(), interrupt);
+        let members = [(start, own.clone())].into_iter().chain(others).collect();
+        Self { members, start: own, random, judged: 1 + judged }
     }
 
-    /// One generation; accepted candidates go into `frontier` as well.
-    pub fn generation(&mut self, judge: &impl Judging, frontier: &mut Frontier, interrupt: &Interrupt) {
+    /// What the start showed.
+    #[must_use]
+    pub fn start(&self) -> &Verdict {
+        &self.start
+    }
+
+    /// One generation.
+    pub fn generation(&mut self, judge: &impl Judging, interrupt: &Interrupt) {
         let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
         let (trials, judged) = judge_all(judge, trials, interrupt);
         self.judged += judged;
         for ((point, verdict), member) in trials.into_iter().zip(&mut self.members) {
-            if verdict.accepted() {
-                frontier.offer(&point, &verdict);
-            }
             if better(&verdict, &member.1) {
                 *member = (point, verdict);
             }
