@@ -130,22 +130,22 @@ pub struct TuneArguments {
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Least margin of every inequality, as a fraction
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = Requirements::default().margin)]
     margin: f64,
     /// Least gain margin of every sampled loop, as a factor, 1.5 or more: at the actuators, and of k_p and k_v together
-    #[arg(long, default_value_t = 2.0)]
+    #[arg(long, default_value_t = Requirements::default().loops.gain)]
     gain_margin: f64,
     /// Least delay margin of every sampled loop, ms, 2 or more
-    #[arg(long, default_value_t = 3.0)]
+    #[arg(long, default_value_t = 1e3 * Requirements::default().loops.delay)]
     delay_margin: f64,
     /// Greatest position error of the file's own flight in its last quarter, m
-    #[arg(long, default_value_t = 0.02)]
+    #[arg(long, default_value_t = Requirements::default().position_error)]
     position_error: f64,
     /// Greatest norm of its modified Rodrigues parameters there
-    #[arg(long, default_value_t = 0.01)]
+    #[arg(long, default_value_t = Requirements::default().mrp_error)]
     mrp_error: f64,
     /// How long a recovery from upside down may take, s, 2 or more; its last quarter must be still
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, default_value_t = Requirements::default().recovery)]
     recovery: f64,
     /// Keep the paper's thrust T = m |u|: no thrust projection
     #[arg(long)]
@@ -166,7 +166,7 @@ pub struct TuneArguments {
 
 const TUNE_HELP: &str = "\
 A search starts from the file's constants, or from those that follow from the vehicle's numbers, and never ends with worse ones: the start is
-judged first. Under the extended law twelve constants are searched and the others follow from them, unless the file has them;
+judged first. Under the extended law fourteen constants are searched and the others follow from them, unless the file has them;
 only what does not follow from the vehicle's numbers is written. Under the paper's law nine gains and the thrust floor are searched.
 
 What is required of every candidate, all of it:

@@ -22,7 +22,7 @@ pub mod trials;
 
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use crate::table::{aligned, percent, short};
+use crate::table::{aligned, short};
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
@@ -57,21 +57,20 @@ impl Tuned {
     /// Every figure before and after, as a table for a terminal.
     #[must_use]
     pub fn table(&self) -> String {
-        let values = |verdict: &Verdict| {
-            let shown = &verdict.shown;
-            let beyond = shown.beyond.map_or([f64::INFINITY; 5], |beyond| beyond.values());
-            [&shown.values()[..], &beyond, &[verdict.cost]].concat()
+        let own = |verdict: &Verdict| {
+            let beyond = verdict.shown.beyond.map_or([f64::INFINITY; BEYOND.len()], |beyond| beyond.values());
+            [&verdict.shown.values()[..], &beyond].concat()
         };
-        let names = FIGURES.iter().chain(&BEYOND).map(|(name, unit, ..)| (*name, *unit));
-        let number = |value: f64| if value.is_finite() { short(value) } else { "-".to_owned() };
-        let mut rows = vec![["", "", "before", "after", "change"].map(str::to_owned).to_vec()];
-        for (((name, unit), before), after) in
-            names.chain([("cost", "")]).zip(values(&self.before)).zip(values(&self.verdict))
-        {
-            let change = after / before - 1.0;
-            let change = if change.abs() < 5e-4 { "0 %".to_owned() } else { percent(change) };
-            rows.push(vec![name.to_owned(), unit.to_owned(), number(before), number(after), change]);
+        let number = |value: f64| if value.is_finite() { short((1e4 * value).round() / 1e4) } else { "-".to_owned() };
+        let pairs = [own(&self.before), own(&self.verdict), self.before.mean.to_vec(), self.verdict.mean.to_vec()];
+        let head = ["", "", "file's model: before", "after", "mean of four models: before", "after"];
+        let mut rows = vec![head.map(str::to_owned).to_vec()];
+        for (place, (name, unit, ..)) in FIGURES.iter().chain(&BEYOND).enumerate() {
+            let values = pairs.iter().map(|values| values.get(place).map_or(String::new(), |value| number(*value)));
+            rows.push([*name, *unit].map(str::to_owned).into_iter().chain(values).collect());
         }
+        let cost = ["cost", "", "", "", &number(self.before.cost), &number(self.verdict.cost)];
+        rows.push(cost.map(str::to_owned).to_vec());
         aligned(&rows)
     }
 }

@@ -77,7 +77,7 @@ constants! {
         /// F_h, m/s^2: force across in which the heading is proven to arrive.
         estimates.force_heading: Range::LEVEL, FIXED;
         /// D_z+, m/s^2: greatest estimate upwards.
-        estimates.force_up: Range::LEVEL, FIXED;
+        estimates.force_up: Range::LEVEL, SEARCHED;
         /// D_z-, m/s^2: greatest estimate downwards.
         estimates.force_down: Range::LEVEL, FIXED;
         /// L across, 1/s: how fast the force is followed.
@@ -87,7 +87,7 @@ constants! {
         /// kappa, 1/s: drag across per velocity and mass, known beforehand.
         estimates.drag_across: Range::LEVEL, FIXED;
         /// D_t, N m: greatest torque bias about x and y.
-        estimates.torque_tilt: Range::LEVEL, FIXED;
+        estimates.torque_tilt: Range::LEVEL, SEARCHED;
         /// D_y, N m: greatest torque bias about z.
         estimates.torque_yaw: Range::LEVEL, FIXED;
         /// L_tau, 1/s: how fast the torque bias is followed.

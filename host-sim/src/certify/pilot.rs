@@ -24,14 +24,8 @@ pub fn terms(configuration: &Configuration, law: &ExtendedLaw) -> String {
         row("force held, N", forces.map(|force| mass * force)),
     ];
     let degrees = |angle: f32| short(f64::from(angle).to_degrees().round());
-    let wind = if p.drag_across > 0.0 {
-        format!("; a wind of {} m/s is held, going by [drag]", short((forces[0] / f64::from(p.drag_across)).round()))
-    } else {
-        String::new()
-    };
     format!(
-        "{}tilt up to {} degrees{wind}\nthe thrust turns with up to {} degrees/s and {} degrees/s^2, of which {} are always there; the heading \
-         with up to {} and {}\n{}",
+        "{}tilt up to {} degrees; the thrust turns with up to {} degrees/s and {} degrees/s^2, {} of them always;\nthe heading with up to {} and {}\n{}",
         aligned(&rows),
         degrees(p.tilt_max),
         degrees(p.turn_rate),

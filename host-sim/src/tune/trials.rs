@@ -156,7 +156,7 @@ impl Beyond {
 impl Shown {
     /// The values of [`FIGURES`].
     #[must_use]
-    pub fn values(&self) -> [f64; 7] {
+    pub const fn values(&self) -> [f64; 7] {
         [self.height_lost, self.recovered, self.turned, self.gust, self.step, self.noise, self.activity]
     }
 
