@@ -98,7 +98,7 @@ fn the_status_says_what_became_of_ours() {
     assert!(stdout(&lost).contains("NOT every random flight of ours settles"), "{}", stdout(&lost));
     assert_eq!((status(&lost), files(&directory.join("lost")).len()), (1, COMPARED.len()));
 
-    let hungry = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "m_across =", "m_across = 9.0");
+    let hungry = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "snap =", "snap = 60000.0");
     fs::write(directory.join("hungry.toml"), hungry).unwrap();
     let refused = host_sim(&directory, &["compare", "hungry.toml", "--flights", "2", "--out", "out"]);
     let message = stderr(&refused);
@@ -207,7 +207,7 @@ fn a_search_does_not_begin_where_its_end_is_known() {
     let directory = directory("in vain", GENTLE);
     heavier(&directory);
     let text = fs::read_to_string(directory.join("heavier.toml")).unwrap();
-    fs::write(directory.join("hungry.toml"), with(&text, "m_across =", "m_across = 9.0")).unwrap();
+    fs::write(directory.join("hungry.toml"), with(&text, "snap =", "snap = 60000.0")).unwrap();
     let refused = host_sim(&directory, &["compare", "hungry.toml", "--out", "out"]);
     let message = stderr(&refused);
     assert!(status(&refused) == 1 && message.contains("not certified (") && message.lines().count() == 1, "{message}");

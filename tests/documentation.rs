@@ -1,8 +1,11 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
-//! Markdown pages link to, the diagram of the flight modes, and the scenario examples. The front page stays short.
+//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, and the scenario examples.
+//! The front page stays short.
 
+use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::flight::rules::TABLE;
 use scenario::Scenario;
+use scenario::verdict::Verdict;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -116,6 +119,36 @@ fn the_diagrams_of_the_flight_modes_have_the_arrows_of_the_rules() {
 fn the_front_page_stays_below_1400_words() {
     let words = read("README.md").split_whitespace().count();
     assert!(words < 1400, "{words}");
+}
+
+/// A number as short as it can be read.
+fn short(value: f32) -> String {
+    format!("{value:?}").trim_end_matches(".0").to_owned()
+}
+
+#[test]
+fn the_constants_of_the_extended_law_are_listed_as_declared_each_with_its_default() {
+    let page = read("docs/scenario-file.md");
+    let listed = page.lines().filter(|line| line.starts_with("| `gains.") || line.starts_with("| `estimates."));
+    // All but the last column, which says in words what the formula is.
+    let listed = listed.map(|line| line.trim_end_matches(" |").rsplit_once(" | ").unwrap());
+    let (listed, defaults): (Vec<&str>, Vec<&str>) = listed.unzip();
+    let declared = ExtendedParameters::TABLE.iter().map(|constant| {
+        let (about, range) = (constant.about.trim().trim_end_matches('.'), constant.range);
+        format!("| `{}` | {about} | {} to {}", constant.path, short(range.least), short(range.greatest))
+    });
+    assert_eq!(listed, declared.collect::<Vec<_>>());
+    assert!(defaults.iter().all(|default| !default.is_empty()));
+}
+
+#[test]
+fn the_front_pages_scenario_is_enough_to_fly() {
+    let page = read("README.md");
+    let (_, file) = page.split_once("```toml\n").unwrap();
+    let (file, _) = file.split_once("```").unwrap();
+    assert!(file.lines().count() <= 12);
+    let scenario = Scenario::parse(file, "README.md").unwrap();
+    assert!(Verdict::of(&scenario).unwrap().refusal().is_none());
 }
 
 #[test]

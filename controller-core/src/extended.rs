@@ -46,4 +46,4 @@ pub mod turning;
 #[cfg(test)]
 pub(crate) mod example;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

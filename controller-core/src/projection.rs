@@ -11,7 +11,7 @@
 //!   not negative, since f <= u_z <= |u| and 2 |u| c < 2 f.
 //!
 //! So |d| <= |d_0| at every attitude, and T is Lipschitz in the state: the perturbation stays square-integrable, with the same
-//! bound. (The theorem's own constants are not those in print: section 13 of `docs/extended-law.md`.) T <= m |u| as well, so
+//! bound. (The theorem's own constants are not those in print: section 12 of `docs/extended-law.md`.) T <= m |u| as well, so
 //! the thrust interval becomes [floor, T_max].
 //!
 //! The tick has the attitude error at hand: u = |u| R_d e3, so u . R e3 = |u| (R~ e3) . e3 with R~ = R_d^T R, and for a

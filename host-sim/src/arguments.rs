@@ -189,9 +189,10 @@ const COMPARE_HELP: &str = "\
 Each figure is better the less it is; rows that begin with a star are those where another law does better than ours. docs/rivals.md says
 what the laws are and what is fair about it. Random flights are those of `campaign --law NAME`, the same for every law.
 
-The rivals' gains are built in for the Hummingbird, the study vehicle and the paper's. For any other vehicle they are searched first, each
-rival's as hard as `tune` searches ours by default. That takes minutes; progress shows on stderr. gains.toml, beside compare.csv, has what was
-found, for --gains. A rival of which no gains fly every trial to its end is left out, and named.
+The rivals' gains are built in for the Hummingbird, the study vehicle and the paper's. For any other vehicle they are
+searched first, each rival's as hard as `tune` searches ours by default. That takes minutes; progress shows on stderr.
+gains.toml, beside compare.csv, has what was found, for --gains. A rival of which no gains fly every trial to its end is
+left out, and named.
 
 Exit status 0: every random flight of ours settles, and no command of it is cut or leaves its certified bounds; 1: one does not, or the
 scenario is not certified.";

@@ -99,8 +99,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
             }
             if name == FOUND {
                 complain(format_args!(
-                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard as \
-                     `tune` searches ours, which may take {}",
+                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard \
+                     as `tune` searches ours, which may take {}",
                     scenario.name,
                     spoken(tuning::expected(&scenario, &effort).as_secs_f64())
                 ));
@@ -128,7 +128,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     comparison.files.extend(found);
     compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
     print_text(&format!(
-        "{}: our law and {} others; {} random flights of each\n\n{}\n{}* another law does better; {}; table, pictures, report in {}\n{kept}",
+        "{}: our law and {} others; {} random flights of each\n\n{}\n{}* another law does better; {}; \
+         table, pictures, report in {}\n{kept}",
         scenario.name,
         set.rivals.len(),
         arguments.flights,
@@ -144,8 +145,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     Ok(status(comparison.holds, None))
 }
 
-/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`: they would pass
-/// for those that flew. They are not removed, because a search for them takes long.
+/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`: they
+/// would pass for those that flew. They are not removed, because a search for them takes long.
 fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Result<(), String> {
     for name in [RIVALS, FOUND] {
         let there = directory.join(name);

@@ -134,7 +134,13 @@ pub fn tune(
     })?;
     let text = output::rewritten(&scenario.text, &tuned).map_err(refused)?;
     let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
-    Ok(Tuned { scenario, shown: tuned.verdict.shown, cost: tuned.verdict.cost, cost_before: tuned.before.cost, judged: tuned.judged })
+    Ok(Tuned {
+        scenario,
+        shown: tuned.verdict.shown,
+        cost: tuned.verdict.cost,
+        cost_before: tuned.before.cost,
+        judged: tuned.judged,
+    })
 }
 
 fn check(holds: bool, field: &str, allowed: &str, found: impl std::fmt::Display) -> PyResult<()> {

@@ -107,12 +107,18 @@ pub fn identity(scenario: &Scenario) -> u32 {
 mod tests {
     use super::*;
     use crate::STUDY;
-    use controller_core::tuning::Percent;
+    use controller_core::certificate::Certificate;
+    use controller_core::tuning::{Figures, Percent, Tuning};
+
+    /// The study with another k_omega_t: its own gains follow its rotors, however late they are.
+    fn damped(k_omega_t: f64) -> Scenario {
+        Scenario::parse(&STUDY.replace("[gains]", &format!("[gains]\nk_omega_t = {k_omega_t}")), "study").unwrap()
+    }
 
     #[test]
     fn the_bits_say_what_the_analysis_says_of_each_choice() {
-        // So slow that some choices of factors have no margin.
-        let study = Scenario::parse(&STUDY.replace("lag = 0.030 ", "lag = 0.045 "), "study").unwrap();
+        // Damped so hard that some choices of factors have no margin.
+        let study = damped(0.35);
         let judged = judged(&study);
         let held = |factors: &Factors| {
             let configuration = &study.configuration;
@@ -141,6 +147,40 @@ mod tests {
         assert!(good > 0 && bad > 0);
     }
 
+    #[test]
+    fn every_factor_alone_certifies_and_keeps_its_margins() {
+        for text in [STUDY, include_str!("../../vehicles/hummingbird.toml")] {
+            let scenario = Scenario::parse(text, "a test").unwrap();
+            let (configuration, loops) = (&scenario.configuration, judged(&scenario));
+            for (percent, gain) in Percent::all().flat_map(|percent| (0..6).map(move |gain| (percent, gain))) {
+                let mut factors = Factors::BUILT;
+                let Factors { attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical } =
+                    &mut factors;
+                let each = [attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical];
+                *each.into_iter().nth(gain).unwrap() = percent;
+                let tuning = Tuning { figures: Figures::of(configuration), factors };
+                let certificate = Certificate::new(&tuning.apply(configuration).unwrap()).unwrap();
+                assert!(certificate.holds() && loops.hold(&factors), "{}: {factors:?}", scenario.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_attitudes_factor_multiplies_the_tilts_stiffness() {
+        let study = Scenario::parse(STUDY, "a test").unwrap();
+        let stiffness = |attitude| {
+            let factors = Factors { attitude, ..Factors::BUILT };
+            let law = factors.law(study.configuration.law(), study.configuration.vehicle()).unwrap();
+            let LawParameters::Extended(law) = law else { panic!() };
+            let p = &law.parameters;
+            p.w / 4.0 + p.k_t / (2.0 * p.eta_t.hypot(1.0))
+        };
+        for percent in Percent::all() {
+            let factor = stiffness(percent) / stiffness(Percent::FULL);
+            assert!((factor - percent.percent() / 100.0).abs() < 1e-6, "{factor}");
+        }
+    }
+
     /// What the firmware's build would be told of the study, changed.
     fn checked(line: &str, other: &str) -> Result<Option<String>, String> {
         assert!(STUDY.contains(line), "{line}");
@@ -163,11 +203,10 @@ mod tests {
 
     #[test]
     fn what_flies_on_a_desk_and_not_with_a_boards_late_rates_is_not_built() {
-        let lags = (30..90).map(|lag| format!("lag = 0.0{lag} "));
-        let late = lags.filter(|lag| {
-            let text = STUDY.replace("lag = 0.030 ", lag);
-            let verdict = Verdict::of(&Scenario::parse(&text, "a test").unwrap()).unwrap();
-            verdict.lacking().is_none() && checked("lag = 0.030 ", lag).is_err_and(|error| error.contains("ms late"))
+        let late = (10..60).filter(|damping| {
+            let scenario = damped(f64::from(*damping) * 0.01);
+            let verdict = Verdict::of(&scenario).unwrap();
+            verdict.lacking().is_none() && check(&scenario, "a test").is_err_and(|error| error.contains("ms late"))
         });
         assert!(late.count() > 0);
     }
@@ -177,9 +216,11 @@ mod tests {
         let identity_of = |text: &str| identity(&Scenario::parse(text, "a test").unwrap());
         let study = identity_of(STUDY);
         assert_eq!(study, identity_of(&STUDY.replace("name = \"study\"", "name = \"mine\"")));
-        for (line, other) in
-            [("lag = 0.030 ", "lag = 0.031 "), ("mass = 0.460 ", "mass = 0.461 "), ("k_t = 0.25", "k_t = 0.26")]
-        {
+        for (line, other) in [
+            ("lag = 0.030 ", "lag = 0.031 "),
+            ("mass = 0.460 ", "mass = 0.461 "),
+            ("yaw_acceleration = 5.1", "yaw_acceleration = 5.0"),
+        ] {
             assert_ne!(study, identity_of(&STUDY.replace(line, other)), "{line}");
         }
         assert!(study < 1 << 24);

@@ -20,7 +20,7 @@ use controller_core::reference::ReferenceBounds;
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
 const DEFAULT_SPEED: f32 = 5.0;
 
-/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` the least where the section is left out.
+/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` says what they are where the section is left out.
 ///
 /// # Errors
 /// Names the bound that is missing, negative, or below what the reference takes.
@@ -30,16 +30,7 @@ pub fn read_bounds(
     default: impl Fn() -> ReferenceBounds,
 ) -> Result<ReferenceBounds, FieldError> {
     let Some(section) = root.optional_section("reference_bounds")? else {
-        let default = default();
-        return Ok(ReferenceBounds {
-            horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED),
-            horizontal_acceleration: own.horizontal_acceleration.max(default.horizontal_acceleration),
-            vertical_acceleration: own.vertical_acceleration.max(default.vertical_acceleration),
-            jerk: own.jerk.max(default.jerk),
-            snap: own.snap.max(default.snap),
-            heading_rate: own.heading_rate.max(default.heading_rate),
-            heading_second_derivative: own.heading_second_derivative.max(default.heading_second_derivative),
-        });
+        return Ok(default());
     };
     let fields = [
         ("horizontal_speed", own.horizontal_speed),
@@ -81,6 +72,20 @@ pub fn read_bounds(
         heading_second_derivative,
     };
     bounds.validated().map_err(|error| root.refused(&error))
+}
+
+/// The greater of each bound; the speed at least what the governor allows.
+#[must_use]
+pub fn covering(own: &ReferenceBounds, other: &ReferenceBounds) -> ReferenceBounds {
+    ReferenceBounds {
+        horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED),
+        horizontal_acceleration: own.horizontal_acceleration.max(other.horizontal_acceleration),
+        vertical_acceleration: own.vertical_acceleration.max(other.vertical_acceleration),
+        jerk: own.jerk.max(other.jerk),
+        snap: own.snap.max(other.snap),
+        heading_rate: own.heading_rate.max(other.heading_rate),
+        heading_second_derivative: own.heading_second_derivative.max(other.heading_second_derivative),
+    }
 }
 
 /// `bounds` as the section of a scenario file.

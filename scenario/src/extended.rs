@@ -35,16 +35,16 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
     let parameters = defaults::constants(airframe, &given);
     let parameters = Extended::new(parameters, airframe.vehicle).map_err(|error| root.refused(&error))?;
     Controller::check_period(&parameters, airframe.period).map_err(|error| root.refused(&error))?;
-    check_delay(root, &airframe.actuators, f64::from(airframe.period))?;
+    check_delay(root, &airframe.actuators, airframe.period)?;
     Ok(ExtendedLaw { parameters, actuators: airframe.actuators })
 }
 
 /// Refuses a delay that the law's model of its actuators has no memory for.
-fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f64) -> Result<(), FieldError> {
+fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> Result<(), FieldError> {
     const MOST: usize = DELAY_MAX - 1;
-    ActuatorModel::new(actuators, period as f32).map(|_| ()).map_err(|_| {
+    ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {
         let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
-        let longest = MOST as f64 * period;
+        let longest = MOST as f32 * period;
         let problem = format!(
             "under the extended law must be, both delays together, at most {MOST} control periods, {longest} s, found {} s",
             actuators.delay
@@ -60,7 +60,7 @@ pub fn written(parameters: &ExtendedParameters) -> String {
     let mut before = "";
     for (constant, value) in ExtendedParameters::TABLE.iter().zip(parameters.values()) {
         if constant.section != before {
-            let _ = write!(text, "{}[{}]\n", if before.is_empty() { "" } else { "\n" }, constant.section);
+            let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
             before = constant.section;
         }
         let _ = writeln!(text, "{:37} #{}", format!("{} = {value:?}", constant.key), constant.about);

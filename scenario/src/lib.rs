@@ -2,17 +2,18 @@
 //!
 //! | section | left out |
 //! |---|---|
-//! | `name`, `[vehicle]`, `[gains]` | an error |
+//! | `name`, `[vehicle]` | an error |
+//! | `[gains]`, or keys of it | the extended law's follow from the vehicle's numbers; the paper's law needs all |
 //! | `duration` | 20 s |
 //! | `gravity` of `[vehicle]` | 9.81 m/s^2 |
 //! | `[limits]`, or a key of it | what `[rotors]` can give ([`mod@vehicle`]); without them an error |
-//! | `[control]` | `rate` 100 Hz; `law` the paper's; no `thrust_floor`: the paper's thrust |
-//! | `[estimates]` | the extended law estimates nothing |
+//! | `[control]` | `rate` 100 Hz; `law` the paper's beside `[gains]`, else the extended one; no `thrust_floor` |
+//! | `[estimates]`, or keys of it | as `[gains]` |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
 //! | `[reference]` | hover where the flight starts, facing world x; 1 m above the origin if `[initial]` has no position |
-//! | `[reference_bounds]` | the bounds that `[reference]` states of itself |
+//! | `[reference_bounds]` | the bounds that `[reference]` states of itself, or what the vehicle can fly ([`bounds`]) |
 //! | `[truth]`, `[drag]`, `[wind]`, `[disturbance]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
 //! | `[campaign]` | the circumstances of [`campaign`] |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |

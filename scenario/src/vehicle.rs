@@ -7,7 +7,7 @@
 //! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]), the paper's where it is left out and there are
 //! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
 
-use crate::bounds::read_bounds;
+use crate::bounds::{covering, read_bounds};
 use crate::extended::read_extended;
 use crate::inertia;
 use crate::reality::drag::{self, Drag};
@@ -46,6 +46,7 @@ pub fn read_configuration(
     };
     let (configuration, bounds) = match name {
         LawName::Extended => {
+            rotors.iter().try_for_each(check_lifted)?;
             let drag = drag::read(root, rotors.is_some())?;
             let drag = drag.map_or(0.0, |drag| known_drag(&drag, &vehicle, rotors.as_ref()));
             let period = period as f32;
@@ -54,7 +55,7 @@ pub fn read_configuration(
             let law = read_extended(root, &airframe)?;
             let bounds = read_bounds(root, own, || {
                 let most = defaults::reference_bounds(&airframe, &law.parameters);
-                flyable(most, |bounds| {
+                flyable(own, most, |bounds| {
                     let configuration = Configuration::extended(*vehicle, *limits, law, bounds)?;
                     rotors.map_or(Ok(configuration.clone()), |rotors| configuration.with_rotors(rotors.clone()))
                 })
@@ -67,7 +68,7 @@ pub fn read_configuration(
         }
         LawName::Paper => {
             let gains = read_gains(root, &vehicle)?;
-            let bounds = read_bounds(root, own, || ReferenceBounds::REST)?;
+            let bounds = read_bounds(root, own, || covering(own, &ReferenceBounds::REST))?;
             (Configuration::new(vehicle, limits, gains, bounds), bounds)
         }
     };
@@ -87,25 +88,20 @@ pub fn read_configuration(
         _ => configuration,
     };
     match rotors {
-        Some(rotors) => mounted(configuration, rotors),
+        Some(rotors) => configuration.with_rotors(rotors).map_err(|error| root.refused(&error)),
         None => Ok(configuration),
     }
 }
 
-/// Carries `configuration` to its rotors.
-fn mounted(configuration: Configuration, rotors: Rotors) -> Result<Configuration, FieldError> {
-    let unlifted = rotors.pseudo_inverse().iter().position(|row| row.x <= 0.0);
-    configuration.with_rotors(rotors).map_err(|error| {
-        let problem = match unlifted {
-            Some(index) => format!(
-                "leaves rotor {} without a share of the thrust, which the extended law needs: the centre of mass, \
-                 from which positions count, must lie well amid the rotors",
-                index + 1
-            ),
-            None => error.reason.to_string(),
-        };
-        FieldError::new(error.field, problem)
-    })
+/// Refuses rotors that thrust alone would not lift, from which no constants of the extended law follow.
+fn check_lifted(rotors: &Rotors) -> Result<(), FieldError> {
+    let Some(index) = rotors.pseudo_inverse().iter().position(|row| row.x <= 0.0) else { return Ok(()) };
+    let problem = format!(
+        "leaves rotor {} without a share of the thrust, which the extended law needs: the centre of mass, \
+         from which positions count, must lie well amid the rotors",
+        index + 1
+    );
+    Err(FieldError::new("rotors.position", problem))
 }
 
 /// The laws that a file can name.
@@ -128,30 +124,33 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
     }
 }
 
-/// As much of `most` as certifies in steps of a tenth: what the formulas leave out, of headings that turn while the vehicle tilts. All of it where even
-/// a hundredth does not, so that the certificate says why.
+/// The references that a vehicle is asked to fly where the file does not say: its own, within `own`, and as much of `most` beside it as certifies, in
+/// steps of a tenth. All of it where even a hundredth does not, so that the certificate says why.
 fn flyable(
+    own: &ReferenceBounds,
     most: ReferenceBounds,
     configuration: impl Fn(ReferenceBounds) -> Result<Configuration, ParameterError>,
 ) -> ReferenceBounds {
-    let mut bounds = most;
+    let mut share = 1.0;
     for _ in 0..44 {
+        let scaled = |bound: f32| share * bound;
+        let some = ReferenceBounds {
+            horizontal_acceleration: scaled(most.horizontal_acceleration),
+            vertical_acceleration: scaled(most.vertical_acceleration),
+            jerk: scaled(most.jerk),
+            snap: scaled(most.snap),
+            heading_rate: scaled(most.heading_rate),
+            heading_second_derivative: scaled(most.heading_second_derivative),
+            ..most
+        };
+        let bounds = covering(own, &some);
         let certificate = configuration(bounds).and_then(|configuration| Certificate::new(&configuration));
         if certificate.is_ok_and(|certificate| certificate.holds()) {
             return bounds;
         }
-        let less = |bound: f32| 0.9 * bound;
-        bounds = ReferenceBounds {
-            horizontal_acceleration: less(bounds.horizontal_acceleration),
-            vertical_acceleration: less(bounds.vertical_acceleration),
-            jerk: less(bounds.jerk),
-            snap: less(bounds.snap),
-            heading_rate: less(bounds.heading_rate),
-            heading_second_derivative: less(bounds.heading_second_derivative),
-            ..bounds
-        };
+        share *= 0.9;
     }
-    most
+    covering(own, &most)
 }
 
 /// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.

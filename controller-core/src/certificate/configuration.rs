@@ -251,7 +251,7 @@ mod tests {
     fn the_extended_law_refuses_a_rotor_that_thrust_does_not_lift() {
         let vehicle = example::vehicle();
         let law = ExtendedLaw {
-            parameters: Extended::new(example::PARAMETERS, &vehicle).unwrap(),
+            parameters: Extended::new(example::parameters(), &vehicle).unwrap(),
             actuators: ActuatorParameters { lag: 0.0, delay: 0.0 },
         };
         let limits = *paper().limits();

@@ -9,7 +9,7 @@
 //! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
 //! | qbar < eta, 2 qbar M_t < w eta_t sqrt(1 - qbar^2) | E: the only equilibrium of the attitude is the target |
 //! | \|P\| < M_all | D: damping always has a share |
-//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range |
+//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range; T1: the thrust floor below T_max |
 //!
 //! Everything else about commands holds by construction ([`crate::extended`]): a tick spends what is there.
 
@@ -21,7 +21,7 @@ use super::sharp;
 use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::error::ParameterError;
-use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{ROWS, THRUST_LEFT, TorqueBudget};
 use crate::extended::parameters::Extended;
 use crate::extended::position::net_level;
 use crate::math;
@@ -33,7 +33,7 @@ use nalgebra::Vector3;
 const POTENTIAL_CELLS: usize = 64;
 
 /// How many inequalities there are at most.
-const MOST: usize = 16;
+const MOST: usize = 11 + ROWS;
 
 /// Everything the extended law can command.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,13 +91,16 @@ fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &To
     let available = (1.0 - THRUST_LEFT) * math::lesser_f64(f64::from(p.scale_least) * each - taken, limit);
     let thrust = |across: f64, vertical: f64| mass * math::hypot(across, gravity + vertical) * raised;
 
-    let net = net_level(p, vehicle.gravity);
-    let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
+    // Across and along the vertical the net's level is reached at once.
+    let net = math::sqrt_f64(2.0) * net_level(p, vehicle.gravity);
+    let [k_f, k_s, yaw_rate] = [p.k_f, p.k_s, p.yaw_rate].map(f64::from);
     let jerk = f64::from(reference.jerk) + 2.0 * k_f * net;
     let snap = f64::from(reference.snap) + 2.0 * k_f * (k_s + k_f) * net;
     let least = gravity - vertical - up - net;
     let rate = jerk / least * raised;
-    let acceleration = (snap / least + 2.0 * rate * rate) * raised;
+    // p sqrt(4 r^2 / n^2 + W^2) with p^2 + r^2 / n^2 = rate^2 is greatest at p^2 = (4 rate^2 + W^2) / 8, or where p is all of it.
+    let curl = if yaw_rate < 2.0 * rate { rate * rate + 0.25 * yaw_rate * yaw_rate } else { rate * yaw_rate };
+    let acceleration = (snap / least + curl) * raised;
     let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(f64::from);
     let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
     let weakest = (1.0 - THRUST_LEFT) * mass * (gravity - vertical - up);
@@ -182,9 +185,10 @@ pub fn greatest_potential(parameters: &Extended) -> f64 {
 
 /// The rows of the budget, with the reserve.
 fn torques(parameters: &Extended, budget: &TorqueBudget) -> impl Iterator<Item = Inequality> {
-    const NAMES: [&str; 3] = ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range"];
-    const UNITS: [&str; 3] = ["N m", "N m", "N"];
-    let reserves: Vec<[f64; 2], 3> =
+    const NAMES: [&str; ROWS] =
+        ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range", "T1 thrust floor at the greatest torque"];
+    const UNITS: [&str; ROWS] = ["N m", "N m", "N", "N"];
+    let reserves: Vec<[f64; 2], ROWS> =
         collected(budget.reserves(f64::from(parameters.m_all), f64::from(parameters.turn_reserve)));
     reserves.into_iter().zip(NAMES).zip(UNITS).map(|(([required, available], name), unit)| {
         Inequality::new(name, unit, required * (1.0 + ARITHMETIC_ALLOWANCE), available)

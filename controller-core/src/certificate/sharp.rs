@@ -318,21 +318,31 @@ pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
+    let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
     let (mut rate, mut acceleration) = (0.0_f64, 0.0_f64);
-    for cell in 0..TILT_CELLS {
+    // The steepest first: they are the likeliest to matter.
+    for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
         let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
+        for tangential in &tangential {
+            rate = math::greater_f64(rate, tilt.velocity(tangential, worst_heading.rate).yawing);
+        }
         let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(0.0, math::greater_f64);
         let longest = math::lesser_f64(longest, reach.jerk);
         let linear = Parts::worst(&directions.map(|direction| tilt.linear_part(reach, &direction)));
+        let shares: [_; SPLIT_CELLS] = core::array::from_fn(|split| tilt.shares(reach, longest, split));
+        let worst_shares = Shares::worst(&shares);
+        let at_most = |heading, shares| linear.yawing + tilt.quadratic_part(heading, shares).yawing;
+        if at_most(&worst_heading, &worst_shares) <= acceleration {
+            continue;
+        }
         for heading in &headings {
-            let velocities = tangential.iter().map(|tangential| tilt.velocity(tangential, heading.rate).yawing);
-            rate = velocities.fold(rate, math::greater_f64);
-            for split in 0..SPLIT_CELLS {
-                let quadratic = tilt.quadratic_part(heading, &tilt.shares(reach, longest, split));
-                acceleration = math::greater_f64(acceleration, linear.yawing + quadratic.yawing);
+            if at_most(heading, &worst_shares) <= acceleration {
+                continue;
             }
+            let all = shares.iter().map(|shares| at_most(heading, shares));
+            acceleration = all.fold(acceleration, math::greater_f64);
         }
     }
     [rate, acceleration]

@@ -1,4 +1,5 @@
 //! What the rotors were commanded, through their delay and lag: the wrench that acts, as far as the law knows.
+//! Section 10 of `docs/extended-law.md`.
 //!
 //! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with the
 //! rotors' time constant. So between two ticks the command c_(k-n-1) acts for a time f h, then c_(k-n), and with x the wrench

@@ -1,4 +1,4 @@
-//! The attitude law with separate levels for tilt and yaw. Section 4 of `docs/extended-law.md`.
+//! The attitude law with separate levels for tilt and yaw. Section 6 of `docs/extended-law.md`.
 //!
 //! With the lifted error q = m* Phi(q_hat, R~) = (q_0, q_1, q_2, q_3), r^2 = q_1^2 + q_2^2 and h = sqrt((q_0 + eta)^2 + q_3^2):
 //!

@@ -1,6 +1,6 @@
 //! What turning the desired frame may cost: the thrust and the torque at hand in a tick. Section 4 of `docs/extended-law.md`.
 //!
-//! Tilt and yaw torques fit the rotors, and the limits, if for each of at most three rows
+//! Tilt and yaw torques fit the rotors, and the limits, if for each of at most four rows
 //!
 //! ```text
 //! t |tau_tilt| + y |tau_yaw| <= R
@@ -9,6 +9,7 @@
 //! | row | t | y | R |
 //! |---|---|---|---|
 //! | two rotors k, i at their ends at once | max \|b_12,k/b_T,k - b_12,i/b_T,i\| | the same of b_3 | min (s_lo f_max,k/b_T,k - s_hi f_min,i/b_T,i) - 2 margin |
+//! | the thrust floor N and T_max | max \|b_12,i\|/b_T,i | the same of b_3 | T_max - max s_hi f_min,i/b_T,i - 2 margin |
 //! | limits of roll and pitch | 1 | 0 | the lesser of the two |
 //! | limit of yaw | 0 | 1 | it |
 //!
@@ -23,8 +24,8 @@
 //! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
 
 use super::parameters::ExtendedParameters;
-use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::{Limits, Vehicle};
 use heapless::Vec;
@@ -47,11 +48,21 @@ pub struct Row {
     pub room: f64,
 }
 
+impl Row {
+    /// Whether `other` holds wherever this row does: it costs no more of its room.
+    fn covers(&self, other: &Self) -> bool {
+        other.tilt * self.room <= self.tilt * other.room && other.yaw * self.room <= self.yaw * other.room
+    }
+}
+
+/// How many rows there are at most.
+pub const ROWS: usize = 4;
+
 /// Everything about the budget that does not change from tick to tick, in double precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorqueBudget {
     /// The rows.
-    pub rows: Vec<Row, 3>,
+    pub rows: Vec<Row, ROWS>,
     /// The greatest moment of inertia of the tilt, and J_33, kg m^2.
     pub inertia: [f64; 2],
     /// Tilt and yaw torque beside the feedback and the frame's turning, N m.
@@ -69,6 +80,30 @@ struct Share {
     least: f64,
     greatest: f64,
     torque: Vector3<f64>,
+}
+
+/// The greatest of some directions of torque: across, about z, and across with both biases at their levels.
+struct Reach {
+    tilt: f64,
+    yaw: f64,
+    corner: f64,
+}
+
+impl Reach {
+    fn of(directions: impl Iterator<Item = Vector3<f64>>) -> Self {
+        directions.fold(Self { tilt: 0.0, yaw: 0.0, corner: 0.0 }, |reach, b| Self {
+            tilt: math::greater_f64(reach.tilt, math::hypot(b.x, b.y)),
+            yaw: math::greater_f64(reach.yaw, b.z.abs()),
+            corner: math::greater_f64(reach.corner, b.x.abs() + b.y.abs()),
+        })
+    }
+
+    /// The row of `range` without the `fixed` torques and the biases' levels.
+    fn row(&self, range: f64, fixed: [f64; 2], [bias_tilt, bias_yaw]: [f64; 2]) -> Row {
+        let Self { tilt, yaw, corner } = *self;
+        let room = range - corner * bias_tilt - yaw * (fixed[1] + bias_yaw) - tilt * fixed[0];
+        Row { tilt, yaw, room }
+    }
 }
 
 impl TorqueBudget {
@@ -91,7 +126,7 @@ impl TorqueBudget {
 
         let torque_max = limits.torque_max.map(f64::from);
         let mut rows = Vec::new();
-        // Three at most: they fit.
+        // So many at most: they fit.
         let mut push = |row: Row| {
             let _ = rows.push(row);
         };
@@ -101,17 +136,11 @@ impl TorqueBudget {
         let scales = [p.scale_least, p.scale_greatest].map(f64::from);
         let margin = f64::from(p.floor_margin);
         if let Some(room) = least_range(&shares, scales, margin) {
-            let (mut tilt, mut yaw, mut corner) = (0.0, 0.0, 0.0);
-            for a in &shares {
-                for b in &shares {
-                    let difference = a.torque - b.torque;
-                    tilt = math::greater_f64(tilt, math::hypot(difference.x, difference.y));
-                    yaw = math::greater_f64(yaw, difference.z.abs());
-                    corner = math::greater_f64(corner, difference.x.abs() + difference.y.abs());
-                }
-            }
-            let room = room - corner * bias_tilt - yaw * (fixed[1] + bias_yaw) - tilt * fixed[0];
-            push(Row { tilt, yaw, room });
+            let spread = Reach::of(shares.iter().flat_map(|a| shares.iter().map(move |b| a.torque - b.torque)));
+            push(spread.row(room, fixed, [bias_tilt, bias_yaw]));
+            let least = shares.iter().map(|share| scales[1] * share.least).fold(0.0, math::greater_f64);
+            let below = f64::from(limits.thrust_max) - least - 2.0 * margin;
+            push(Reach::of(shares.iter().map(|share| share.torque)).row(below, fixed, [bias_tilt, bias_yaw]));
         }
 
         let beside = |torque: &Vector3<f64>| {
@@ -167,10 +196,10 @@ fn least_range(shares: &[Share], [least_scale, greatest_scale]: [f64; 2], margin
 }
 
 /// The budget as a tick spends it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TurningBudget {
-    /// t, y and R of each row; rows that are not there never bind.
-    rows: [[f32; 3]; 3],
+    /// t, y and R of each row that can bind.
+    rows: Vec<[f32; 3], ROWS>,
     inertia: [f32; 2],
     /// (1 - mu) m / L, per s^2/m, and N_0 / L, rad/s^2.
     thrust: f32,
@@ -182,13 +211,15 @@ impl TurningBudget {
     /// Of `budget` for a vehicle of `mass`, kg, and at most `most`, rad/s^2.
     #[must_use]
     pub fn new(budget: &TorqueBudget, mass: f32, most: f32) -> Self {
-        let mut rows = [[0.0, 1.0, f32::MAX]; 3];
-        for (kept, row) in rows.iter_mut().zip(&budget.rows) {
-            *kept = [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
-        }
+        let rotors = budget.rows.get(2);
+        let binding = budget.rows.iter().enumerate().filter(|(place, row)| {
+            let covered = rotors.is_some_and(|rotors| rotors.covers(row));
+            *place == 2 || !covered
+        });
+        let rounded = |row: &Row| [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
         let per_acceleration = math::greater_f64(budget.floor_per_acceleration, 1e-12);
         Self {
-            rows,
+            rows: collected(binding.map(|(_, row)| rounded(row))),
             inertia: budget.inertia.map(|x| x as f32),
             thrust: ((1.0 - THRUST_LEFT) * f64::from(mass) / per_acceleration) as f32,
             floor: (budget.floor / per_acceleration) as f32,

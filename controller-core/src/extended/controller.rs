@@ -18,7 +18,7 @@ use super::force::ForceObserver;
 use super::heading::{self, HeadingLag};
 use super::memory::{Averages, Estimates, Last, Memory};
 use super::parameters::Extended;
-use super::position::PositionLaw;
+use super::position::{Filters, PositionLaw};
 use super::thrust_range::ThrustRange;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
@@ -32,7 +32,7 @@ use crate::controller::{Command, Diagnostics};
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::math;
 use crate::path_lifting;
-use crate::position::{FilterState, FilterTransition};
+use crate::position::FilterTransition;
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
@@ -65,7 +65,6 @@ pub struct Controller {
     limits: Limits,
     law: ExtendedLaw,
     rotors: Option<Rotors>,
-    parameters: Extended,
     period: f32,
     per_mass: f32,
     switching_scalar: f32,
@@ -130,7 +129,6 @@ impl Controller {
             limits: *limits,
             law: *law,
             rotors: rotors.cloned(),
-            parameters: *parameters,
             period,
             per_mass: 1.0 / vehicle.mass,
             switching_scalar: path_lifting::switching_scalar(parameters.delta),
@@ -234,19 +232,18 @@ impl Controller {
         let bias = self.learning.torque.estimate(&learnt.torque);
 
         let mut net = self.memory.net;
-        let filter =
-            if net.catches() { FilterState { filtered: -force, intermediate: -force } } else { self.memory.filter };
+        let filters = if net.catches() { Filters::at(-force) } else { self.memory.filters };
         let [each, taken, most] = self.greatest;
         let greatest = math::lesser(scale * each - taken, most);
-        let feedback = self.position.feedback(state, reference, &filter, &force, greatest, net.is_caught());
-        let command = self.acceleration_command(reference, &filter);
+        let feedback = self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught());
+        let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position.k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
         let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
         let desired = DesiredAttitude::new(&command, &reference.heading);
         let turn = desired.turn(&jerk, &snap);
         let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
-        let lag = self.memory.heading.unwrap_or_else(|| HeadingLag::none(yaw_rate, &self.parameters));
+        let lag = self.memory.heading.unwrap_or_else(|| HeadingLag::none(yaw_rate, &self.law.parameters));
         let velocity = heading::velocity(&lag, &Vector3::new(-turn.rate.y, turn.rate.x, yaw_rate));
 
         let error = lag.turned_back(&desired.error(&state.attitude));
@@ -255,7 +252,7 @@ impl Controller {
         let (projected, projected_rate) =
             self.attitude.projected(&error, &angular_velocity_error, &self.late(scale, &bias));
         let lifted =
-            path_lifting::lift(self.memory.lift.as_ref(), &projected, self.switching_scalar, self.parameters.alpha);
+            path_lifting::lift(self.memory.lift.as_ref(), &projected, self.switching_scalar, self.law.parameters.alpha);
         let torques = self.attitude.feedback(&lifted.quaternion, &projected_rate);
 
         let limited = self.turning.limited(
@@ -265,7 +262,7 @@ impl Controller {
                 yaw_rate: velocity.z,
                 up: desired.up(),
                 greatest,
-                vertical: [filter.filtered.z, feedback.rate.z, wanted.z],
+                vertical: [filters.command.z, feedback.rate.z, wanted.z],
             },
         );
         let papers = desired.motion_of(&turn.rate, &limited.acceleration, &reference.heading);
@@ -282,9 +279,9 @@ impl Controller {
                 feedback.drive + desired.turned(&change) * (1.0 / self.position.k_f())
             }
         };
-        self.memory.filter = self.position.advance(&filter, &drive);
+        self.memory.filters = self.position.advance(&filters, &feedback.smoothed, &drive);
         self.memory.averages = learnt;
-        let turning = heading::turning(&lag, &papers, &self.parameters, self.period);
+        let turning = heading::turning(&lag, &papers, &self.law.parameters, self.period);
         self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
         self.memory.lift = Some(lifted.lift);
 
@@ -292,11 +289,7 @@ impl Controller {
         let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
-        net.observe(
-            [feedback.z_1.norm_squared(), feedback.z_2.norm_squared()],
-            limited.change.is_some() || thrust < along,
-            self.period,
-        );
+        net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
 
         if let Some(changed) = self.changed {
             cold_path();
@@ -321,8 +314,8 @@ impl Controller {
             z_1: feedback.z_1,
             z_2: feedback.z_2,
             feedback: feedback.feedback,
-            filtered: filter.filtered,
-            intermediate: filter.intermediate,
+            filtered: filters.command,
+            intermediate: filters.intermediate,
             acceleration_command: command,
             desired_attitude: desired.attitude(),
             desired_angular_velocity: turning.velocity,
@@ -367,15 +360,15 @@ impl Controller {
     }
 
     /// u = c + g e3 + p_d'' + kappa p_d'.
-    fn acceleration_command(&self, reference: &Reference, filter: &FilterState) -> Vector3<f32> {
-        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + filter.filtered;
+    fn acceleration_command(&self, reference: &Reference, c: &Vector3<f32>) -> Vector3<f32> {
+        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + c;
         command.z += self.vehicle.gravity;
         command
     }
 
     /// A derivative of the reference with the drag that the one below it makes.
     fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
-        let drag = self.parameters.drag_across;
+        let drag = self.law.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
     }
 

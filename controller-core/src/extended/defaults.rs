@@ -4,19 +4,20 @@
 //!
 //! | what | formula |
 //! |---|---|
-//! | w_a, bandwidth of the tilt, rad/s | min(15, 0.3 / (h/2 + 0.15 T)) |
+//! | w_a, bandwidth of the tilt, rad/s | min(12.5, 1.44 sqrt(g / r), 0.3 / (h/2 + T/4)), r = 2 sqrt(J / m) |
 //! | M_all | what the rows of the budget leave: see [`constants`] |
-//! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 2.1 w_a J |
+//! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 1.7 w_a J |
 //! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), as much as keeps \|P\| below 0.93 M_all |
-//! | r_0 | M_all / (12 J w_a^2): beyond it M_all brakes along a parabola |
-//! | alpha_max, alpha_0 | 0.75 M_all / J, 0.15 M_all / J or less where yaw is weak |
-//! | Omega | between 2.5 and 5 rad/s, 0.07 of what the rotors give / J |
-//! | k_f, k_s | 0.75 w_a, 4 k_f |
-//! | k_v, k_p across; vertical | min(8, 0.41 w_a), 0.42 k_v^2; 1.2 and 1.3 times that |
-//! | A_h, gamma | 0.8 of the thrust held level; 75 degrees or what the least lift allows |
-//! | D_h | 0.58 A_h, or nine tenths of what the weakest thrust holds |
-//! | L across; vertical | min(23, 1.55 w_a); twice that |
-//! | yaw: feedback, A, bias | 6.5, 5 and 4 % of the greatest yaw torque |
+//! | r_0 | M_all / (13 J w_a^2): beyond it M_all brakes along a parabola |
+//! | alpha_max, alpha_0 | 0.9 M_all / J, 0.14 M_all / J or less where yaw is weak |
+//! | Omega | between 2.5 and 5 rad/s, 0.08 of what the rotors give / J |
+//! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 1.6 w_a |
+//! | k_v, k_p across; vertical | 0.54 w_a, 0.435 k_v^2; 1.4 and 1.96 times that |
+//! | A_h, gamma | what the thrust leaves beside 0.7 of the weight; 75 degrees or what the least lift allows |
+//! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
+//! | D_h | 0.8 A_h, or 0.8 of what the weakest thrust holds, without the drag at 5 m/s |
+//! | L across; vertical | 1.1 w_a; 1.33 times that |
+//! | yaw: feedback, A, bias | 4, 5 and 4 % of the greatest yaw torque |
 
 use super::actuators::ActuatorParameters;
 use super::budget::{THRUST_LEFT, TorqueBudget};
@@ -45,15 +46,15 @@ pub struct Airframe<'a> {
 }
 
 /// The least eta: above qbar, which delta makes.
-const ETA_LEAST: f64 = 0.03;
+const ETA_LEAST: f64 = 0.015;
 /// eta_t.
 const ETA_T: f64 = 0.5;
 /// delta, alpha, c_1 and c_2.
-const SHARED: [f32; 4] = [0.02, 0.25, 9.0, 6.0];
+const SHARED: [f32; 4] = [0.01, 0.25, 9.0, 6.0];
 /// The least and the greatest thrust scale that are learnt.
 const SCALE: [f64; 2] = [0.9, 1.15];
 /// A vehicle that falls with this acceleration still has thrust to turn, m/s^2; in shares of g.
-const FALL: f64 = 0.54;
+const FALL: f64 = 0.63;
 /// Vertical acceleration of references that the thrust floor leaves room for, m/s^2.
 const FALL_LEAST: f64 = 1.0;
 
@@ -75,7 +76,9 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let j = vehicle.inertia.map(f64::from);
     let (tilt_inertia, greatest_inertia) = (0.5 * (j.x + j.y), greater_f64(j.x, j.y));
     let late = f64::from(actuators.lag) + f64::from(actuators.delay);
-    let w_a = lesser_f64(15.0, 0.3 / (0.5 * f64::from(period) + 0.15 * late));
+    let left = 0.5 * f64::from(period) + 0.25 * late;
+    let size = 2.0 * math::sqrt_f64(tilt_inertia / mass);
+    let w_a = [12.5, 1.44 * math::sqrt_f64(gravity / size), 0.3 / left].into_iter().fold(f64::INFINITY, lesser_f64);
 
     // What the rotors give, with constants that take nothing of it.
     let scale = [or("scale_least", SCALE[0]), or("scale_greatest", SCALE[1])];
@@ -88,19 +91,31 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     };
     let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
 
-    // Yaw torque raises the thrust floor, by half a row's y for each N m.
-    let raised = free.rows.iter().filter(|row| row.tilt > 0.0).map(|row| 0.5 * row.yaw).fold(1e-12, greater_f64);
-    let light = lesser_f64(0.07 * yaw_most, 0.15 * mass * gravity / raised);
+    // The least thrust near the target must hold the idling rotors and what these torques raise the thrust floor by.
+    let a_down = or("a_down", FALL * gravity);
+    let up = or("force_up", 0.33 * a_down);
+    let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
+    let raised = |by: Numbers| TorqueBudget::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
+    let by_tilt = raised(Numbers { torque_tilt: 1.0, ..bare });
+    let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
+    let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / by_yaw);
+    let by_tilt = greater_f64(by_tilt, 1e-12);
+    let bias_tilt = lesser_f64(0.035 * tilt_most, 0.1 * mass * gravity / by_tilt);
+    let bias_yaw = lesser_f64(0.04 * yaw_most, 0.06 * mass * gravity / by_yaw);
+    let all = bias_tilt * by_tilt + (bias_yaw + light) * by_yaw;
+    let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));
     let nimble = tilt_most / greatest_inertia;
-    let turn_rate = or("turn_rate", (0.07 * nimble).clamp(2.0, 5.0));
-    let yaw_rate = or("yaw_rate", 2.5);
-    let yaw_feedback = 0.065 * yaw_most;
+    // The gyroscopic torque about z takes half of the yaw torque at most.
+    let product = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
+    let turn_rate = or("turn_rate", lesser_f64((0.08 * nimble).clamp(2.5, 5.0), math::sqrt_f64(0.6 * product)));
+    let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.4 * product)));
+    let yaw_feedback = 0.04 * yaw_most;
     let mut n = Numbers {
         turn_rate,
         yaw_rate,
-        yaw_acceleration: or("yaw_acceleration", lesser_f64(light / j.z, 20.0)),
-        torque_tilt: or("torque_tilt", 0.03 * tilt_most),
-        torque_yaw: or("torque_yaw", 0.04 * yaw_most),
+        yaw_acceleration: or("yaw_acceleration", lesser_f64(spared * light / j.z, 20.0)),
+        torque_tilt: or("torque_tilt", spared * bias_tilt),
+        torque_yaw: or("torque_yaw", spared * bias_yaw),
         m_omega_z: or("m_omega_z", 0.5 * yaw_feedback),
         w_eta: yaw_feedback,
         ..bare
@@ -109,12 +124,9 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     // What they leave for the tilt: M_all and the reserve alpha_0 = share M_all / J pay one another.
     let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
     let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
-    let weak = joint.map(|row| 0.28 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.15, lesser_f64);
-    let a_down = or("a_down", FALL * gravity);
-    let up = or("force_up", 0.4 * a_down);
+    let weak = joint.map(|row| 0.26 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.14, lesser_f64);
     // The thrust floor with the frame turning at alpha_0 stays below the least thrust near the target.
-    let floor = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST) - budget.floor;
-    let lifted = 0.9 * floor / greater_f64(budget.floor_per_acceleration, 1e-12);
+    let lifted = 0.9 * (least - budget.floor) / greater_f64(budget.floor_per_acceleration, 1e-12);
     let reserve = |m_all: f64| or("turn_reserve", lesser_f64(weak * m_all / greatest_inertia, lifted));
     let mut m_all = 0.0;
     for _ in 0..20 {
@@ -137,37 +149,40 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let steepest = math::sqrt_of_rounded(1.0 - cosine * cosine) / cosine;
     let tangent = lesser_f64(lesser_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
     let level = |thrust: f64| math::sqrt_of_rounded(thrust * thrust - gravity * gravity);
-    let a_across = or("a_across", lesser_f64(greater_f64(level(0.84 * greatest), 0.5), gravity * tangent));
-    let force_across = or("force_across", lesser_f64(0.58 * a_across, 0.85 * level(weakest)));
+    let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
+    let a_across = or("a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
+    let force_across =
+        or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.8 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
     let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
 
-    let k_f = or("k_f", lesser_f64(0.75 * w_a, 100.0));
-    let k_v = or("k_v_across", lesser_f64(8.0, 0.41 * w_a));
-    let k_p = 0.42 * k_v * k_v;
-    let follow = lesser_f64(23.0, 1.55 * w_a);
+    let k_f = or("k_f", 1.12 * w_a);
+    let k_v = or("k_v_across", 0.54 * w_a);
+    let k_p = 0.435 * k_v * k_v;
+    let follow = 1.1 * w_a;
     let single = |value: f64| value as f32;
     let [delta, alpha, c_1, c_2] = SHARED;
     let formulas = ExtendedParameters {
         k_p_across: single(k_p),
-        k_p_vertical: single(1.3 * k_p),
+        k_p_vertical: single(1.96 * k_p),
         k_v_across: single(k_v),
-        k_v_vertical: single(1.2 * k_v),
+        k_v_vertical: single(1.4 * k_v),
         k_f: single(k_f),
-        k_s: single(lesser_f64(4.0 * k_f, 100.0)),
+        k_s: single(3.1 * k_f),
+        k_d: single(1.6 * w_a),
         a_across: single(a_across),
         a_down: single(a_down),
         tilt_max: single(math::atan(tangent)),
-        v_across: 9.6,
-        v_up: 3.7,
-        v_down: 2.7,
-        turn_acceleration: single(0.75 * m_all / greatest_inertia),
+        v_across: single(lesser_f64(1.6 * math::sqrt_f64(a_across), 9.0)),
+        v_up: 4.2,
+        v_down: 3.5,
+        turn_acceleration: single(0.9 * m_all / greatest_inertia),
         turn_reserve: single(reserve(m_all)),
         k_t: single(greater_f64((stiffness - 0.25 * w) * 2.0 * math::hypot(1.0, ETA_T), 1e-6)),
         m_t: single(m_t),
         eta_t: single(ETA_T),
-        k_omega_t: single(2.1 * w_a * tilt_inertia),
-        r_0: single((m_all / (12.0 * stiffness)).clamp(1e-3, 1e3)),
-        k_omega_z: single(lesser_f64(yaw_damping, 0.3 * j.z / (0.5 * f64::from(period) + 0.15 * late))),
+        k_omega_t: single(1.7 * w_a * tilt_inertia),
+        r_0: single((m_all / (13.0 * stiffness)).clamp(1e-3, 1e3)),
+        k_omega_z: single(lesser_f64(yaw_damping, 0.3 * j.z / left)),
         delta,
         alpha,
         c_1,
@@ -177,15 +192,15 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         force_up: single(up),
         force_down: single(force_down),
         force_bandwidth_across: single(follow),
-        force_bandwidth_vertical: single(2.0 * follow),
+        force_bandwidth_vertical: single(1.33 * follow),
         drag_across: drag,
-        torque_bandwidth: 3.0,
+        torque_bandwidth: 2.0,
         scale_rate: 0.3,
         ..n.parameters()
     };
     let mut values = formulas.values();
-    for (value, given) in values.iter_mut().zip(given) {
-        *value = given.unwrap_or(*value);
+    for ((value, given), constant) in values.iter_mut().zip(given).zip(&ExtendedParameters::TABLE) {
+        *value = given.unwrap_or(value.clamp(constant.range.least, constant.range.greatest));
     }
     ExtendedParameters::from_values(values)
 }

@@ -1,5 +1,5 @@
 //! The heading generator: the desired frame may lag in heading, so that its motion about the thrust axis is bounded by
-//! design. Section 3 of `docs/extended-law.md`.
+//! design. Section 5 of `docs/extended-law.md`.
 //!
 //! R_d = R_d*(rho, nu_d) R_z(chi), where R_d* is the paper's frame with rates w* and accelerations w*':
 //!

@@ -3,9 +3,9 @@
 use super::actuators::ActuatorState;
 use super::heading::HeadingLag;
 use super::net::Net;
+use super::position::Filters;
 use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
-use crate::position::FilterState;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector3, Vector4};
 
@@ -58,8 +58,8 @@ pub(super) struct Last {
 /// Everything the law remembers from one tick to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Memory {
-    /// x_f.
-    pub filter: FilterState,
+    /// c, x and y.
+    pub filters: Filters,
     /// The path lifting's memory; none before the first step.
     pub lift: Option<Lift>,
     /// The heading's lag; none before the first step.
@@ -81,7 +81,7 @@ impl Memory {
     pub(super) fn fresh(vehicle: &Vehicle, averages: Averages) -> Self {
         let hover = Vector4::new(vehicle.mass * vehicle.gravity / averages.scale.scale, 0.0, 0.0, 0.0);
         Self {
-            filter: FilterState::ZERO,
+            filters: Filters::at(Vector3::zeros()),
             lift: None,
             heading: None,
             averages,

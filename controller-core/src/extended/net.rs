@@ -2,19 +2,26 @@
 //!
 //! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle arrives. That the limiter falls
 //! silent is proven near the target; from far away no proof is known for strong gains. So the law counts the time for which it acted since the
-//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = 0) and the
+//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = y = -d) and the
 //! feedback is cut to the level of the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides
 //! alone. Near the target the law's own level returns.
 //!
 //! | state | counts | leaves |
 //! |---|---|---|
-//! | own level | time with a changed drive or a cut thrust; from zero again near the target | to the net after [`PATIENCE`] |
+//! | own level | time with a changed drive or a cut thrust, less a twentieth of the time without; from zero again near the target | to the net after [`PATIENCE`] |
 //! | the net | nothing | to its own level near the target |
 //!
 //! So a flight changes over at most once for each time that it is away from its target.
 
+use crate::math;
+use core::hint::cold_path;
+use nalgebra::Vector3;
+
 /// The time of changed drives after which the net is used, s.
 pub const PATIENCE: f32 = 60.0;
+
+/// The part of a silent time that is taken off what was counted: in gusts the limiter acts now and then, and the own level is wanted.
+const FORGIVEN: f32 = 0.05;
 
 /// Near the target: |z_1|, m, and |z_2|, m/s.
 const NEAR: f32 = 0.05;
@@ -56,12 +63,19 @@ impl Net {
         catches
     }
 
-    /// A tick of `period`, s: `squares` are |z_1|^2 and |z_2|^2; `limited`, whether drive or thrust was changed.
-    pub fn observe(&mut self, [z_1, z_2]: [f32; 2], limited: bool, period: f32) {
-        if z_1 < NEAR * NEAR && z_2 < NEAR * NEAR {
+    /// A tick of `period`, s, at z_1, m, and z_2, m/s; `limited`, whether drive or thrust was changed.
+    pub fn observe(&mut self, z_1: &Vector3<f32>, z_2: &Vector3<f32>, limited: bool, period: f32) {
+        // Nearly every tick there is nothing to count and nothing to end.
+        if !limited && !self.caught && self.acted == 0.0 {
+            return;
+        }
+        cold_path();
+        if z_1.norm_squared() < NEAR * NEAR && z_2.norm_squared() < NEAR * NEAR {
             (self.acted, self.caught) = (0.0, false);
         } else if limited {
             self.acted += period;
+        } else {
+            self.acted = math::greater(self.acted - FORGIVEN * period, 0.0);
         }
     }
 }

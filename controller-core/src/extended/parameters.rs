@@ -20,6 +20,8 @@ constants! {
         gains.k_f: Range::BANDWIDTH, SEARCHED;
         /// k_s, 1/s: bandwidth of the filter before it.
         gains.k_s: Range::BANDWIDTH, FIXED;
+        /// k_d, 1/s: bandwidth of the filter before that, which takes noise out.
+        gains.k_d: Range::BANDWIDTH, FIXED;
         /// A_h, m/s^2: greatest acceleration across.
         gains.a_across: Range::POSITIVE, FIXED;
         /// A_-, m/s^2: greatest acceleration downwards.

@@ -1,26 +1,28 @@
 //! The position law: feedback gets what the wind leaves, across what the vertical leaves. Section 1 of `docs/extended-law.md`.
 //!
-//! c is the part of u that is neither gravity nor reference, x the filter before it, d the observed force per mass (section 2):
+//! c is the part of u that is neither gravity nor reference, x the filter before it, y the one before that, d the observed force per mass
+//! (section 2). The paper has two filters; the third takes the noise of measurements out of u'', which turns the vehicle:
 //!
 //! | here | equation |
 //! |---|---|
-//! | `z_1` = p~ + (1/k_f + 1/k_s) v~ + (c + d) / (k_f k_s), `z_2` = v~ + (c + d) / k_f + (x + d) / k_s | the paper's (9) for u_f = c + d, u_s = x + d |
+//! | `z_1` = p~ + (1/k_f + 1/k_s + 1/k_d) v~ + (1/k_s + 1/k_d) (c + d) / k_f + (x + d) / (k_s k_d) | the paper's (9) for three filters |
+//! | `z_2` = v~ + (c + d) / k_f + (x + d) / k_s + (y + d) / k_d | |
 //! | phi(z_1) = s(k_p z_1; k_v v_c) | the approach: its speed is at most v_c |
 //! | `feedback` = -s(phi(z_1) + k_v z_2; M) - d | ubar |
 //! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`Saturation`]: radial across |
 //! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical has what the force leaves |
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across has what the vertical leaves |
-//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (ubar - x) | the paper's (7); [`super::turning`] may change the drive |
+//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
 //!
-//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, whatever d is, and every level is as wide as that
-//! allows. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
+//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide as that allows. Where d
+//! leaves less than the least level, 0.3 m/s^2, that stands, and ubar may be outside; u itself is bounded by [`super::turning`]. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
 //! of its argument.
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::math;
-use crate::position::{FilterState, FilterTransition};
+use crate::position::FilterTransition;
 use crate::reference::Reference;
 use crate::state::State;
 use nalgebra::{Vector2, Vector3};
@@ -34,6 +36,25 @@ const SHARE_ACROSS: f32 = 0.95;
 /// s(k_p z_1; k_v v_c) / k_v, the velocity of approach.
 fn approach(k_p: f32, k_v: f32, speed: f32) -> Saturation {
     Saturation::new(k_p / k_v, speed)
+}
+
+/// The filters' states, m/s^2, world frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Filters {
+    /// c.
+    pub command: Vector3<f32>,
+    /// x.
+    pub intermediate: Vector3<f32>,
+    /// y.
+    pub smoothed: Vector3<f32>,
+}
+
+impl Filters {
+    /// All three at `value`.
+    #[must_use]
+    pub const fn at(value: Vector3<f32>) -> Self {
+        Self { command: value, intermediate: value, smoothed: value }
+    }
 }
 
 /// What the position law commands, with the quantities it went through.
@@ -51,6 +72,8 @@ pub struct PositionFeedback {
     pub feedback: Vector3<f32>,
     /// c', m/s^3.
     pub rate: Vector3<f32>,
+    /// y at the next tick, m/s^2.
+    pub smoothed: Vector3<f32>,
     /// The drive that the law wants, m/s^3.
     pub drive: Vector3<f32>,
 }
@@ -58,15 +81,17 @@ pub struct PositionFeedback {
 /// The position law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
-    /// 1 / k_f, 1 / k_s and their sum, s; their product, s^2.
-    second_lag: f32,
-    first_lag: f32,
-    both_lags: f32,
-    lags_product: f32,
+    /// 1 / k_f, 1 / k_s, 1 / k_d and their sum, s.
+    lags: [f32; 3],
+    all_lags: f32,
+    /// (1/k_s + 1/k_d) / k_f and 1 / (k_s k_d), s^2.
+    products: [f32; 2],
     /// k_f, 1/s.
     k_f: f32,
-    /// (1 - e^(-k_s h)) / h, 1/s: what brings x to ubar as its filter would.
+    /// (1 - e^(-k_s h)) / h, 1/s: what brings x to y as its filter would.
     k_s_held: f32,
+    /// 1 - e^(-k_d h).
+    smoothing: f32,
     period: f32,
     /// 1 - e^(-k_f h), and h - (1 - e^(-k_f h)) / k_f, s: the step of c.
     towards: f32,
@@ -94,16 +119,17 @@ impl PositionLaw {
         require_positive(period, "control.period")?;
         let longest = FilterTransition::LONGEST_PERIOD;
         require(period <= longest, "control.period", Reason::Above(longest))?;
-        let (second_lag, first_lag) = (1.0 / p.k_f, 1.0 / p.k_s);
+        let lags = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / bandwidth);
+        let [of_command, of_intermediate, of_smoothed] = lags;
         let gone = |bandwidth: f32| -math::exp_m1(-f64::from(bandwidth) * f64::from(period));
         let towards = gone(p.k_f);
         Ok(Self {
-            second_lag,
-            first_lag,
-            both_lags: second_lag + first_lag,
-            lags_product: second_lag * first_lag,
+            lags,
+            all_lags: of_command + of_intermediate + of_smoothed,
+            products: [(of_intermediate + of_smoothed) * of_command, of_intermediate * of_smoothed],
             k_f: p.k_f,
             k_s_held: (gone(p.k_s) / f64::from(period)) as f32,
+            smoothing: gone(p.k_d) as f32,
             period,
             towards: towards as f32,
             ramp: (f64::from(period) - towards / f64::from(p.k_f)) as f32,
@@ -133,17 +159,20 @@ impl PositionLaw {
         &self,
         state: &State,
         reference: &Reference,
-        filter: &FilterState,
+        filters: &Filters,
         force: &Vector3<f32>,
         greatest: f32,
         caught: bool,
     ) -> PositionFeedback {
-        let FilterState { filtered: c, intermediate: x } = filter;
+        let Filters { command: c, intermediate: x, smoothed: y } = filters;
         let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
-        let (opposed, driven) = (c + force, x + force);
-        let z_1 = p + v * self.both_lags + opposed * self.lags_product;
-        let z_2 = v + opposed * self.second_lag + driven * self.first_lag;
+        let [of_command, of_intermediate, of_smoothed] = self.lags;
+        let [with_command, with_intermediate] = self.products;
+        let (c_d, x_d, y_d) = (c + force, x + force, y + force);
+        let z_1 = p + v * self.all_lags + c_d * with_command + x_d * with_intermediate;
+        let z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
         let feedback = self.saturated([&z_1, &z_2], force, greatest, if caught { self.net } else { f32::MAX });
+        let smoothed = y + (feedback - y) * self.smoothing;
         PositionFeedback {
             position_error: p,
             velocity_error: v,
@@ -151,7 +180,8 @@ impl PositionLaw {
             z_2,
             feedback,
             rate: (x - c) * self.k_f,
-            drive: (feedback - x) * self.k_s_held,
+            smoothed,
+            drive: (smoothed - x) * self.k_s_held,
         }
     }
 
@@ -182,13 +212,13 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held. c_z never falls below -A_-, to the last bit.
+    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the last bit.
     #[must_use]
-    pub fn advance(&self, filter: &FilterState, drive: &Vector3<f32>) -> FilterState {
-        let FilterState { filtered: c, intermediate: x } = filter;
-        let mut filtered = c + ((x - c) * self.towards + drive * self.ramp);
-        filtered.z = math::greater(filtered.z, -self.a_down);
-        FilterState { filtered, intermediate: x + drive * self.period }
+    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>) -> Filters {
+        let Filters { command: c, intermediate: x, .. } = filters;
+        let mut command = c + ((x - c) * self.towards + drive * self.ramp);
+        command.z = math::greater(command.z, -self.a_down);
+        Filters { command, intermediate: x + drive * self.period, smoothed: *smoothed }
     }
 }
 
@@ -198,7 +228,7 @@ pub fn net_level(parameters: &ExtendedParameters, gravity: f32) -> f64 {
     let p = parameters;
     let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(f64::from);
     let least = f64::from(gravity - p.a_down);
-    // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d and x + d start within M.
+    // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d, x + d and y + d start within M.
     math::lesser_f64(0.5 * reserve * least / (2.0 * k_f * (k_s + k_f)), 0.5 * rate * least / (2.0 * k_f))
 }
 

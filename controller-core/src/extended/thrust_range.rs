@@ -1,4 +1,4 @@
-//! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 6 of
+//! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 8 of
 //! `docs/extended-law.md`.
 //!
 //! Rotor i is asked for f_i = b_T,i T + b_tau,i . tau, with (b_T,i, b_tau,i) its row of B+. So it is within its range as long as T is
@@ -76,14 +76,15 @@ impl ThrustRange {
     /// N(tau), N, for a torque in N m and the thrust scale s.
     #[must_use]
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let least = self.rotors.iter().map(|part| scale * part.least - part.per_torque.dot(torque));
-        least.fold(0.0, math::greater) + self.margin
+        let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
+        least.fold(self.margin, math::greater)
     }
 
     /// C(tau), N, likewise; at most T_max.
     #[must_use]
     pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let greatest = self.rotors.iter().map(|part| scale * part.greatest - part.per_torque.dot(torque) - self.margin);
+        let greatest =
+            self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));
         greatest.fold(self.thrust_max, math::lesser)
     }
 }

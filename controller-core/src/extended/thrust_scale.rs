@@ -1,18 +1,19 @@
-//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 7 of `docs/extended-law.md`.
+//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 9 of `docs/extended-law.md`.
 //!
 //! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from what varies alone. With
 //! y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
 //! y - ybar = s (f - fbar) for any constant force,   s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
 //!
-//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are commanded f / s.
+//! So |s - s*| never rises while force and scale are constant, once the averages have forgotten how they began, and s stands
+//! still where thrust does. Rotors are commanded f / s.
 
 use super::parameters::ExtendedParameters;
 use crate::math;
 use nalgebra::Vector3;
 
 /// c_0, m/s^2: variations below it say little about the scale.
-const LEAST_VARIATION: f32 = 2.0;
+const LEAST_VARIATION: f64 = 2.0;
 
 /// Bandwidth of the slow averages, 1/s.
 const SLOW: f64 = 0.7;
@@ -44,6 +45,8 @@ pub struct ThrustScale {
     gain: f32,
     /// 1 - e^(-h SLOW).
     slow: f32,
+    /// c_0^2 / e^(-2 h SLOW), m^2/s^4.
+    least_square: f32,
     least: f32,
     greatest: f32,
 }
@@ -52,9 +55,11 @@ impl ThrustScale {
     /// For steps of `period`, s.
     #[must_use]
     pub fn new(parameters: &ExtendedParameters, period: f32) -> Self {
+        let kept = math::exp(-SLOW * f64::from(period));
         Self {
             gain: parameters.scale_rate * period,
-            slow: -math::exp_m1(-SLOW * f64::from(period)) as f32,
+            slow: (1.0 - kept) as f32,
+            least_square: (LEAST_VARIATION * LEAST_VARIATION / (kept * kept)) as f32,
             least: parameters.scale_least,
             greatest: parameters.scale_greatest,
         }
@@ -63,14 +68,15 @@ impl ThrustScale {
     /// The estimate after an interval in which `made` was observed and `commanded` acted, both m/s^2, world frame.
     #[must_use]
     pub fn learnt(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
-        let averages = ScaleEstimate {
-            made: estimate.made + (made - estimate.made) * self.slow,
-            commanded: estimate.commanded + (commanded - estimate.commanded) * self.slow,
-            ..*estimate
-        };
-        let (made, commanded) = (made - averages.made, commanded - averages.commanded);
-        let weight = self.gain / (commanded.norm_squared() + LEAST_VARIATION * LEAST_VARIATION);
-        let step = weight * (made - commanded * estimate.scale).dot(&commanded);
-        ScaleEstimate { scale: math::between(estimate.scale + step, self.least, self.greatest), ..averages }
+        let ScaleEstimate { made: slow_made, commanded: slow_commanded, scale } = estimate;
+        // From the averages before this interval; those with it are e^(-h SLOW) times as far, which is in c_0.
+        let (made, commanded) = (made - slow_made, commanded - slow_commanded);
+        let square = commanded.norm_squared();
+        let step = self.gain * (made.dot(&commanded) - scale * square) / (square + self.least_square);
+        ScaleEstimate {
+            made: slow_made + made * self.slow,
+            commanded: slow_commanded + commanded * self.slow,
+            scale: math::between(scale + step, self.least, self.greatest),
+        }
     }
 }

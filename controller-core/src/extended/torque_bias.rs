@@ -1,4 +1,4 @@
-//! An estimate of a constant torque: a centre of mass off the rotors' middle, a weak rotor. Section 5 of
+//! An estimate of a constant torque: a centre of mass off the rotors' middle, a weak rotor. Section 7 of
 //! `docs/extended-law.md`.
 //!
 //! | here | equation |

@@ -98,8 +98,13 @@ impl TurningLimit {
             q = shortened(whole, most) - carried;
         }
 
-        let tangential = (q - wanted) * magnitude;
-        let mut along = 0.0;
+        // Nearly every tick nothing is shortened.
+        let turned = q != wanted;
+        let (mut tangential, mut along) = (Vector2::zeros(), 0.0);
+        if turned {
+            cold_path();
+            tangential = (q - wanted) * magnitude;
+        }
         let k = self.softness;
         let swelling = radial_acceleration + magnitude * rate.norm_squared();
         let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - greatest);
@@ -107,13 +112,17 @@ impl TurningLimit {
             cold_path();
             along = least_shrinking - swelling;
         }
-        let falling = c_wanted + tangential.dot(&up.xy()) + along * up.z;
+        let mut falling = c_wanted;
+        if turned || along != 0.0 {
+            cold_path();
+            falling += tangential.dot(&up.xy()) + along * up.z;
+        }
         let least_rising = -2.0 * k * c_rate - k * k * (c + self.a_down);
         if falling < least_rising {
             cold_path();
             along += (least_rising - falling) / up.z;
         }
-        let changed = q != wanted || along != 0.0;
+        let changed = turned || along != 0.0;
         Limited { acceleration: q, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
     }
 

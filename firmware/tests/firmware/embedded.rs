@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 /// The file that is embedded when SCENARIO names none: see build.rs.
 const DEFAULT: &str = "vehicles/study.toml";
 
+/// A file whose gains do not follow from its rotors' lag.
+const PAPERS_LAW: &str = "vehicles/hummingbird-paper-law.toml";
+
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
 }
@@ -47,18 +50,41 @@ fn the_vehicles_of_this_repository_are_built_without_a_word() {
     }
 }
 
+/// The Pelican of rotors_simulator: a vehicle and its rotors, nothing else.
+const BARE: &str = "
+name = \"pelican\"
+
+[vehicle]
+mass = 1.04
+inertia = [0.01, 0.01, 0.02]
+
+[rotors]
+position = [[0.21, 0.0, 0.0], [0.0, 0.21, 0.0], [-0.21, 0.0, 0.0], [0.0, -0.21, 0.0]]
+spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]
+thrust_coefficient = 9.9865e-6
+drag_coefficient = 1.59784e-7
+speed = [0.0, 838.0]
+lag = 0.025
+";
+
+#[test]
+fn a_file_of_a_vehicle_and_its_rotors_alone_is_built_and_may_arm() {
+    let Embedded { source, warning } = embedded(BARE, "pelican.toml").unwrap();
+    assert!(warning.is_none() && source.contains("ExtendedParameters { k_p_across: "), "{warning:?}");
+}
+
 #[test]
 fn a_vehicle_whose_loop_is_unstable_is_not_built_and_the_loop_is_named() {
     // Rotors that follow a second late: the certificate, which is about commands, holds all the same.
-    let refused = changed("vehicles/hummingbird.toml", "lag = 0.005 ", "lag = 1.0 ").unwrap_err();
-    let loop_and_reason = "vehicles/hummingbird.toml: sampled loop roll: unstable, spectral radius 1.0";
+    let refused = changed(PAPERS_LAW, "lag = 0.005 ", "lag = 1.0 ").unwrap_err();
+    let loop_and_reason = "vehicles/hummingbird-paper-law.toml: sampled loop roll: unstable, spectral radius 1.0";
     assert!(refused.starts_with(loop_and_reason) && refused.lines().count() == 1, "{refused}");
 }
 
 #[test]
 fn a_vehicle_whose_loop_is_stable_without_its_margin_is_not_built_either() {
     // Judging every choice of gains takes seconds: only what the build asks before that.
-    let text = fs::read_to_string(file("vehicles/hummingbird.toml")).unwrap();
+    let text = fs::read_to_string(file(PAPERS_LAW)).unwrap();
     let with_lag = |lag: u32| {
         let text = text.replace("lag = 0.005 ", &format!("lag = {lag}e-3 "));
         board::check(&Scenario::parse(&text, "slow").unwrap(), "slow")

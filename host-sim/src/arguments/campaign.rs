@@ -37,7 +37,7 @@ pub struct CampaignArguments {
     /// Which law flies: ours, or another one to compare it with
     #[arg(long, value_name = "NAME", default_value = OURS, value_parser = law_names())]
     law: String,
-    /// File with that law's gains, as `compare --tune` writes it [default: those built in for the vehicles of docs/rivals.md]
+    /// File with that law's gains, as `compare` writes it [default: those built in for the vehicles of docs/rivals.md]
     #[arg(long, value_name = "FILE")]
     gains: Option<PathBuf>,
     /// A file with a [campaign] section, for a scenario that has none

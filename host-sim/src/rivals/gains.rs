@@ -71,8 +71,8 @@ impl Set {
             let there: Vec<&str> = document.iter().map(|(name, _)| name).collect();
             let said: Vec<String> = own.iter().map(|(key, values)| line(key, values)).collect();
             return Err(failed(format!(
-                "no table is of {}'s vehicle ({}); those there are of: {}; `host-sim compare FILE` finds the rivals' gains for \
-                 it and writes them to gains.toml, which --gains reads",
+                "no table is of {}'s vehicle ({}); those there are of: {}; `host-sim compare FILE` finds the rivals' \
+                 gains for it and writes them to gains.toml, which --gains reads",
                 scenario.name,
                 said.join(", "),
                 if there.is_empty() { "none".to_owned() } else { there.join(", ") }

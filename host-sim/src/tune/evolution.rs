@@ -132,4 +132,40 @@ mod tests {
         assert!(better(&verdict(0.4, f64::INFINITY), &rejected), "the nearer to acceptance wins");
         assert!(better(&verdict(0.0, 3.0), &poor), "of two accepted the cheaper");
     }
+
+    /// Judges by the distance from a start that cannot be bettered, or from elsewhere.
+    struct Bowl {
+        bottom: f64,
+    }
+
+    impl Judging for Bowl {
+        fn start(&self) -> Point {
+            vec![0.0; 3]
+        }
+
+        fn judge(&self, point: &Point) -> Verdict {
+            verdict(0.0, point.iter().map(|x| (x - self.bottom).powi(2)).sum())
+        }
+    }
+
+    fn searched(judge: &Bowl) -> Evolution {
+        let mut evolution =
+            Evolution::new(judge, &Effort { generations: 30, population: 12, seed: 1 }, &Interrupt::default());
+        (0..30).for_each(|_| evolution.generation(judge, &Interrupt::default()));
+        evolution
+    }
+
+    #[test]
+    fn a_start_that_nothing_betters_is_what_is_found() {
+        let evolution = searched(&Bowl { bottom: 0.0 });
+        assert_eq!(evolution.best(), Some((vec![0.0; 3], evolution.start().clone())));
+        assert_eq!(evolution.judged(), 12 * 31);
+    }
+
+    #[test]
+    fn a_bottom_outside_the_first_population_is_found() {
+        let evolution = searched(&Bowl { bottom: 1.0 });
+        let (_, best) = evolution.best().unwrap();
+        assert!(evolution.start().cost == 3.0 && best.cost < 0.01, "{best:?}");
+    }
 }

@@ -49,6 +49,10 @@ const REST: f64 = 2.0;
 const WEAK: f64 = 0.6;
 const HEAVY: f64 = 1.6;
 
+/// How far off the centre of mass may be, as a share of the longest arm: 5 mm are little on the Hummingbird, and turn over a
+/// vehicle of a hand's size.
+const OFF_CENTRE_MAX: f64 = 0.03;
+
 /// A vehicle as it may really be, relative to the file's model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Model {
@@ -56,7 +60,7 @@ pub struct Model {
     pub mass: f64,
     /// What rotors deliver.
     pub thrust: f64,
-    /// Centre of mass, m, body.
+    /// Centre of mass, m, body; on small vehicles nearer, by [`OFF_CENTRE_MAX`].
     pub centre_of_mass: [f64; 2],
     /// Factor on the rotors' lag.
     pub lag: f64,
@@ -64,8 +68,8 @@ pub struct Model {
     pub delay: f64,
 }
 
-/// The models a cost is averaged over: as the file says; and mass and thrust 10 % off, the centre of mass 5 mm, half as much lag
-/// again, 5 ms of delay, in combinations.
+/// The models a cost is averaged over: as the file says; and mass and thrust 10 % off, the centre of mass 5 mm, half as
+/// much lag again, 5 ms of delay, in combinations.
 pub const MODELS: [Model; 4] = [
     Model { mass: 1.0, thrust: 1.0, centre_of_mass: [0.0, 0.0], lag: 1.0, delay: 0.0 },
     Model { mass: 1.1, thrust: 0.9, centre_of_mass: [0.004, 0.003], lag: 1.5, delay: 0.0 },
@@ -277,10 +281,9 @@ fn really(scenario: &Scenario, model: &Model) -> Scenario {
     let vehicle = scenario.configuration.vehicle();
     if *model != MODELS[0] {
         let own = Truth::of_model(vehicle);
-        let [x, y] = model.centre_of_mass;
         real.reality.truth = Some(Truth {
             mass: own.mass * model.mass,
-            centre_of_mass: Vector3::new(x, y, 0.0),
+            centre_of_mass: off_centre(scenario, model),
             thrust_scale: model.thrust,
             ..own
         });
@@ -292,6 +295,15 @@ fn really(scenario: &Scenario, model: &Model) -> Scenario {
     // What a state that is estimated costs, every candidate pays alike.
     real.reality.estimator = None;
     real
+}
+
+/// Where the centre of mass of the scenario's vehicle really is, m, body.
+fn off_centre(scenario: &Scenario, model: &Model) -> Vector3<f64> {
+    let [x, y] = model.centre_of_mass;
+    let off = Vector3::new(x, y, 0.0);
+    let Some(rotors) = scenario.configuration.rotors() else { return off };
+    let arm = rotors.iter().map(|rotor| f64::from(rotor.position.xy().norm())).fold(0.0, f64::max);
+    off.cap_magnitude(OFF_CENTRE_MAX * arm)
 }
 
 /// What the trial under noise is told of the state.
@@ -307,5 +319,21 @@ pub fn noise(period: f64) -> Sensors {
         dropout: 0.0,
         delay_ticks: (0.02 / period).round() as u64,
         seed: 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_vehicle_is_as_far_off_centre_as_a_large_one_for_its_size() {
+        let large = Scenario::parse(scenario::STUDY, "study.toml").unwrap();
+        let small = scenario::STUDY.replace("0.120208", "0.0300520");
+        let small = Scenario::parse(&small, "small.toml").unwrap();
+        let [of_large, of_small] = [&large, &small].map(|scenario| off_centre(scenario, &MODELS[1]));
+        assert_eq!(of_large, Vector3::new(0.004, 0.003, 0.0));
+        assert!((of_small.norm() - 0.03 * 0.0425).abs() < 1e-5, "{of_small}");
+        assert!(of_small.cross(&of_large).norm() < 1e-12);
     }
 }

@@ -3,8 +3,11 @@
 use super::*;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::Certified;
+use controller_core::certificate::configuration::LawParameters;
 use controller_core::law::Law;
 use nalgebra::Vector3;
+
+const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
 
 /// The paper's file without the section that starts with `head`.
 fn without(head: &str) -> String {
@@ -43,11 +46,10 @@ fn sections_left_out_take_their_defaults() {
     assert!((placed.initial.position - Vector3::new(-2.0, 1.0, 5.5)).norm() < 1e-6);
     assert_eq!((placed.initial.velocity, placed.initial.angular_velocity), (Vector3::zeros(), Vector3::zeros()));
     assert_eq!(placed.initial.attitude.w, 1.0);
-    for head in ["[vehicle]", "[gains]"] {
-        let name = head.trim_matches(['[', ']']);
-        let error = Scenario::parse(&without(head), "f").err().unwrap();
-        assert_eq!(error.what, format!("{name}: missing, must be a section"));
-    }
+    let error = Scenario::parse(&without("[vehicle]"), "f").err().unwrap();
+    assert_eq!(error.what, "vehicle: missing, must be a section");
+    let without_gains = Scenario::parse(&without("[gains]"), "f").unwrap();
+    assert!(matches!(without_gains.configuration.law(), LawParameters::Extended(_)));
     let brief = Scenario::parse(&PAPER.replace("duration = 40.0", ""), "f").unwrap();
     assert_eq!(brief.timing.duration(), 20.0);
     assert!(Scenario::parse(&PAPER.replace("gravity = 9.81", ""), "f").unwrap().flies_like(&paper));
@@ -74,26 +76,47 @@ fn without_a_reference_it_hovers_where_it_starts() {
     }
 }
 
-/// With gains a name, a vehicle and rotors are all that a file needs.
 #[test]
-fn a_file_of_name_vehicle_rotors_and_gains_is_complete() {
-    const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
-    let kept = ["[vehicle]", "[gains]", "[rotors]"].map(|head| {
+fn a_file_of_name_vehicle_and_rotors_is_complete() {
+    let kept = ["[vehicle]", "[rotors]"].map(|head| {
         let section = &EXTENDED[EXTENDED.find(head).unwrap()..];
         &section[..section[1..].find("\n[").unwrap() + 2]
     });
-    let text = format!("name = \"short\"\n{}[control]\nlaw = \"extended\"\n", kept.concat());
-    let short = Scenario::parse(&text, "f").unwrap();
+    let bare = format!("name = \"short\"\n{}", kept.concat());
+    let short = Scenario::parse(&bare, "f").unwrap();
     assert!((short.configuration.limits().thrust_max - 50.13).abs() < 1e-3);
     assert_eq!((short.timing.ticks, short.timing.period_us), (2000, 10_000));
     assert_eq!(short.initial.position, Vector3::new(0.0, 0.0, 1.0));
-    Certified::new(short.configuration).unwrap();
-    // Without gains the law's own will be taken.
-    let bare = text.replace(kept[1], "");
-    for bare in [bare.clone(), bare.replace("law = \"extended\"", "")] {
-        let error = Scenario::parse(&bare, "f").err().unwrap();
-        assert_eq!(error.what, "gains: missing, must be a section");
+    assert!(matches!(short.configuration.law(), LawParameters::Extended(_)));
+    Certified::new(short.configuration.clone()).unwrap();
+    let same = Scenario::parse(&format!("{bare}[control]\nlaw = \"extended\"\n[gains]\n"), "f").unwrap();
+    assert!(same.flies_like(&short));
+    // The paper's gains follow from nothing.
+    let papers = Scenario::parse(&format!("{bare}[control]\nlaw = \"paper\"\n"), "f").err().unwrap();
+    assert_eq!(papers.what, "gains: missing, must be a section");
+}
+
+#[test]
+fn a_constant_of_the_extended_law_is_the_files_and_the_others_follow() {
+    let with = |lines: &str| Scenario::parse(&EXTENDED.replace("[gains]", &format!("[gains]\n{lines}")), "f");
+    let parameters = |scenario: Scenario| match scenario.configuration.law() {
+        LawParameters::Extended(law) => **&law.parameters,
+        LawParameters::Paper(_) => panic!(),
+    };
+    let (own, slower) = (parameters(with("").unwrap()), parameters(with("k_f = 5.0").unwrap()));
+    assert!(own.k_f > 5.0 && slower.k_f == 5.0 && slower.k_s < own.k_s && slower.w == own.w);
+    for (line, words) in [
+        ("k_ff = 5.0", "gains.k_ff: unknown key"),
+        ("k_f = 0.1", "gains.k_f: must be at least 0.2"),
+        ("force_up = 0.1", "gains.force_up: unknown key"),
+    ] {
+        let refused = with(line).err().unwrap().what;
+        assert!(refused.starts_with(words), "{refused}");
     }
+    let written = crate::extended::written(&own);
+    let (head, tail) = EXTENDED.split_once("[gains]").unwrap();
+    let all = format!("{head}{written}{}", &tail[tail.find("\n[control]").unwrap()..]);
+    assert_eq!(parameters(Scenario::parse(&all, "f").unwrap()), own);
 }
 
 #[test]
@@ -131,14 +154,9 @@ fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
 /// What the law's generators are not defined for at this rate is refused when the file is read, not when it is first flown.
 #[test]
 fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
-    const EXTENDED: &str = include_str!("../../../vehicles/hummingbird.toml");
-    for (key, value, field) in [
-        ("c_1 =", "c_1 = 900.0", "gains.c_1"),
-        ("c_2 =", "c_2 = 101.0", "gains.c_2"),
-        ("force_bandwidth_across =", "force_bandwidth_across = 61.0", "estimates.force_bandwidth_across"),
-    ] {
-        let line = EXTENDED.lines().find(|line| line.starts_with(key)).unwrap();
-        let refused = Scenario::parse(&EXTENDED.replace(line, value), "f").err().unwrap();
+    for (line, field) in [("c_1 = 900.0", "gains.c_1"), ("c_2 = 101.0", "gains.c_2")] {
+        let text = EXTENDED.replace("[gains]", &format!("[gains]\n{line}"));
+        let refused = Scenario::parse(&text, "f").err().unwrap();
         assert!(refused.to_string().contains(field), "{refused}");
     }
 }

@@ -14,8 +14,8 @@ pub(super) struct PositionGains {
     pub k_f: f64,
     /// k_s h.
     pub k_s: f64,
-    /// Whether x' is held between ticks, as under the extended law, and not ubar.
-    pub holds_drive: bool,
+    /// k_d h, of the extended law's third filter; it holds x' between ticks, the paper's law, which has none, ubar.
+    pub k_d: Option<f64>,
 }
 
 /// Gains of the attitude law about one axis.

@@ -76,6 +76,8 @@ struct Memory {
     filtered: f64,
     /// u_s.
     intermediate: f64,
+    /// y, of the extended law.
+    smoothed: f64,
     /// Of zeta, such an average.
     average: f64,
     /// omega_d' of the last tick.
@@ -142,6 +144,9 @@ impl Law {
         let mut used = Vec::new();
         if !matches!(self.chain, Chain::Attitude(_)) {
             used.extend([&mut memory.filtered, &mut memory.intermediate]);
+            if matches!(&self.chain, Chain::Vertical(gains) | Chain::Lateral(gains, _) if gains.k_d.is_some()) {
+                used.push(&mut memory.smoothed);
+            }
             if self.tracker.is_some() {
                 used.extend([&mut memory.tracked, &mut memory.speed]);
             }
@@ -252,15 +257,17 @@ fn averaged(x: f64, share: f64, past: f64) -> f64 {
 
 /// u_f as it stands, with its derivatives, against the force d; then the filters advance, ubar or the drive held.
 fn filters(gains: &PositionGains, memory: &mut Memory, [position, velocity]: [f64; 2], force: f64) -> Moving {
-    let PositionGains { k_p, k_v, k_f, k_s, holds_drive } = *gains;
-    let (u_f, u_s) = (memory.filtered, memory.intermediate);
-    let z_1 = position + (1.0 / k_f + 1.0 / k_s) * velocity + (u_f + force) / (k_f * k_s);
-    let z_2 = velocity + (u_f + force) / k_f + (u_s + force) / k_s;
+    let PositionGains { k_p, k_v, k_f, k_s, k_d } = *gains;
+    let (u_f, u_s, y) = (memory.filtered, memory.intermediate, memory.smoothed);
+    let (c, x, last) = (1.0 / k_f, 1.0 / k_s, k_d.map_or(0.0, |k_d| 1.0 / k_d));
+    let z_1 = position + (c + x + last) * velocity + (x + last) * c * (u_f + force) + x * last * (u_s + force);
+    let z_2 = velocity + c * (u_f + force) + x * (u_s + force) + last * (y + force);
     let ubar = -(k_p * z_1 + k_v * z_2) - force;
     let rate = k_f * (u_s - u_f);
     let (keep_filtered, keep_intermediate) = ((-k_f).exp(), (-k_s).exp());
-    if holds_drive {
-        let drive = (1.0 - keep_intermediate) * (ubar - u_s);
+    if let Some(k_d) = k_d {
+        memory.smoothed = y - (-k_d).exp_m1() * (ubar - y);
+        let drive = (1.0 - keep_intermediate) * (memory.smoothed - u_s);
         memory.filtered = u_f + (1.0 - keep_filtered) * (u_s - u_f) + (1.0 - (1.0 - keep_filtered) / k_f) * drive;
         memory.intermediate = u_s + drive;
         return Moving { value: u_f, rate, acceleration: k_f * (drive - rate) };

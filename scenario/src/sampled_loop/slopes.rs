@@ -42,7 +42,7 @@ impl Slopes {
     /// Of the paper's law: the MRP of a small angle is angle / 4, and (1 + |theta|^2) / 4 is 1/4.
     fn paper(gains: &Gains) -> Self {
         let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
-        let position = PositionGains { k_p, k_v, k_f, k_s, holds_drive: false };
+        let position = PositionGains { k_p, k_v, k_f, k_s, k_d: None };
         Self {
             stiffness: [f64::from(gains.k_theta) / 16.0; 3],
             damping: [f64::from(gains.k_omega); 3],
@@ -63,7 +63,7 @@ impl Slopes {
             k_v: k_v.into(),
             k_f: p.k_f.into(),
             k_s: p.k_s.into(),
-            holds_drive: true,
+            k_d: Some(p.k_d.into()),
         };
         let [lag, delay] = [actuators.lag, actuators.delay].map(f64::from);
         Self {
@@ -145,8 +145,14 @@ impl Estimates {
 
 /// With the period for the unit of time.
 fn in_samples(gains: &PositionGains, period: f64) -> PositionGains {
-    let PositionGains { k_p, k_v, k_f, k_s, .. } = *gains;
-    PositionGains { k_p: k_p * period * period, k_v: k_v * period, k_f: k_f * period, k_s: k_s * period, ..*gains }
+    let PositionGains { k_p, k_v, k_f, k_s, k_d } = *gains;
+    PositionGains {
+        k_p: k_p * period * period,
+        k_v: k_v * period,
+        k_f: k_f * period,
+        k_s: k_s * period,
+        k_d: k_d.map(|k_d| k_d * period),
+    }
 }
 
 /// The force estimate along an axis of this level, bandwidth and known drag; none where the level is zero.

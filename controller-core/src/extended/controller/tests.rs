@@ -1,54 +1,73 @@
-//! The extended law's step as a whole: hovering, refusals, and what it learns between two of them.
+//! The extended law's step as a whole: hovering, refusals, what it learns between two of them, what no state makes it exceed.
 
+extern crate std;
 use super::*;
+use crate::allocation::MinimumNorm;
+use crate::certificate::extended::ExtendedCertificate;
 use crate::extended::actuators::ActuatorParameters;
-use crate::extended::example;
+use crate::extended::defaults::NOTHING_GIVEN;
+use crate::extended::example::{self, Craft};
+use crate::extended::net::PATIENCE;
 use crate::extended::parameters::ExtendedParameters;
+use crate::extended::position::net_level;
 use crate::extended::tests::Random;
 use crate::heading::Heading;
-use crate::reference::Trajectory;
 use crate::reference::hover::Hover;
+use crate::reference::{ReferenceBounds, Trajectory};
 
+fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
+    let configuration = craft.configuration(parameters, ReferenceBounds::REST);
+    Controller::of(&configuration, &craft.law(parameters), craft.period).unwrap()
+}
+
+/// The Hummingbird on rotors that follow at once.
 fn controller(parameters: &ExtendedParameters) -> Controller {
-    let vehicle = example::vehicle();
-    let parameters = Extended::new(*parameters, &vehicle).unwrap();
     let actuators = ActuatorParameters { lag: 0.0, delay: 0.0 };
-    Controller::build(&vehicle, &ExtendedLaw { parameters, actuators }, Some(&example::rotors()), 0.01).unwrap()
+    of(&Craft { actuators, ..Craft::example() }, parameters)
+}
+
+fn hover() -> Reference {
+    Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0)
+}
+
+fn resting(position: Vector3<f32>) -> State {
+    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    State { position, velocity: zero, attitude, angular_velocity: zero }
 }
 
 #[test]
 fn hovering_asks_for_the_weight_and_no_torque() {
-    let mut controller = controller(&example::PARAMETERS);
+    let mut controller = of(&Craft::example(), &example::parameters());
     let hover = Hover::new(Vector3::new(1.0, 2.0, 3.0), Heading::FORWARD).unwrap();
-    let zero = Vector3::zeros();
-    let attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
-    let state = State { position: Vector3::new(1.0, 2.0, 3.0), velocity: zero, attitude, angular_velocity: zero };
     for _ in 0..500 {
-        let (wrench, _) = controller.step(&state, &hover.at(0)).unwrap();
+        let (wrench, _) = controller.step(&resting(Vector3::new(1.0, 2.0, 3.0)), &hover.at(0)).unwrap();
         assert!((wrench.thrust - 0.5 * 9.81).abs() < 1e-4 && wrench.torque.norm() < 1e-6, "{wrench:?}");
     }
-    assert!((controller.memory().estimates.scale - 1.0).abs() < 1e-6);
+    assert!((controller.thrust_scale() - 1.0).abs() < 1e-6);
 }
 
-#[test]
-fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
-    let mut controller = controller(&example::PARAMETERS);
-    let fresh = controller.clone();
-    let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
-    let mut random = Random(7);
-    let mut state = State {
+fn anywhere(random: &mut Random) -> State {
+    State {
         position: random.vector(5.0),
         velocity: random.vector(3.0),
         attitude: random.attitude(),
         angular_velocity: random.vector(9.0),
-    };
+    }
+}
+
+#[test]
+fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
+    let mut controller = of(&Craft::example(), &example::parameters());
+    let fresh = controller.clone();
+    let mut random = Random(7);
+    let mut state = anywhere(&mut random);
     for _ in 0..50 {
         state.velocity += random.vector(0.1);
-        controller.step(&state, &reference).unwrap();
+        controller.step(&state, &hover()).unwrap();
     }
     let before = controller.clone();
     let broken = State { velocity: Vector3::new(0.0, f32::NAN, 0.0), ..state };
-    assert_eq!(controller.step(&broken, &reference).unwrap_err(), InputError::NotFinite { field: "state.velocity" });
+    assert_eq!(controller.step(&broken, &hover()).unwrap_err(), InputError::NotFinite { field: "state.velocity" });
     assert_eq!(controller, before);
     controller.reset();
     assert_eq!(controller, fresh);
@@ -56,17 +75,16 @@ fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
 
 #[test]
 fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
-    let mut controller = controller(&example::PARAMETERS);
-    let mut reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
-    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
-    let mut state = State { position: Vector3::new(0.0, 0.0, 1e4), velocity: zero, attitude, angular_velocity: zero };
-    // Far too high, and pushed upwards: filter and estimate go to the ends at which u is least.
+    let p = example::parameters();
+    let mut controller = controller(&p);
+    let mut reference = hover();
+    let mut state = resting(Vector3::new(0.0, 0.0, 1e4));
+    // Far too high: the filter goes to the end at which u is least.
     for _ in 0..3_000 {
         state.velocity.z += 0.3;
         controller.step(&state, &reference).unwrap();
     }
-    let parameters = example::PARAMETERS;
-    let fall = parameters.position.m_down + parameters.estimates.force_vertical - example::vehicle().gravity;
+    let fall = p.a_down - example::vehicle().gravity;
     let before = controller.clone();
     reference.acceleration.z = fall;
     assert_eq!(controller.step(&state, &reference).unwrap_err(), InputError::FallsTooFast);
@@ -79,50 +97,112 @@ fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
 
 #[test]
 fn held_estimates_stay_as_they_are() {
-    let mut controller = controller(&example::PARAMETERS);
-    let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
-    let zero = Vector3::zeros();
-    let attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
-    let mut state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
+    let mut controller = controller(&example::parameters());
+    let mut state = resting(Vector3::zeros());
     let mut fly = |controller: &mut Controller, ticks: u32| {
         for _ in 0..ticks {
             state.velocity.x += 0.01;
-            controller.step(&state, &reference).unwrap();
+            controller.step(&state, &hover()).unwrap();
         }
-        controller.memory().estimates
+        controller.memory().averages
     };
     let learnt = fly(&mut controller, 50);
-    assert!(learnt.force.average.x > 0.5);
+    assert!(learnt.force.x > 0.5);
     for _ in 0..50 {
         controller.hold_estimates();
-        let held = fly(&mut controller, 1);
-        assert_eq!((held.force.average, held.torque, held.scale), (learnt.force.average, learnt.torque, learnt.scale));
+        assert_eq!(fly(&mut controller, 1), learnt);
     }
     // They go on once the wrench that acts is one that was commanded since.
-    assert!(fly(&mut controller, 5).force.average.x > learnt.force.average.x);
+    assert!(fly(&mut controller, 5).force.x > learnt.force.x);
 }
 
 /// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of, not the one to
 /// come.
 #[test]
 fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
-    let estimates = EstimateParameters { drag_across: 0.0, ..example::PARAMETERS.estimates };
-    let parameters = ExtendedParameters { estimates, ..example::PARAMETERS };
-    let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0);
-    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    let parameters = ExtendedParameters { drag_across: 0.0, ..example::parameters() };
     let learnt = |periods: [f32; 2]| {
         let mut controller = controller(&parameters);
-        let mut state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
+        let mut state = resting(Vector3::zeros());
         for tick in 0..400 {
             let period = periods[tick % 2];
             controller.set_period(period).unwrap();
-            controller.step(&state, &reference).unwrap();
+            controller.step(&state, &hover()).unwrap();
             state.velocity.x += 0.5 * period;
             state.angular_velocity.z += 0.2 * period;
         }
-        controller.memory().estimates
+        controller.memory().averages
     };
     let (steady, uneven) = (learnt([0.01; 2]), learnt([0.005, 0.015]));
-    assert!((uneven.force.average.x - 0.5).abs() < 1e-3, "{}", uneven.force.average.x);
+    assert!((uneven.force.x - 0.5).abs() < 1e-3, "{}", uneven.force.x);
     assert!((uneven.torque.z / steady.torque.z - 1.0).abs() < 0.02, "{} and {}", uneven.torque.z, steady.torque.z);
+}
+
+#[test]
+fn no_sequence_of_states_makes_it_ask_for_more_than_limits_and_rotors_give() {
+    let mut random = Random(81);
+    for number in 0..60 {
+        let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
+        let p = craft.constants(&NOTHING_GIVEN);
+        let configuration = craft.configuration(&p, ReferenceBounds::REST);
+        let bounds = ExtendedCertificate::new(&configuration, &craft.law(&p)).unwrap().bounds;
+        let mut controller = of(&craft, &p);
+        let rotors = MinimumNorm::new(&craft.rotors);
+        let mut state = anywhere(&mut random);
+        for tick in 0..1_500 {
+            match random.below(60) {
+                // Anywhere at once, or pushed, or turned.
+                0 => state = anywhere(&mut random),
+                1 => state.position = random.vector(100.0),
+                2 => state.angular_velocity = random.vector(40.0),
+                _ => {
+                    state.velocity += random.vector(0.3);
+                    state.angular_velocity += random.vector(0.5);
+                }
+            }
+            let (wrench, diagnostics) = controller.step(&state, &hover()).unwrap();
+            let scale = controller.thrust_scale();
+            let Wrench { thrust, torque } = wrench;
+            assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.greatest);
+            let excess = torque.abs().map(f64::from) - bounds.torque;
+            assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
+            let asked = Wrench { thrust: thrust / scale, torque: torque / scale };
+            assert!(!rotors.allocate(&asked).unwrap().clipped, "{craft:?} {tick}: {asked:?} {diagnostics:?}");
+        }
+    }
+}
+
+#[test]
+fn a_flight_that_stays_limited_is_caught_once_and_let_go_at_its_target() {
+    let craft = Craft::example();
+    let p = example::parameters();
+    let mut controller = of(&craft, &p);
+    // Pushed about so that the drive jumps all the time, and never at the target.
+    let mut random = Random(82);
+    let mut ticks = 0;
+    while controller.memory().net.times() == 0 {
+        let state = State { position: random.vector(50.0), velocity: random.vector(20.0), ..anywhere(&mut random) };
+        controller.hold_estimates();
+        controller.step(&state, &hover()).unwrap();
+        ticks += 1;
+        assert!(ticks < 100_000);
+    }
+    assert!(ticks as f32 * craft.period >= PATIENCE);
+    // The filters started afresh, and away from the target c stays within the net's level.
+    let net = net_level(&p, craft.vehicle.gravity) as f32;
+    for _ in 0..500 {
+        controller.hold_estimates();
+        controller.step(&resting(random.vector(50.0)), &hover()).unwrap();
+        assert!(controller.memory().net.is_caught());
+        let FilterState { filtered: c, .. } = controller.memory().filter;
+        assert!(c.xy().norm() <= net && c.z.abs() <= net, "{c} {net}");
+    }
+    let mut at_target = 0;
+    while controller.memory().net.is_caught() {
+        controller.hold_estimates();
+        controller.step(&resting(Vector3::zeros()), &hover()).unwrap();
+        at_target += 1;
+        assert!(at_target < 1_000);
+    }
+    assert_eq!(controller.memory().net.times(), 1);
 }

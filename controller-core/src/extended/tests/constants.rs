@@ -1,0 +1,53 @@
+//! The declaration of the constants, and what their ranges refuse.
+
+use crate::error::{ParameterError, Reason};
+use crate::extended::actuators::ActuatorParameters;
+use crate::extended::example;
+use crate::extended::parameters::{Extended, ExtendedParameters};
+
+#[test]
+fn a_lag_longer_than_anything_is_held_for_as_long_as_can_be_counted() {
+    assert_eq!(ActuatorParameters { lag: 1e9, delay: 0.0 }.settling(0.1), u32::MAX);
+}
+
+/// The example with one constant changed.
+fn refused(key: &str, value: f32) -> ParameterError {
+    let mut values = example::parameters().values();
+    values[example::place(key)] = value;
+    Extended::new(ExtendedParameters::from_values(values), &example::vehicle()).unwrap_err()
+}
+
+#[test]
+fn every_constant_is_refused_by_its_name_on_either_side_of_its_range() {
+    for constant in ExtendedParameters::TABLE {
+        let beyond = |reason| ParameterError { field: constant.path, reason };
+        let (least, greatest) = (constant.range.least, constant.range.greatest);
+        assert_eq!(refused(constant.key, least.next_down()), beyond(Reason::Below(least)));
+        assert_eq!(refused(constant.key, greatest.next_up()), beyond(Reason::Above(greatest)));
+        assert_eq!(refused(constant.key, f32::NAN), beyond(Reason::NotFinite));
+    }
+}
+
+#[test]
+fn constants_that_leave_nothing_of_one_another_are_refused_by_name() {
+    let p = example::parameters();
+    let beyond = |field, reason| ParameterError { field, reason };
+    assert_eq!(refused("a_down", 9.81), beyond("gains.a_down", Reason::NotBelow(9.81)));
+    assert_eq!(refused("force_up", p.a_down), beyond("estimates.force_up", Reason::NotBelow(p.a_down)));
+    assert_eq!(refused("force_across", p.a_across), beyond("estimates.force_across", Reason::NotBelow(p.a_across)));
+    let most = p.turn_acceleration;
+    assert_eq!(refused("turn_reserve", most.next_up()), beyond("gains.turn_reserve", Reason::Above(most)));
+    // Below it the rounding of a rotor's thrust would show.
+    let least = Extended::FLOOR_MARGIN_LEAST * 0.5 * 9.81;
+    assert_eq!(refused("floor_margin", least.next_down()), beyond("gains.floor_margin", Reason::Below(least)));
+}
+
+#[test]
+fn the_table_names_each_constant_once_with_its_place() {
+    let values = core::array::from_fn(|place| place as f32);
+    assert_eq!(ExtendedParameters::from_values(values).values(), values);
+    for (place, constant) in ExtendedParameters::TABLE.iter().enumerate() {
+        assert_eq!(example::place(constant.key), place);
+        assert_eq!(constant.path.split_once('.'), Some((constant.section, constant.key)));
+    }
+}

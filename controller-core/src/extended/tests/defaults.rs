@@ -1,0 +1,104 @@
+//! Constants from a vehicle's numbers.
+
+use super::Random;
+use super::std::string::{String, ToString};
+use crate::allocation::{QuadX, Rotors};
+use crate::certificate::Certificate;
+use crate::extended::controller::Controller;
+use crate::extended::defaults::{self, NOTHING_GIVEN};
+use crate::extended::example::{self, Craft, given, place};
+use crate::extended::parameters::ExtendedParameters;
+use crate::reference::ReferenceBounds;
+use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
+
+/// How much of the bounds that the formulas allow are certified, in steps of a tenth; what fails where not even a hundredth is.
+fn certified(craft: &Craft, parameters: &ExtendedParameters) -> Result<f32, String> {
+    let most = defaults::reference_bounds(&craft.airframe(), parameters);
+    let mut share = 1.0;
+    loop {
+        let bounds = ReferenceBounds {
+            horizontal_speed: most.horizontal_speed * share,
+            horizontal_acceleration: most.horizontal_acceleration * share,
+            vertical_acceleration: most.vertical_acceleration * share,
+            jerk: most.jerk * share,
+            snap: most.snap * share,
+            heading_rate: most.heading_rate * share,
+            heading_second_derivative: most.heading_second_derivative * share,
+        };
+        let certificate = Certificate::new(&craft.configuration(parameters, bounds)).unwrap();
+        if certificate.holds() {
+            return Ok(share);
+        }
+        if share < 0.01 {
+            return Err(certificate.tightest().unwrap().to_string());
+        }
+        share *= 0.9;
+    }
+}
+
+#[test]
+fn every_plausible_vehicle_is_certified_with_constants_in_their_ranges() {
+    let mut random = Random(21);
+    for _ in 0..300 {
+        let craft = Craft::random(&mut random);
+        let parameters = craft.constants(&NOTHING_GIVEN);
+        for (constant, value) in ExtendedParameters::TABLE.iter().zip(parameters.values()) {
+            assert_eq!(constant.range.check(value, constant.path), Ok(()), "{craft:?}");
+        }
+        assert_eq!(Controller::check_period(&craft.law(&parameters).parameters, craft.period), Ok(()), "{craft:?}");
+        assert!(certified(&craft, &parameters).is_ok(), "{craft:?}: {:?}", certified(&craft, &parameters));
+    }
+}
+
+#[test]
+fn what_is_given_is_kept_to_the_bit_and_the_rest_follows() {
+    let craft = Craft::example();
+    let built = craft.constants(&NOTHING_GIVEN).values();
+    for (at, (constant, value)) in ExtendedParameters::TABLE.iter().zip(built).enumerate() {
+        let chosen = (0.9 * value).clamp(constant.range.least, constant.range.greatest);
+        let parameters = craft.constants(&given(constant.key, chosen));
+        assert_eq!(parameters.values()[at].to_bits(), chosen.to_bits(), "{}", constant.path);
+    }
+    let others = |key: &str, value: f32, follows: &[&str]| {
+        let parameters = craft.constants(&given(key, value)).values();
+        for follows in follows {
+            assert_ne!(parameters[place(follows)], built[place(follows)], "{follows} with {key}");
+        }
+    };
+    others("k_f", 5.0, &["k_s"]);
+    others("k_v_across", 2.0, &["k_v_vertical", "k_p_across", "k_p_vertical"]);
+    others("m_all", 0.2, &["w", "m_t", "turn_acceleration", "turn_reserve", "r_0"]);
+    others("yaw_acceleration", 1.0, &["m_all"]);
+    others("torque_tilt", 0.05, &["m_all"]);
+    others("scale_least", 0.8, &["force_down"]);
+    others("a_down", 4.0, &["force_up"]);
+}
+
+#[test]
+fn a_vehicle_of_twice_the_size_has_the_same_bandwidths() {
+    let craft = Craft::example();
+    let of = |factor: f32| {
+        let mass = craft.vehicle.mass * factor;
+        let inertia = craft.vehicle.inertia * factor;
+        let vehicle = Vehicle::new(VehicleParameters { mass, inertia, ..*craft.vehicle }).unwrap();
+        let limits = LimitParameters {
+            thrust_max: craft.limits.thrust_max * factor,
+            torque_max: craft.limits.torque_max * factor,
+        };
+        let quad = QuadX {
+            thrust_coefficient: example::QUAD.thrust_coefficient * factor,
+            drag_coefficient: example::QUAD.drag_coefficient * factor,
+            ..example::QUAD
+        };
+        let (limits, rotors) = (Limits::new(limits, &vehicle).unwrap(), Rotors::quad_x(quad).unwrap());
+        Craft { vehicle, limits, rotors, ..craft.clone() }.constants(&NOTHING_GIVEN)
+    };
+    // Forces and torques scale with the mass, accelerations and bandwidths stay.
+    let (single, double) = (of(1.0), of(2.0));
+    for (constant, (one, two)) in ExtendedParameters::TABLE.iter().zip(single.values().into_iter().zip(double.values()))
+    {
+        let is_torque = ["N m:", "N m s:", "N:"].iter().any(|unit| constant.about.contains(unit));
+        let expected = if is_torque { 2.0 * one } else { one };
+        assert!((two - expected).abs() <= 1e-4 * expected, "{}: {one} and {two}", constant.path);
+    }
+}

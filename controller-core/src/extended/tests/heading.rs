@@ -1,0 +1,58 @@
+//! The heading generator.
+
+use crate::attitude_reference::AngularMotion;
+use crate::error::ParameterError;
+use crate::extended::controller::Controller;
+use crate::extended::example::{self, Craft};
+use crate::extended::heading::{self, HeadingLag, advanced, turning};
+use crate::extended::parameters::ExtendedParameters;
+use nalgebra::{Vector2, Vector3};
+
+#[test]
+fn the_heading_catches_up_and_never_turns_faster_than_it_may() {
+    let parameters = example::parameters();
+    for start in [0.1_f32, 1.0, 2.0, 3.0, -3.1] {
+        let (sin, cos) = (0.5 * start).sin_cos();
+        let mut lag = HeadingLag { half_angle: Vector2::new(cos, sin), rate: 0.0 };
+        for tick in 0..1_000 {
+            let psi = 0.01 * tick as f32;
+            let motion = AngularMotion {
+                velocity: Vector3::new(0.3, -0.2, 0.8 * psi.sin()),
+                acceleration: Vector3::new(1.0, 2.0, 0.8 * psi.cos()),
+            };
+            let desired = turning(&lag, &motion, &parameters, 0.01);
+            assert!(desired.acceleration.z.abs() <= parameters.yaw_acceleration * (1.0 + 1e-5));
+            assert!(desired.velocity.z.abs() <= parameters.yaw_rate * (1.0 + 1e-5));
+            assert!((desired.velocity.xy().norm() - motion.velocity.xy().norm()).abs() < 1e-6);
+            lag = advanced(&lag, &desired, 0.01);
+        }
+        assert!(lag.half_angle.y.abs() < 2e-3, "from {start}: {lag:?}");
+    }
+}
+
+#[test]
+fn ticks_too_long_for_the_generator_are_refused_by_name() {
+    let refused = |c_1: f32, c_2: f32| {
+        let parameters = ExtendedParameters { c_1, c_2, ..example::parameters() };
+        heading::check(&parameters, 0.01).map_err(|error: ParameterError| error.field)
+    };
+    assert_eq!(refused(9.0, 6.0), Ok(()));
+    assert_eq!(refused(30.0, 0.15), Err("gains.c_1"));
+    assert_eq!(refused(900.0, 6.0), Err("gains.c_1"));
+    assert_eq!(refused(9.0, 250.0), Err("gains.c_2"));
+    // All that are let through die out: the greatest root of their polynomial is inside the unit circle.
+    for c_2 in [0.1_f32, 1.0, 10.0, 100.0] {
+        for share in [0.001, 0.1, 1.0] {
+            let c_1 = share * 0.5 * c_2 / 0.01;
+            assert_eq!(refused(c_1, c_2), Ok(()));
+            let (half, product) = (f64::from(1.0 - 0.005 * c_2), f64::from(1.0 - 0.01 * c_2 + 1e-4 * c_1));
+            let square = half * half - product;
+            let greatest = if square > 0.0 { half.abs() + square.sqrt() } else { product.sqrt() };
+            assert!(greatest < 1.0, "{c_1} {c_2}: {greatest}");
+        }
+    }
+    let craft = Craft::example();
+    let law = craft.law(&ExtendedParameters { c_1: 30.0, c_2: 0.15, ..example::parameters() });
+    let configuration = craft.configuration(&law.parameters, example::REFERENCES);
+    assert_eq!(Controller::of(&configuration, &law, 0.01).unwrap_err().field, "gains.c_1");
+}

@@ -1,0 +1,184 @@
+//! The position law: its envelope, its filters, and that errors fall.
+
+use super::Random;
+use crate::extended::defaults::NOTHING_GIVEN;
+use crate::extended::example::{self, Craft, greatest_accelerations};
+use crate::extended::parameters::ExtendedParameters;
+use crate::extended::position::{PositionFeedback, PositionLaw};
+use crate::heading::Heading;
+use crate::position::FilterState;
+use crate::reference::hover::Hover;
+use crate::reference::{Reference, Trajectory};
+use crate::state::State;
+use nalgebra::{Quaternion, Vector3};
+
+fn origin() -> Reference {
+    Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0)
+}
+
+pub(super) fn at(position: Vector3<f32>, velocity: Vector3<f32>) -> State {
+    let attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
+    State { position, velocity, attitude, angular_velocity: Vector3::zeros() }
+}
+
+/// A force as the estimate has it at most, half of the time at its level across.
+pub(super) fn force(random: &mut Random, p: &ExtendedParameters) -> Vector3<f32> {
+    let (sin, cos) = random.between(0.0, core::f32::consts::TAU).sin_cos();
+    let across = p.force_across * random.between(0.0, 2.0).min(1.0);
+    Vector3::new(across * cos, across * sin, random.between(-p.force_down, p.force_up))
+}
+
+#[test]
+fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
+    // What is left to the feedback where a force takes all of the envelope, m/s^2: the law's LEVEL_LEAST.
+    let least = 0.3;
+    let mut random = Random(61);
+    for _ in 0..200 {
+        let craft = Craft::random(&mut random);
+        let p = craft.constants(&NOTHING_GIVEN);
+        let gravity = craft.vehicle.gravity;
+        let law = PositionLaw::new(&p, gravity, craft.period).unwrap();
+        let [weakest, strongest] = greatest_accelerations(&craft, &p);
+        for _ in 0..300 {
+            let size = random.logarithmic(0.01, 1e4);
+            let state = at(random.vector(size), random.vector(size));
+            let filter = FilterState { filtered: random.vector(5.0), intermediate: random.vector(5.0) };
+            let d = force(&mut random, &p);
+            let greatest = random.between(weakest, strongest);
+            let ubar = law.feedback(&state, &origin(), &filter, &d, greatest, false).feedback;
+            let allowance = 1e-5 * greatest;
+            let (lift, across, wind) = (gravity + ubar.z, ubar.xy().norm(), d.xy().norm() + least);
+            assert!(ubar.z >= -p.a_down - allowance, "{ubar}");
+            assert!(lift <= greatest.max(gravity - d.z + least) + allowance, "{ubar} {d} {greatest}");
+            assert!(across <= p.a_across.max(wind) + allowance, "{ubar} {d}");
+            // Across has what the vertical leaves of thrust and tilt, or what the force takes.
+            let left = (greatest * greatest - lift * lift).max(0.0).sqrt();
+            assert!(across <= (0.95 * left).min(0.95 * lift * p.tilt_max.tan()).max(wind) + 1e-3, "{ubar} {d}");
+        }
+    }
+}
+
+#[test]
+fn the_filters_step_is_that_of_their_equations() {
+    let p = example::parameters();
+    let period = 0.01;
+    let law = PositionLaw::new(&p, 9.81, period).unwrap();
+    let mut random = Random(62);
+    for _ in 0..100 {
+        let filter = FilterState { filtered: random.vector(3.0), intermediate: random.vector(3.0) };
+        let drive = random.vector(100.0);
+        let found = law.advance(&filter, &drive);
+        // Midpoint steps of the equations in double precision.
+        let (mut c, mut x) = (filter.filtered.map(f64::from), filter.intermediate.map(f64::from));
+        let (steps, k_f, slope) = (1_000, f64::from(p.k_f), drive.map(f64::from));
+        let step = f64::from(period) / f64::from(steps);
+        for _ in 0..steps {
+            let middle = c + (x - c) * (0.5 * step * k_f);
+            c += (x + slope * (0.5 * step) - middle) * (k_f * step);
+            x += slope * step;
+        }
+        assert!((found.filtered.map(f64::from) - c).norm() < 2e-6, "{found:?} {c}");
+        assert!((found.intermediate.map(f64::from) - x).norm() < 2e-6, "{found:?} {x}");
+    }
+}
+
+#[test]
+fn what_the_filter_makes_never_falls_below_its_end() {
+    let p = example::parameters();
+    let law = PositionLaw::new(&p, 9.81, 0.01).unwrap();
+    let falling = FilterState { filtered: Vector3::zeros(), intermediate: Vector3::new(0.0, 0.0, -50.0) };
+    assert_eq!(law.advance(&falling, &Vector3::zeros()).filtered.z, -p.a_down);
+}
+
+/// A point mass under the law's acceleration and a constant force D that is known, in ticks: what each tick had.
+fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&PositionFeedback)) {
+    let p = example::parameters();
+    let (gravity, h) = (9.81, 0.002);
+    let law = PositionLaw::new(&p, gravity, h).unwrap();
+    let [greatest, _] = greatest_accelerations(&Craft::example(), &p);
+    let mut state = start;
+    let mut filter = FilterState { filtered: -force, intermediate: -force };
+    for _ in 0..ticks {
+        let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, false);
+        see(&feedback);
+        let next = law.advance(&filter, &feedback.drive);
+        // c moves nearly straight within a tick.
+        let acceleration = (filter.filtered + next.filtered) * 0.5 + force;
+        state.position += state.velocity * h + acceleration * (0.5 * h * h);
+        state.velocity += acceleration * h;
+        filter = next;
+    }
+}
+
+const FORCES: [[f32; 3]; 3] = [[0.0; 3], [3.0, -4.0, 1.5], [-2.0, 5.0, -6.0]];
+
+#[test]
+fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
+    for d in FORCES.map(Vector3::from) {
+        let mut before: Option<PositionFeedback> = None;
+        flown(at(Vector3::new(4.0, -3.0, 2.0), Vector3::new(1.0, 2.0, -3.0)), d, 2_000, |now| {
+            if let Some(before) = before.replace(*now) {
+                let h = 0.002;
+                let moved = (now.z_1 - before.z_1) / h;
+                // Half a tick of z_2', some tens of m/s^2, and rounding of metres over a tick.
+                assert!((moved - (before.z_2 + now.z_2) * 0.5).norm() < 5e-3, "{moved} {}", now.z_2);
+                let moved = (now.z_2 - before.z_2) / h;
+                // Half a tick of ubar', and rounding of m/s over a tick.
+                let expected = before.feedback + d;
+                assert!((moved - expected).norm() < 1e-2 * (1.0 + expected.norm()), "{moved} {expected}");
+            }
+        });
+    }
+}
+
+/// The integral from 0 to z of s(s(k_p z; k_v v_c); M), by Simpson's rule.
+fn potential(z: f64, [k_p, k_v, speed, level]: [f64; 4]) -> f64 {
+    let s = |x: f64, level: f64| level * x / level.hypot(x);
+    let of = |z: f64| s(s(k_p * z, k_v * speed), level);
+    let (steps, width) = (200, z / 200.0);
+    (0..steps)
+        .map(|i| {
+            let left = width * f64::from(i);
+            (of(left) + 4.0 * of(left + 0.5 * width) + of(left + width)) * width / 6.0
+        })
+        .sum()
+}
+
+#[test]
+fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
+    let p = example::parameters();
+    let [greatest, _] = greatest_accelerations(&Craft::example(), &p);
+    for d in FORCES.map(Vector3::from) {
+        // The vertical: its level and its approach depend on the side.
+        for (height, climb) in [(5.0, 0.0), (-5.0, 2.0), (0.3, -4.0), (-30.0, -10.0)] {
+            let mut before = f64::INFINITY;
+            flown(at(Vector3::new(0.0, 0.0, height), Vector3::new(0.0, 0.0, climb)), d, 10_000, |now| {
+                let (z_1, z_2) = (f64::from(now.z_1.z), f64::from(now.z_2.z));
+                let down = z_1 > 0.0;
+                let level = if down { p.a_down - d.z } else { greatest - 9.81 + d.z };
+                let speed = if down { p.v_down } else { p.v_up };
+                let energy =
+                    0.5 * z_2 * z_2 + potential(z_1, [p.k_p_vertical, p.k_v_vertical, speed, level].map(f64::from));
+                // Ticks: the drive is held for one, so V_0 may rise by (z_2' h)^2 where its fall passes zero.
+                assert!(energy < before + 1e-3, "{energy} after {before}");
+                before = energy;
+            });
+            assert!(before < 1e-3, "{before}");
+        }
+        // Across, at rest along the vertical: its level is then constant.
+        for (position, velocity) in [([6.0, 0.0, 0.0], [0.0, 3.0, 0.0]), ([-20.0, 9.0, 0.0], [5.0, -5.0, 0.0])] {
+            let mut before = f64::INFINITY;
+            let lift = 9.81 - d.z;
+            let left = 0.95 * (greatest * greatest - lift * lift).sqrt();
+            let level = p.a_across.min(0.95 * lift * p.tilt_max.tan()).min(left) - d.xy().norm();
+            flown(at(Vector3::from(position), Vector3::from(velocity)), d, 10_000, |now| {
+                let (z_1, z_2) = (f64::from(now.z_1.xy().norm()), f64::from(now.z_2.xy().norm()));
+                let constants = [p.k_p_across, p.k_v_across, p.v_across, level].map(f64::from);
+                let energy = 0.5 * z_2 * z_2 + potential(z_1, constants);
+                assert!(energy < before + 1e-3, "{energy} after {before}");
+                before = energy;
+            });
+            assert!(before < 1e-3, "{before}");
+        }
+    }
+}

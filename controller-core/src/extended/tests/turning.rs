@@ -1,0 +1,111 @@
+//! The limiter of the frame's turning, driven for long.
+
+use super::Random;
+use crate::attitude_reference::DesiredAttitude;
+use crate::extended::defaults::NOTHING_GIVEN;
+use crate::extended::example::{Craft, greatest_accelerations};
+use crate::extended::parameters::ExtendedParameters;
+use crate::extended::position::PositionLaw;
+use crate::extended::turning::{Circumstances, TurningLimit};
+use crate::heading::Heading;
+use crate::position::FilterState;
+use nalgebra::{Vector2, Vector3};
+
+/// What a drive came to at worst.
+#[derive(Debug, Default)]
+struct Worst {
+    /// The turning rate for each Omega.
+    rate: f32,
+    /// How far below the cosine of its cone rho_z came.
+    beyond_cone: f32,
+    /// |u| for each U.
+    thrust: f32,
+    /// Ticks in which something was changed.
+    changed: u32,
+}
+
+/// The filters driven by a ubar that jumps about its envelope, while the budget jumps down to the reserve and the heading turns.
+fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
+    let (gravity, h) = (craft.vehicle.gravity, craft.period);
+    let position = PositionLaw::new(p, gravity, h).unwrap();
+    let limit = TurningLimit::new(p, h);
+    let [greatest, _] = greatest_accelerations(craft, p);
+    let held = (1.0 - (-p.k_s * h).exp()) / h;
+    let mut filter = FilterState::ZERO;
+    let (mut ubar, mut budget, mut yaw_rate) = (Vector3::zeros(), 0.0, 0.0);
+    let mut worst = Worst::default();
+    for tick in 0..5_000 {
+        if random.below(40) == 0 {
+            let (sin, cos) = random.between(0.0, core::f32::consts::TAU).sin_cos();
+            let lift = gravity + random.between(-p.a_down, greatest - gravity);
+            let left = (greatest * greatest - lift * lift).max(0.0).sqrt();
+            let reach = p.a_across.min(0.95 * left).min(0.95 * lift * p.tilt_max.tan());
+            ubar = Vector3::new(reach * cos, reach * sin, lift - gravity);
+        }
+        if random.below(30) == 0 {
+            budget = p.turn_acceleration * random.signed();
+            yaw_rate = p.yaw_rate * random.signed();
+        }
+        let FilterState { filtered: c, intermediate: x } = filter;
+        let drive = (ubar - x) * held;
+        let rate = (x - c) * p.k_f;
+        let wanted = (drive - rate) * p.k_f;
+        let command = Vector3::new(c.x, c.y, c.z + gravity);
+        let desired = DesiredAttitude::new(&command, &Heading::FORWARD);
+        let turn = desired.turn(&rate, &wanted);
+        let up = desired.up();
+        let vertical = [c.z, rate.z, wanted.z];
+        let limited = limit.limited(&turn, &Circumstances { budget, yaw_rate, up, greatest, vertical });
+
+        let whole = limited.acceleration + Vector2::new(turn.rate.y, -turn.rate.x) * yaw_rate;
+        assert!(whole.norm() <= budget.max(p.turn_reserve) * (1.0 + 1e-5), "{craft:?} {tick}");
+        worst.rate = worst.rate.max(turn.rate.norm() / p.turn_rate);
+        worst.beyond_cone = worst.beyond_cone.max(p.tilt_max.cos() - up.z);
+        worst.thrust = worst.thrust.max(command.norm() / greatest);
+        worst.changed += u32::from(limited.change.is_some());
+
+        // What was added to u'' is what the drive makes of it, and the turn is the limited one.
+        let change = limited.change.map_or(Vector3::zeros(), |change| desired.turned(&change));
+        let made = desired.turn(&rate, &(wanted + change)).acceleration;
+        // Where the cone is not held, |u| may be beyond what single precision resolves.
+        let resolved = command.norm() < 2.0 * greatest;
+        let rounding = 1e-4 * (1.0 + turn.acceleration.norm());
+        assert!(!resolved || (made - limited.acceleration).norm() <= rounding, "{craft:?} {tick}: {made} {limited:?}");
+        filter = position.advance(&filter, &(drive + change / p.k_f));
+        assert!(filter.filtered.z >= -p.a_down);
+    }
+    worst
+}
+
+#[test]
+fn the_frame_turns_within_its_budget_and_rate_and_never_falls_too_fast() {
+    let mut random = Random(51);
+    for number in 0..60 {
+        let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
+        let worst = driven(&craft, &craft.constants(&NOTHING_GIVEN), &mut random);
+        assert!(worst.changed > 1_000, "{worst:?}");
+        // A tick's q is that of its start, and alpha is cut after Omega: measured, a tenth beyond it in ticks of 10 ms.
+        assert!(worst.rate < 1.0 + 15.0 * craft.period, "{craft:?}: {worst:?}");
+    }
+}
+
+/// With less, a rate along the cone's edge, or a heading that turns meanwhile, takes more than alpha_0.
+#[test]
+fn the_thrust_direction_stays_in_its_cone_and_below_u_where_the_reserve_bends_the_greatest_rate() {
+    let mut random = Random(52);
+    for _ in 0..60 {
+        let craft = Craft::random(&mut random);
+        let p = craft.constants(&NOTHING_GIVEN);
+        // What is decided at a tick holds for all of it: half a period allows for that.
+        // Omega (Omega + W_max) <= alpha_0.
+        let bent = 0.5 * ((p.yaw_rate * p.yaw_rate + 4.0 * p.turn_reserve).sqrt() - p.yaw_rate);
+        let p = ExtendedParameters { turn_rate: p.turn_rate.min(bent), ..p };
+        let worst = driven(&craft, &p, &mut random);
+        assert!(
+            worst.beyond_cone < 0.5 * craft.period && worst.thrust < 1.001,
+            "{craft:?}: {worst:?} Om {} a0 {}",
+            p.turn_rate,
+            p.turn_reserve
+        );
+    }
+}
