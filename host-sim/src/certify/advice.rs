@@ -55,6 +55,10 @@ pub fn of_inequality(name: &str) -> &'static str {
         "T2 yaw torque" => {
             "torque about yaw, limits.torque_max. Lower gains.yaw_acceleration, gains.m_omega_z, gains.eta or estimates.torque_yaw."
         }
+        "T1 thrust floor at the greatest torque" => {
+            "the greatest thrust. No rotor may fall below its least thrust while all of gains.m_all, the reserve and yaw are asked for, and that \
+             takes a thrust near limits.thrust_max. Raise limits.thrust_max where the rotors have it, or lower m_all."
+        }
         "R rotors' range" => {
             "the rotors. With one at its greatest thrust and another at its least, gains.m_all, the reserve and yaw take up all that is between, as \
              the formulas intend. For more, the rotors must give more; yaw costs them most: a lower gains.yaw_acceleration or gains.m_omega_z leaves \

@@ -2,7 +2,7 @@
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
-use controller_core::extended::budget::{THRUST_LEFT, TorqueBudget};
+use controller_core::extended::budget::{Row, THRUST_LEFT, TorqueBudget};
 use controller_core::extended::parameters::ExtendedParameters;
 
 /// The table and the lines below it.
@@ -41,19 +41,21 @@ fn budget(configuration: &Configuration, parameters: &ExtendedParameters) -> Tor
     TorqueBudget::new(parameters, configuration.vehicle(), configuration.limits(), configuration.rotors())
 }
 
-/// Who takes how much of the torque, of the row that leaves the tilt least.
+/// Who takes how much of the torque: of roll's and pitch's limit or of the rotors' range, whichever leaves the tilt less.
 fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     let unbiased = ExtendedParameters { torque_tilt: 0.0, torque_yaw: 0.0, ..*p };
     let idle =
         ExtendedParameters { turn_rate: 0.0, yaw_rate: 0.0, yaw_acceleration: 0.0, w: 0.0, m_omega_z: 0.0, ..unbiased };
-    let [full, unbiased, idle] = [p, &unbiased, &idle].map(|parameters| budget(configuration, parameters).rows);
-    let of_tilt = |row: &&controller_core::extended::budget::Row| row.tilt > 0.0;
-    let left = |row: &controller_core::extended::budget::Row| row.room / row.tilt;
-    let rows = full.iter().zip(unbiased.iter().zip(&idle)).filter(|(row, _)| of_tilt(row));
-    let Some((row, (unbiased, idle))) = rows.min_by(|(a, _), (b, _)| left(a).total_cmp(&left(b))) else {
+    let [full, unbiased, idle] = [p, &unbiased, &idle].map(|parameters| budget(configuration, parameters));
+    let names = ["the torque about roll and pitch", "the torque about yaw", "the rotors' range"];
+    let rows = names.iter().zip(full.rows.iter().zip(unbiased.rows.iter().zip(&idle.rows)));
+    let of_tilt = rows.filter(|(_, (row, _))| row.tilt > 0.0);
+    let left = |row: &Row| row.room / row.tilt;
+    let Some((name, (row, (unbiased, idle)))) = of_tilt.min_by(|(_, (a, _)), (_, (b, _))| left(a).total_cmp(&left(b)))
+    else {
         return String::new();
     };
-    let [tilt, yaw] = budget(configuration, p).inertia;
+    let [tilt, yaw] = full.inertia;
     let [feedback, reserve] = [p.m_all, p.turn_reserve].map(f64::from);
     let parts = [
         ("tilt feedback", row.tilt * feedback),
@@ -61,8 +63,7 @@ fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
         ("yaw", idle.room - unbiased.room),
         ("bias", unbiased.room - row.room),
     ];
-    let of = if row.yaw > 0.0 { "the rotors' range" } else { "the torque about roll and pitch" };
     let shares: Vec<String> =
         parts.iter().map(|(name, part)| format!("{name} {}", percent(part / idle.room))).collect();
-    format!("of {of}: {}\n", shares.join(", "))
+    format!("of {name}: {}\n", shares.join(", "))
 }

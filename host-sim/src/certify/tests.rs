@@ -127,12 +127,13 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
         "{text}"
     );
     assert_eq!(text.matches("What ").count(), 1, "{text}");
-    // Too late for its loops.
-    let late = EXTENDED[0]
-        .replace("[control]", "[sampling]\ndelay = 0.04\n[control]")
-        .replace("[gains] ", "[gains]\nk_f = 11.0\nk_v_across = 12.0\nk_p_across = 60.0\n#");
+    // Too quick for its lag.
+    let late = EXTENDED[0].replace("[gains] ", "[gains]\nk_p_vertical = 800.0\nk_v_vertical = 60.0\n# ");
     let (text, certified) = report(&late);
-    assert!(!certified && line(&text, "What it fails in: the sampled loop").contains("gains."), "{text}");
+    assert!(
+        !certified && line(&text, "What it fails in: the sampled loop vertical").contains("k_v_vertical"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -27,11 +27,15 @@ pub fn chosen(airframe: &Airframe, parameters: &ExtendedParameters) -> Given {
         }
     }
     // What was needed only until a later one was there.
-    for place in 0..given.len() {
-        let mut fewer = given;
-        if fewer[place].take().is_some() && differing(&fewer).is_empty() {
-            given = fewer;
+    loop {
+        let fewer = (0..given.len()).filter(|&place| given[place].is_some()).map(|place| {
+            let mut fewer = given;
+            fewer[place] = None;
+            fewer
+        });
+        match fewer.into_iter().find(|fewer| differing(fewer).is_empty()) {
+            Some(fewer) => given = fewer,
+            None => return given,
         }
     }
-    given
 }

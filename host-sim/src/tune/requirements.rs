@@ -29,7 +29,7 @@ impl Default for Requirements {
     fn default() -> Self {
         Self {
             margin: 0.0,
-            loops: LoopMargin { gain: 2.0, delay: 0.003 },
+            loops: LoopMargin { gain: 1.75, delay: 0.003 },
             position_error: 0.02,
             mrp_error: 0.01,
             recovery: 20.0,

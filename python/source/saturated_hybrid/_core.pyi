@@ -468,7 +468,7 @@ def tune(
     population: int = 24,
     seed: int = 1,
     margin: float = 0.0,
-    gain_margin: float = 2.0,
+    gain_margin: float = 1.75,
     delay_margin: float = 0.003,
     position_error: float = 0.02,
     mrp_error: float = 0.01,
