@@ -49,7 +49,10 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
         return Ok(text);
     }
     let section: DocumentMut = bounds::written(judged).parse()?;
-    document["reference_bounds"] = section["reference_bounds"].clone();
+    if let Some(bounds) = section["reference_bounds"].as_table() {
+        // Without the place that it had in its own document.
+        document["reference_bounds"] = Item::Table(bounds.iter().map(|(key, bound)| (key, bound.clone())).collect());
+    }
     Ok(said(&document.to_string()))
 }
 

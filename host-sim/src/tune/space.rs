@@ -78,7 +78,7 @@ impl Space {
             let along = ALONG.iter().filter(|(with, ..)| *with == key).map(|(_, key, power)| (*key, *power));
             for (key, power) in along.chain([(key, 1.0)]) {
                 let place = ExtendedParameters::TABLE.iter().position(|constant| constant.key == key)?;
-                given[place] = Some((f64::from(own[place]) * (power * x).exp()) as f32);
+                given[place] = Some(rounded(f64::from(own[place]) * (power * x).exp()));
             }
         }
         let parameters = defaults::constants(&airframe, &given);
@@ -107,6 +107,11 @@ impl Space {
             }
         }
     }
+}
+
+/// Four significant digits, so that what is written is short and is what was judged.
+fn rounded(value: f64) -> f32 {
+    format!("{value:.3e}").parse().unwrap_or(value as f32)
 }
 
 /// The places of the extended law's searched constants in its table.

@@ -257,6 +257,8 @@ fn a_tuned_file_of_the_extended_law_is_short_and_reads_back_to_the_same_law() {
         assert!(read.flies_like(&tuned.scenario), "{written}");
         let [before, after] = [&scenario, &read].map(|scenario| keys(scenario).len());
         assert!(after <= before + 18, "{written}");
+        let (_, value) = written.split_once("k_p_across = ").unwrap();
+        assert!(value.lines().next().unwrap().len() <= 6, "{written}");
         // Tuned again from there, it holds no more.
         let again = Tuned { scenario: read, ..tuned };
         assert_eq!(output::rewritten(&written, &again).unwrap(), written);
