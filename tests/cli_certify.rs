@@ -73,13 +73,34 @@ fn bad_input_exits_with_2_and_one_line_that_names_field_and_reason() {
 }
 
 #[test]
+fn certify_shows_the_constants_that_a_file_leaves_out() {
+    let directory = directory("show");
+    std::fs::write(directory.join("v.toml"), include_str!("../scenarios/paper-extended.toml")).unwrap();
+    let output = host_sim(&directory, &["certify", "v.toml", "--show"]);
+    assert_eq!((status(&output), stderr(&output)), (0, String::new()));
+    let shown = stdout(&output);
+    for words in ["[gains]\n", "k_p_across = ", "[estimates]\n", "[reference_bounds]\n"] {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    std::fs::write(
+        directory.join("pasted.toml"),
+        format!("{}\n{shown}", include_str!("../scenarios/paper-extended.toml")),
+    )
+    .unwrap();
+    let [own, pasted] = ["v.toml", "pasted.toml"].map(|file| stdout(&host_sim(&directory, &["certify", file])));
+    assert_eq!(own, pasted);
+}
+
+#[test]
 fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
     let directory = directory("tune");
     std::fs::write(directory.join("start.toml"), PAPER).unwrap();
     let output = host_sim(&directory, &[&search("start.toml", "mine.toml", "1")[..], &["--widen"]].concat());
-    assert_eq!((status(&output), stderr(&output)), (0, String::new()));
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    // On a busy machine it takes long enough to tell how far it is.
+    assert!(stderr(&output).lines().all(|line| line.starts_with("tuning: ")), "{}", stderr(&output));
     let text = stdout(&output);
-    for words in ["height lost [m]", "active constraint", "mine: CERTIFIED", "times as demanding"] {
+    for words in ["upside down: height lost", "before", "mine: CERTIFIED", "times as demanding"] {
         assert!(text.contains(words), "{words}: {text}");
     }
     assert_eq!(files(&directory), ["mine.toml", "start.toml"]);
@@ -102,6 +123,7 @@ fn a_search_that_finds_nothing_exits_with_1_and_writes_nothing() {
     let output = host_sim(&directory, &["tune", "start.toml", "--margin", "0.97", "--generations", "1"]);
     assert_eq!((status(&output), stdout(&output)), (1, String::new()));
     let message = stderr(&output);
+    let message = message.lines().filter(|line| !line.starts_with("tuning: ")).collect::<Vec<_>>().join("\n");
     assert!(message.lines().count() == 1 && message.contains("the closest fail in: certificate"), "{message}");
     assert_eq!(files(&directory), ["start.toml"]);
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Searches the constants of the two vehicles and of the paper's further, and writes them into their files.
 #   [SEED=n] sh vehicles/retune.sh [hummingbird] [study] [paper]        from the repository's root; default: all, SEED=1
-# A search starts from what a file holds. The same sources, files and seed give the same constants. Minutes each.
+# A search starts from what a file holds. The same sources, files and seed give the same constants.
 set -eu
 
 sim=${HOST_SIM:-"cargo run --release --quiet -p host-sim --"}
@@ -31,9 +31,8 @@ sibling() {
 [ $# -gt 0 ] || set -- hummingbird study paper
 for name; do
     case $name in
-        hummingbird) search vehicles/hummingbird.toml --generations 50 --margin 0.03 --position-error 0.02 --mrp-error 0.05 ;;
-        study) search vehicles/study.toml --generations 50 --margin 0.02 --position-error 0.1 --mrp-error 0.1 --recovery 30 ;;
-        paper) search scenarios/paper-tuned.toml --generations 50 ;;
+        hummingbird | study) search "vehicles/$name.toml" ;;
+        paper) search scenarios/paper-tuned.toml --generations 150 --population 48 --margin 0.05 --position-error 0.001 --mrp-error 0.0001 ;;
         *) echo "unknown: $name" >&2; exit 2 ;;
     esac
     [ "$name" = paper ] || sibling "$name"

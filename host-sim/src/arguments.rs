@@ -61,7 +61,10 @@ const CERTIFY_HELP: &str = "\
 CERTIFIED means two things. The commands are proven to stay within every limit, whatever the vehicle does: that is the
 certificate, and it says nothing about stability. And small motions about hover die out at this rate, delay and rotor lag:
 that is an analysis of the sampled loops, each of which must be stable with 1.5 times its gain, with 1 / 1.5 of it, and with
-2 ms more delay. docs/certificate.md and docs/sampled-loop.md tell how to read the tables.";
+2 ms more delay. docs/certificate.md and docs/sampled-loop.md tell how to read the tables.
+
+Under the extended law the report ends with what the vehicle can do, and with what limits it or what it fails in: what that means, and which
+number to change in which direction. Constants that the file leaves out follow from the vehicle's numbers; --show prints them all.";
 
 /// One command.
 #[derive(Subcommand)]
@@ -86,8 +89,11 @@ pub enum Command {
     Certify {
         /// Scenario file [default: the paper's, built in]
         file: Option<PathBuf>,
+        /// Print the law's constants and the reference's bounds instead, as sections to paste into a scenario file
+        #[arg(long)]
+        show: bool,
     },
-    /// Search gains: everything certifies; then the least cost of what a pilot feels: height lost, gusts, steps, noise.
+    /// Refine a vehicle's constants by trial flights: everything certifies; then the least of what a pilot feels. About a minute.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
@@ -118,33 +124,33 @@ pub enum Command {
 /// What a search is asked for.
 #[derive(Args)]
 pub struct TuneArguments {
-    /// Scenario file: vehicle, limits, rotors, delay, reference; its gains are where the search starts
+    /// Scenario file: vehicle, limits, rotors, delay, reference; its constants, or the formulas', are where the search starts
     pub file: PathBuf,
     /// Scenario file to write [default: <name>-tuned.toml]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Least margin of every inequality, as a fraction
-    #[arg(long, default_value_t = 0.05)]
+    #[arg(long, default_value_t = Requirements::default().margin)]
     margin: f64,
     /// Least gain margin of every sampled loop, as a factor, 1.5 or more: at the actuators, and of k_p and k_v together
-    #[arg(long, default_value_t = 2.0)]
+    #[arg(long, default_value_t = Requirements::default().loops.gain)]
     gain_margin: f64,
     /// Least delay margin of every sampled loop, ms, 2 or more
-    #[arg(long, default_value_t = 3.0)]
+    #[arg(long, default_value_t = 1e3 * Requirements::default().loops.delay)]
     delay_margin: f64,
     /// Greatest position error of the file's own flight in its last quarter, m
-    #[arg(long, default_value_t = 1e-3)]
+    #[arg(long, default_value_t = Requirements::default().position_error)]
     position_error: f64,
     /// Greatest norm of its modified Rodrigues parameters there
-    #[arg(long, default_value_t = 1e-4)]
+    #[arg(long, default_value_t = Requirements::default().mrp_error)]
     mrp_error: f64,
     /// How long a recovery from upside down may take, s, 2 or more; its last quarter must be still
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, default_value_t = Requirements::default().recovery)]
     recovery: f64,
     /// Keep the paper's thrust T = m |u|: no thrust projection
     #[arg(long)]
     no_projection: bool,
-    /// Generations of each of the two stages
+    /// Generations
     #[arg(long, default_value_t = Effort::default().generations)]
     pub generations: u32,
     /// Candidates of each generation, 4 to 1000
@@ -159,11 +165,23 @@ pub struct TuneArguments {
 }
 
 const TUNE_HELP: &str = "\
-The height lost is the start less the lowest point of a flight from the paper's first attitude (roll -179 degrees, yaw
-100 degrees off the heading), at rest, on a hover reference where it starts. Gusts, steps and noise are flown as well, on the vehicle as
-the file says and as it may really be. Printed at the end: the frontier of height lost against the excursion in a gust, with the
-inequality that limits each, and the answer: the least cost.
+A search starts from the file's constants, or from those that follow from the vehicle's numbers, and never ends with worse ones: the start is
+judged first. Under the extended law fourteen constants are searched and the others follow from them, unless the file has them;
+only what does not follow from the vehicle's numbers is written. Under the paper's law nine gains and the thrust floor are searched.
 
+What is required of every candidate, all of it:
+- the certificate holds, each inequality with --margin to spare;
+- the sampled loops bear --gain-margin, its inverse, and --delay-margin more delay; so do they with k_p and k_v times --gain-margin;
+- from upside down it is within 0.1 m of its place for good before three quarters of --recovery are over;
+- a law that estimates leaves at most 10 mm of a gust;
+- no limit cuts a command, in any trial;
+- the file's own flight reaches its reference in time, and ends with at most --position-error and --mrp-error.
+
+What is made small is the weighted sum of the figures in the table that is printed, before and after: what `compare` measures. Most are
+flown on four models: the vehicle as the file says, and with mass, thrust, centre of mass, lag and delay off. The same file and seed give the
+same constants. Progress shows on stderr, through a pipe as well.
+
+Exit status 0: the start or better is written; 1: no candidate met the requirements, and the line on stderr says which the closest failed.
 Interrupted, a search writes the best it has found so far and says so; the exit status is then 129, 130 or 143. If it has found
 nothing yet, it writes nothing.";
 

@@ -4,10 +4,14 @@
 //! The sharp form and the rotors decide about the paper law's commands, all inequalities about the extended law's, the sampled loops below them about small motions: a scenario is
 //! certified if both hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
 
+mod advice;
 mod blame;
+mod pilot;
+pub mod shown;
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
+use controller_core::certificate::configuration::LawParameters;
 use controller_core::certificate::extended::{ExtendedBounds, ExtendedCertificate};
 use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
@@ -35,7 +39,31 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     }
     text += "\n";
     text += &loops(scenario, &verdict);
+    if let LawParameters::Extended(law) = scenario.configuration.law() {
+        text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
+    }
     Ok((text, verdict.refusal().is_none()))
+}
+
+/// The verdict and what it rests on alone.
+///
+/// # Errors
+/// As [`certify`].
+pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
+    Ok(head(scenario, &Verdict::of(scenario)?))
+}
+
+/// What keeps the vehicle from flying or, where nothing does, what is nearest to.
+fn limits(verdict: &Verdict) -> String {
+    let certificate = verdict.certificate();
+    let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();
+    let what = |inequality: &Inequality| advice::of_inequality(inequality.name).to_owned();
+    let (begins, mut all): (_, Vec<String>) = match (certificate.tightest(), verdict.lacking()) {
+        (Some(tightest), None) if failing.is_empty() => ("What limits it", vec![what(&tightest)]),
+        _ => ("What it fails in", failing.into_iter().map(what).collect()),
+    };
+    all.extend(verdict.lacking().map(|lack| advice::of_loop(&lack)));
+    all.iter().map(|what| format!("{begins}: {what}\n")).collect()
 }
 
 /// The paper's law: both forms side by side, then the rotors.

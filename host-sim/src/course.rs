@@ -60,7 +60,15 @@ impl Course {
     ///
     /// # Errors
     /// If it cannot be flown to its end.
-    pub fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Self, FlightError> {
+    pub fn over(scenario: &Scenario, flight: Flight, near: f64) -> Result<Self, FlightError> {
+        Self::until_settled(scenario, flight, near, f64::INFINITY)
+    }
+
+    /// Likewise, to the end or until position and yaw have been settled for `rest`, s. What has long settled stays so where nothing acts on it.
+    ///
+    /// # Errors
+    /// As [`Self::over`].
+    pub fn until_settled(scenario: &Scenario, mut flight: Flight, near: f64, rest: f64) -> Result<Self, FlightError> {
         let ticks = scenario.timing.ticks;
         let start = scenario.initial.position.z;
         let mut course = Self {
@@ -81,6 +89,11 @@ impl Course {
             course.observe(&tick, start, near, scenario.timing.period_us);
             if 2 * number >= ticks {
                 last_half.observe(&tick, course.end_error);
+            }
+            let now = (tick.time_us + scenario.timing.period_us) as f64 / 1e6;
+            let since = course.settled.into_iter().chain(course.turned).fold(0.0, f64::max);
+            if now - since >= rest {
+                break;
             }
         }
         let end = (ticks * scenario.timing.period_us) as f64 / 1e6;

@@ -11,7 +11,7 @@ use clap::Parser;
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::{self, CampaignError, written};
-use host_sim::certify::certify;
+use host_sim::certify::{certify, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
 use host_sim::fly::{FlyError, fly};
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
         Ok(Arguments { command }) => match command {
             None => run_fly(None, None, false, false),
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
-            Some(Command::Certify { file }) => run_certify(file.as_deref()),
+            Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),
@@ -260,8 +260,9 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
     }
 }
 
-fn run_certify(file: Option<&Path>) -> Result<ExitCode, String> {
-    let (text, certified) = certify(&load(file)?).map_err(|error| error.to_string())?;
-    print_text(&text)?;
+fn run_certify(file: Option<&Path>, show: bool) -> Result<ExitCode, String> {
+    let scenario = load(file)?;
+    let (text, certified) = certify(&scenario).map_err(|error| error.to_string())?;
+    print_text(&if show { shown::constants(&scenario) } else { text })?;
     Ok(status(certified, None))
 }

@@ -3,7 +3,7 @@
 use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::campaign::fly::grounded;
-use host_sim::certify::certify;
+use host_sim::certify::summary;
 use host_sim::compare::{self, CompareError, compare};
 use host_sim::progress::spoken;
 use host_sim::rivals::gains::Set;
@@ -176,24 +176,19 @@ fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String
     Ok((name, path))
 }
 
-/// What a search says of the gains it found.
+/// What a search says of the constants it found.
 fn found(tuned: &Tuned, path: &Path, interrupted: bool) -> Result<String, String> {
-    let (certificate, _) = certify(&tuned.scenario).map_err(|error| error.to_string())?;
-    let active = tuned.verdict.tightest.map_or(String::new(), |tightest| {
-        format!("active constraint: {}, margin {}\n", tightest.name, percent(tightest.margin()))
-    });
-    let shown = &tuned.verdict.shown;
+    let summary = summary(&tuned.scenario).map_err(|error| error.to_string())?;
+    let before = match &tuned.before.failed {
+        Some(what) => format!("the file's own constants do not meet the requirements: {what}\n"),
+        None if !tuned.improved() => {
+            "nothing better found: these are the constants that the search started from\n".to_owned()
+        }
+        None => String::new(),
+    };
     Ok(format!(
-        "{certificate}\n{}\nheight lost {} m, back after {} s; gust {} m; step {} s; under noise {} m and {} N a tick; cost {}\n\
-         {active}{}{} candidates judged; written to {}\n",
-        tuned.frontier.table(),
-        short(shown.height_lost),
-        short(shown.recovered),
-        short(shown.gust),
-        short(shown.step),
-        short(shown.noise),
-        short(shown.activity),
-        short(tuned.verdict.cost),
+        "{summary}\n{}{before}{}{} candidates judged; written to {}\n",
+        tuned.table(),
         if interrupted { "interrupted: the best so far; " } else { "" },
         tuned.judged,
         path.display()

@@ -1,4 +1,4 @@
-//! The `tune` command: gains that certify and make the most of a vehicle.
+//! The `tune` command: constants that certify and make the most of a vehicle.
 //!
 //! What is asked, in this order:
 //!
@@ -8,13 +8,13 @@
 //! 2. the least cost: what a pilot feels of the trials in [`trials`], averaged over the vehicle as it may really be.
 //!
 //! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`] searches;
-//! [`frontier`] keeps what was learnt about the trade between height lost and gusts. Seeds are fixed: the same file gives the
-//! same constants.
+//! [`output`] writes what was found. A search starts from the file's constants and never ends with worse ones. Seeds are fixed: the same
+//! file gives the same constants.
 
 pub mod candidate;
+pub mod chosen;
 pub mod effort;
 pub mod evolution;
-pub mod frontier;
 pub mod output;
 pub mod requirements;
 pub mod space;
@@ -22,6 +22,7 @@ pub mod trials;
 
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
+use crate::table::{aligned, short};
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::configuration::Configuration;
@@ -29,24 +30,52 @@ use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use effort::Effort;
 use evolution::Evolution;
-use frontier::Frontier;
 use requirements::Requirements;
 use scenario::Scenario;
+use trials::{BEYOND, FIGURES};
 
 /// What the search found.
 #[derive(Clone)]
 pub struct Tuned {
-    /// The scenario with the gains found.
+    /// The scenario with the constants found.
     pub scenario: Scenario,
     /// What it showed.
     pub verdict: Verdict,
-    /// The trade between height lost and gusts.
-    pub frontier: Frontier,
+    /// What the file's own constants showed.
+    pub before: Verdict,
     /// Candidates judged.
     pub judged: u64,
 }
 
-/// Searches gains for `scenario`; an interrupt ends the search with the best found so far.
+impl Tuned {
+    /// Whether something better was found than what the search started from.
+    #[must_use]
+    pub fn improved(&self) -> bool {
+        self.verdict != self.before
+    }
+
+    /// Every figure before and after, as a table for a terminal.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let own = |verdict: &Verdict| {
+            let beyond = verdict.shown.beyond.map_or([f64::INFINITY; BEYOND.len()], |beyond| beyond.values());
+            [&verdict.shown.values()[..], &beyond].concat()
+        };
+        let number = |value: f64| if value.is_finite() { short((1e4 * value).round() / 1e4) } else { "-".to_owned() };
+        let pairs = [own(&self.before), own(&self.verdict), self.before.mean.to_vec(), self.verdict.mean.to_vec()];
+        let head = ["", "", "file's model: before", "after", "mean of four models: before", "after"];
+        let mut rows = vec![head.map(str::to_owned).to_vec()];
+        for (place, (name, unit, ..)) in FIGURES.iter().chain(&BEYOND).enumerate() {
+            let values = pairs.iter().map(|values| values.get(place).map_or(String::new(), |value| number(*value)));
+            rows.push([*name, *unit].map(str::to_owned).into_iter().chain(values).collect());
+        }
+        let cost = ["cost", "", "", "", &number(self.before.cost), &number(self.verdict.cost)];
+        rows.push(cost.map(str::to_owned).to_vec());
+        aligned(&rows)
+    }
+}
+
+/// Searches constants for `scenario`; an interrupt ends the search with the best found so far.
 ///
 /// # Errors
 /// If no candidate met the requirements: the verdict of the one that came closest.
@@ -57,20 +86,20 @@ pub fn tune(
     interrupt: &Interrupt,
 ) -> Result<Tuned, Box<Verdict>> {
     let judge = Judge::new(scenario, requirements);
-    let mut frontier = Frontier::default();
-    let mut progress = Progress::new("tuning", u64::from(effort.generations));
-    let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
+    let mut progress = Progress::new("tuning", u64::from(effort.generations) + 1);
+    let mut evolution = Evolution::new(&judge, &effort, interrupt);
     let wanted = |generation: &u32| *generation < effort.generations && interrupt.signal().is_none();
     for generation in (0..).take_while(wanted) {
-        evolution.generation(&judge, &mut frontier, interrupt);
-        progress.show(u64::from(generation));
+        progress.show(u64::from(generation) + 1);
+        evolution.generation(&judge, interrupt);
     }
     drop(progress);
     let Some((point, verdict)) = evolution.best() else {
         return Err(Box::new(evolution.closest()));
     };
+    let (before, judged) = (evolution.start().clone(), evolution.judged());
     match judge.scenario(&point) {
-        Some(scenario) => Ok(Tuned { scenario, verdict, frontier, judged: evolution.judged() }),
+        Some(scenario) => Ok(Tuned { scenario, verdict, before, judged }),
         None => Err(Box::new(verdict)),
     }
 }

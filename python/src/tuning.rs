@@ -23,6 +23,9 @@ pub struct Tuned {
     /// What the search made small.
     #[pyo3(get)]
     cost: f64,
+    /// The same of the constants that the search started from.
+    #[pyo3(get)]
+    cost_before: f64,
     /// Candidates.
     #[pyo3(get)]
     judged: u64,
@@ -65,7 +68,7 @@ impl Tuned {
     }
 }
 
-/// Searches gains that certify and then please a pilot most; minutes to hours, on all cores. As `host-sim tune`.
+/// Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As `host-sim tune`.
 ///
 /// Args:
 ///     name: of the tuned scenario; left out: its own with `-tuned`.
@@ -80,10 +83,10 @@ impl Tuned {
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(150), population=Whole::of(48), seed=Whole::of(1), margin=0.05, gain_margin=2.0,
-    delay_margin=0.003, position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=true),
-    text_signature = "(scenario, *, name=None, generations=150, population=48, seed=1, margin=0.05, gain_margin=2.0, delay_margin=0.003, \
-position_error=1e-3, mrp_error=1e-4, recovery=20.0, projection=True)")]
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(60), population=Whole::of(24), seed=Whole::of(1), margin=0.0, gain_margin=1.75,
+    delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0, projection=true),
+    text_signature = "(scenario, *, name=None, generations=60, population=24, seed=1, margin=0.0, gain_margin=1.75, delay_margin=0.003, \
+position_error=0.02, mrp_error=0.01, recovery=20.0, projection=True)")]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn tune(
     py: Python<'_>,
@@ -131,7 +134,13 @@ pub fn tune(
     })?;
     let text = output::rewritten(&scenario.text, &tuned).map_err(refused)?;
     let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
-    Ok(Tuned { scenario, shown: tuned.verdict.shown, cost: tuned.verdict.cost, judged: tuned.judged })
+    Ok(Tuned {
+        scenario,
+        shown: tuned.verdict.shown,
+        cost: tuned.verdict.cost,
+        cost_before: tuned.before.cost,
+        judged: tuned.judged,
+    })
 }
 
 fn check(holds: bool, field: &str, allowed: &str, found: impl std::fmt::Display) -> PyResult<()> {

@@ -9,9 +9,10 @@ use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use crate::{actuation, initial, vehicle};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::certificate::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
+use controller_core::extended::defaults::Airframe;
 use controller_core::reference::Trajectory;
 use std::fmt;
 use std::path::Path;
@@ -169,6 +170,21 @@ impl Scenario {
         let period = self.timing.period();
         let delay_samples = (self.delay() + self.input_delay()) / period;
         sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples }
+    }
+
+    /// What the extended law's constants follow from where the file leaves them out; none under the paper's law.
+    #[must_use]
+    pub fn airframe(&self) -> Option<Airframe<'_>> {
+        let LawParameters::Extended(law) = self.configuration.law() else { return None };
+        let (vehicle, rotors) = (self.configuration.vehicle(), self.configuration.rotors());
+        Some(Airframe {
+            vehicle,
+            limits: self.configuration.limits(),
+            rotors,
+            actuators: law.actuators,
+            period: self.timing.period() as f32,
+            drag: self.reality.drag.map_or(0.0, |drag| vehicle::known_drag(&drag, vehicle, rotors)),
+        })
     }
 
     /// Whether `other` is the same flight, whatever its name.

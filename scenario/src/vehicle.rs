@@ -10,7 +10,7 @@
 use crate::bounds::{covering, read_bounds};
 use crate::extended::read_extended;
 use crate::inertia;
-use crate::reality::drag;
+use crate::reality::drag::{self, Drag};
 use crate::section::{FieldError, Section};
 use controller_core::allocation::{Rotors, greatest_torques};
 use controller_core::certificate::Certificate;
@@ -47,7 +47,8 @@ pub fn read_configuration(
     let (configuration, bounds) = match name {
         LawName::Extended => {
             rotors.iter().try_for_each(check_lifted)?;
-            let drag = known_drag(root, &vehicle, rotors.as_ref())?;
+            let drag = drag::read(root, rotors.is_some())?;
+            let drag = drag.map_or(0.0, |drag| known_drag(&drag, &vehicle, rotors.as_ref()));
             let period = period as f32;
             let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
             let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
@@ -153,14 +154,13 @@ fn flyable(
 }
 
 /// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.
-fn known_drag(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Result<f32, FieldError> {
-    let Some(drag) = drag::read(root, rotors.is_some())? else { return Ok(0.0) };
+pub fn known_drag(drag: &Drag, vehicle: &Vehicle, rotors: Option<&Rotors>) -> f32 {
     let turning: f64 = rotors.map_or(0.0, |rotors| {
         let each = f64::from(vehicle.mass * vehicle.gravity) / rotors.len() as f64;
         rotors.iter().map(|rotor| (each / f64::from(rotor.thrust_coefficient)).sqrt()).sum()
     });
     let linear = 0.5 * (drag.linear.x + drag.linear.y);
-    Ok(((linear + drag.rotor_across * turning) / f64::from(vehicle.mass)) as f32)
+    ((linear + drag.rotor_across * turning) / f64::from(vehicle.mass)) as f32
 }
 
 /// Reads `[vehicle]`.

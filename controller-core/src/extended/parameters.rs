@@ -11,7 +11,7 @@ constants! {
         /// k_p across, 1/s^2: position gain.
         gains.k_p_across: Range::POSITIVE, SEARCHED;
         /// k_p along the vertical, 1/s^2.
-        gains.k_p_vertical: Range::POSITIVE, SEARCHED;
+        gains.k_p_vertical: Range::POSITIVE, FIXED;
         /// k_v across, 1/s: velocity gain.
         gains.k_v_across: Range::POSITIVE, SEARCHED;
         /// k_v along the vertical, 1/s.
@@ -19,53 +19,53 @@ constants! {
         /// k_f, 1/s: bandwidth of the filter that makes c.
         gains.k_f: Range::BANDWIDTH, SEARCHED;
         /// k_s, 1/s: bandwidth of the filter before it.
-        gains.k_s: Range::BANDWIDTH, SEARCHED;
+        gains.k_s: Range::BANDWIDTH, FIXED;
         /// k_d, 1/s: bandwidth of the filter before that, which takes noise out.
-        gains.k_d: Range::BANDWIDTH, SEARCHED;
+        gains.k_d: Range::BANDWIDTH, FIXED;
         /// A_h, m/s^2: greatest acceleration across.
-        gains.a_across: Range::POSITIVE, SEARCHED;
+        gains.a_across: Range::POSITIVE, FIXED;
         /// A_-, m/s^2: greatest acceleration downwards.
         gains.a_down: Range::POSITIVE, SEARCHED;
         /// gamma, rad: greatest tilt of the thrust direction.
-        gains.tilt_max: Range::between(0.1, 1.5), SEARCHED;
+        gains.tilt_max: Range::between(0.1, 1.5), FIXED;
         /// v_c across, m/s: speed of the approach.
         gains.v_across: Range::POSITIVE, SEARCHED;
         /// v_c upwards, m/s.
         gains.v_up: Range::POSITIVE, SEARCHED;
         /// v_c downwards, m/s.
-        gains.v_down: Range::POSITIVE, SEARCHED;
+        gains.v_down: Range::POSITIVE, FIXED;
         /// Omega, rad/s: greatest rate of the thrust direction.
         gains.turn_rate: Range::POSITIVE, SEARCHED;
         /// alpha_max, rad/s^2: greatest acceleration of the thrust direction.
         gains.turn_acceleration: Range::POSITIVE, SEARCHED;
         /// alpha_0, rad/s^2: the acceleration of the thrust direction that is always there.
-        gains.turn_reserve: Range::POSITIVE, SEARCHED;
+        gains.turn_reserve: Range::POSITIVE, FIXED;
         /// w, N m: weight of the potential that knows no axis.
         gains.w: Range::POSITIVE, SEARCHED;
         /// eta: the share of w that turns about the thrust axis.
-        gains.eta: Range::SHARE, SEARCHED;
+        gains.eta: Range::SHARE, FIXED;
         /// k_t, N m: gain of the tilt's own potential.
-        gains.k_t: Range::POSITIVE, SEARCHED;
+        gains.k_t: Range::POSITIVE, FIXED;
         /// M_t, N m: its level.
-        gains.m_t: Range::POSITIVE, SEARCHED;
+        gains.m_t: Range::POSITIVE, FIXED;
         /// eta_t: how far from a half turn it eases.
         gains.eta_t: Range::SHARE, FIXED;
         /// M_all, N m: greatest feedback about the tilt's axes, potential and damping together.
-        gains.m_all: Range::POSITIVE, SEARCHED;
+        gains.m_all: Range::POSITIVE, FIXED;
         /// k_omega_t, N m s: damping of the tilt.
         gains.k_omega_t: Range::POSITIVE, SEARCHED;
         /// r_0: sine of half the tilt error beyond which its damping eases.
-        gains.r_0: Range::between(1e-3, 1e3), SEARCHED;
+        gains.r_0: Range::between(1e-3, 1e3), FIXED;
         /// k_omega_z, N m s: damping about the thrust axis.
-        gains.k_omega_z: Range::POSITIVE, SEARCHED;
+        gains.k_omega_z: Range::POSITIVE, FIXED;
         /// M_omega_z, N m: its level.
-        gains.m_omega_z: Range::POSITIVE, SEARCHED;
+        gains.m_omega_z: Range::POSITIVE, FIXED;
         /// delta: hysteresis of the path lifting.
         gains.delta: Range::SHARE, FIXED;
         /// alpha: distance at which the path lifting's memory follows.
         gains.alpha: Range::between(1e-7, 0.999), FIXED;
         /// A, rad/s^2: greatest acceleration of the heading generator.
-        gains.yaw_acceleration: Range::POSITIVE, SEARCHED;
+        gains.yaw_acceleration: Range::POSITIVE, FIXED;
         /// W_max, rad/s: greatest rate of the heading generator.
         gains.yaw_rate: Range::POSITIVE, FIXED;
         /// c_1, 1/s^2: stiffness of the heading generator.
@@ -75,25 +75,25 @@ constants! {
         /// mu_N, N: how far above its least thrust each rotor is kept, all rotors together; without rotors the least thrust.
         gains.floor_margin: Range::POSITIVE, FIXED;
         /// D_h, m/s^2: greatest estimate of the force per mass across.
-        estimates.force_across: Range::LEVEL, SEARCHED;
+        estimates.force_across: Range::LEVEL, FIXED;
         /// F_h, m/s^2: force across in which the heading is proven to arrive.
         estimates.force_heading: Range::LEVEL, FIXED;
         /// D_z+, m/s^2: greatest estimate upwards.
-        estimates.force_up: Range::LEVEL, FIXED;
+        estimates.force_up: Range::LEVEL, SEARCHED;
         /// D_z-, m/s^2: greatest estimate downwards.
         estimates.force_down: Range::LEVEL, FIXED;
         /// L across, 1/s: how fast the force is followed.
         estimates.force_bandwidth_across: Range::BANDWIDTH, SEARCHED;
         /// L along the vertical, 1/s.
-        estimates.force_bandwidth_vertical: Range::BANDWIDTH, SEARCHED;
+        estimates.force_bandwidth_vertical: Range::BANDWIDTH, FIXED;
         /// kappa, 1/s: drag across per velocity and mass, known beforehand.
         estimates.drag_across: Range::LEVEL, FIXED;
         /// D_t, N m: greatest torque bias about x and y.
-        estimates.torque_tilt: Range::LEVEL, FIXED;
+        estimates.torque_tilt: Range::LEVEL, SEARCHED;
         /// D_y, N m: greatest torque bias about z.
         estimates.torque_yaw: Range::LEVEL, FIXED;
         /// L_tau, 1/s: how fast the torque bias is followed.
-        estimates.torque_bandwidth: Range::BANDWIDTH, SEARCHED;
+        estimates.torque_bandwidth: Range::BANDWIDTH, FIXED;
         /// s_lo: least thrust scale.
         estimates.scale_least: Range::between(0.1, 1.0), FIXED;
         /// s_hi: greatest thrust scale.

@@ -1,6 +1,7 @@
 //! The report's lines, for a certified, a refused, and a rotor-bound configuration.
 
 use super::*;
+use controller_core::extended::parameters::ExtendedParameters;
 use scenario::PAPER;
 
 const STUDY: &str = include_str!("../../../vehicles/study-paper-law.toml");
@@ -82,4 +83,82 @@ fn rotors_have_two_lines_each_and_the_worst_is_explained() {
 fn a_thrust_floor_is_stated() {
     let (text, _) = report(&PAPER.replace("rate = 100.0", "thrust_floor = 1.0\nrate = 100.0"));
     assert!(text.contains("thrust projection on, floor 1 N\n"), "{text}");
+}
+
+const EXTENDED: [&str; 3] = [
+    include_str!("../../../vehicles/hummingbird.toml"),
+    include_str!("../../../vehicles/study.toml"),
+    include_str!("../../../scenarios/paper-extended.toml"),
+];
+
+#[test]
+fn every_inequality_of_the_extended_law_is_explained() {
+    for text in EXTENDED {
+        let scenario = Scenario::parse(text, "f").unwrap();
+        let certificate = Certificate::new(&scenario.configuration).unwrap();
+        for inequality in certificate.inequalities() {
+            let advice = advice::of_inequality(inequality.name);
+            assert!(["ower ", "aise "].iter().any(|word| advice.contains(word)), "{}: {advice:?}", inequality.name);
+            let names = advice.split_whitespace().filter_map(|word| word.split_once('.'));
+            for (section, key) in
+                names.filter(|(section, key)| ["gains", "estimates"].contains(section) && !key.is_empty())
+            {
+                let key = key.trim_end_matches([',', '.', ';', ':', '(']);
+                let known = ExtendedParameters::TABLE.iter().any(|c| (c.section, c.key) == (section, key));
+                assert!(known, "{}: {section}.{key}", inequality.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused_one_fails_in_is_all_of_them() {
+    for text in EXTENDED {
+        let (report, certified) = report(text);
+        let tightest =
+            line(&report, "tightest: ").split_once("tightest: ").unwrap().1.split_once(", margin").unwrap().0;
+        assert!(certified && line(&report, "What limits it: ").ends_with(advice::of_inequality(tightest)), "{report}");
+        assert_eq!(report.matches("What ").count(), 1, "{report}");
+    }
+    let slow = EXTENDED[0].replace("yaw_acceleration = 6.0 ", "yaw_acceleration = 3.0 ");
+    let (text, certified) = report(&slow);
+    assert!(
+        !certified && line(&text, "What it fails in: ").contains("how quickly the heading begins to turn"),
+        "{text}"
+    );
+    assert_eq!(text.matches("What ").count(), 1, "{text}");
+    // Too quick for its lag.
+    let late = EXTENDED[0].replace("[gains] ", "[gains]\nk_p_vertical = 800.0\nk_v_vertical = 60.0\n# ");
+    let (text, certified) = report(&late);
+    assert!(
+        !certified && line(&text, "What it fails in: the sampled loop vertical").contains("k_v_vertical"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_shares_of_the_torque_are_those_of_the_tightest_row() {
+    for (text, row) in EXTENDED[..2].iter().zip(["T2 roll and pitch torque", "R rotors' range"]) {
+        let (report, _) = report(text);
+        let shares = line(&report, "of the ");
+        let parts = shares.split(['%', ',']).filter_map(|part| part.split_whitespace().last()?.parse::<f64>().ok());
+        let margin = line(&report, row).split_whitespace().rev().nth(2).unwrap().parse::<f64>().unwrap();
+        let sum: f64 = parts.sum();
+        // The row's margin is of what yaw and bias leave, the shares are of all.
+        assert!(sum < 100.0 && sum > 100.0 - margin - 0.3, "{shares}: {sum}, {margin}");
+    }
+}
+
+#[test]
+fn shown_constants_stand_for_what_the_file_says_and_leaves_out() {
+    for text in EXTENDED.into_iter().chain([PAPER, STUDY]) {
+        let scenario = Scenario::parse(text, "f").unwrap();
+        let mut document: toml_edit::DocumentMut = text.parse().unwrap();
+        for section in ["gains", "estimates", "reference_bounds"] {
+            document.remove(section);
+        }
+        let pasted = format!("{document}\n{}", shown::constants(&scenario));
+        let read = Scenario::parse(&pasted, "f").unwrap_or_else(|error| panic!("{error}\n{pasted}"));
+        assert!(read.flies_like(&scenario), "{pasted}");
+    }
 }

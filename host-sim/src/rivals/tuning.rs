@@ -12,9 +12,8 @@ use crate::progress::Progress;
 use crate::tune::candidate::{Judging, Verdict};
 use crate::tune::effort::Effort;
 use crate::tune::evolution::Evolution;
-use crate::tune::frontier::Frontier;
 use crate::tune::space::Point;
-use crate::tune::trials::{MODELS, Shown, show};
+use crate::tune::trials::{MODELS, show};
 use rayon::prelude::*;
 use scenario::Scenario;
 use std::time::{Duration, Instant};
@@ -65,14 +64,13 @@ impl<'a> RivalJudge<'a> {
 
     fn run(&self, point: &Point, verdict: &mut Verdict) -> Result<(), (u8, f64, String)> {
         let gains = Self::gains(point);
-        let mut costs = Vec::new();
+        let mut shown = Vec::new();
         for (flown, model) in MODELS.iter().enumerate() {
             let start = |real: &Scenario| self.kind.flight(self.scenario, real, &gains);
             let lost = ((MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model:?}"));
-            costs.push(show(self.scenario, start, model, RECOVERY).ok_or(lost)?);
+            shown.push(show(self.scenario, start, model, RECOVERY).ok_or(lost)?);
         }
-        verdict.shown = costs[0];
-        verdict.cost = costs.iter().map(Shown::cost).sum::<f64>() / costs.len() as f64;
+        verdict.take(&shown);
         Ok(())
     }
 }
@@ -108,11 +106,10 @@ pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Resul
         next(kind)?;
         let judge = RivalJudge::at_best_start(scenario, kind, interrupt);
         next(kind)?;
-        let mut frontier = Frontier::default();
-        let mut evolution = Evolution::new(&judge, &effort, &mut frontier, interrupt);
+        let mut evolution = Evolution::new(&judge, &effort, interrupt);
         for _ in 0..effort.generations {
             next(kind)?;
-            evolution.generation(&judge, &mut frontier, interrupt);
+            evolution.generation(&judge, interrupt);
         }
         Ok::<_, String>(evolution.best().map(|(point, verdict)| (RivalJudge::gains(&point), verdict.cost)))
     };

@@ -11,7 +11,7 @@
 
 use super::requirements::Requirements;
 use super::space::{Point, Space};
-use super::trials::{MODELS, Shown, show};
+use super::trials::{FIGURES, MODELS, Shown, show};
 use crate::claims::reached;
 use crate::flight::Flight;
 use crate::flown::Flown;
@@ -36,6 +36,8 @@ pub struct Verdict {
     pub failed: Option<String>,
     /// What the trials showed on the file's own model.
     pub shown: Shown,
+    /// The mean of [`Shown::values`] over all models.
+    pub mean: [f64; FIGURES.len()],
     /// The mean of [`Shown::cost`] over all models.
     pub cost: f64,
     /// The inequality with the least margin.
@@ -59,7 +61,22 @@ impl Verdict {
     #[must_use]
     pub fn missing() -> Self {
         let failed = Some("not judged".to_owned());
-        Self { violation: f64::INFINITY, failed, shown: NOTHING, cost: f64::INFINITY, tightest: None }
+        Self {
+            violation: f64::INFINITY,
+            failed,
+            shown: NOTHING,
+            mean: NOTHING.values(),
+            cost: f64::INFINITY,
+            tightest: None,
+        }
+    }
+
+    /// Takes what the models showed, the file's own first.
+    pub fn take(&mut self, shown: &[Shown]) {
+        let mean = |of: &dyn Fn(&Shown) -> f64| shown.iter().map(of).sum::<f64>() / shown.len() as f64;
+        self.shown = shown[0];
+        self.mean = std::array::from_fn(|place| mean(&|shown| shown.values()[place]));
+        self.cost = mean(&Shown::cost);
     }
 
     /// Whether every requirement is met.
@@ -88,6 +105,7 @@ const NOTHING: Shown = Shown {
     step: f64::INFINITY,
     activity: f64::INFINITY,
     noise: f64::INFINITY,
+    beyond: None,
     clipped: 0,
 };
 
@@ -103,7 +121,7 @@ impl Judge {
     #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
         let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
-        let space = Space::new(&scenario.configuration, floor);
+        let space = Space::new(scenario, floor);
         Self { scenario: scenario.clone(), space, requirements }
     }
 
@@ -177,14 +195,13 @@ impl Judge {
         verdict: &mut Verdict,
     ) -> Result<(), (u8, f64, String)> {
         let recovery = self.requirements.recovery;
-        let mut costs = Vec::new();
+        let mut shown = Vec::new();
         for model in &MODELS {
             let lost = (1, 1e3, format!("a trial was not flown to its end: {model:?}"));
             let start = |real: &Scenario| Flight::certified(real, certified).ok();
-            costs.push(show(scenario, start, model, recovery).ok_or(lost)?);
+            shown.push(show(scenario, start, model, recovery).ok_or(lost)?);
         }
-        verdict.shown = costs[0];
-        verdict.cost = costs.iter().map(Shown::cost).sum::<f64>() / costs.len() as f64;
+        verdict.take(&shown);
         let restless = (verdict.shown.recovered / (RECOVERED_BY * recovery) - 1.0).max(verdict.shown.clipped as f64);
         if restless > 0.0 {
             return Err((1, restless, "recovery: not near in time, or a clipped command".to_owned()));

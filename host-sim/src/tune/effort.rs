@@ -14,6 +14,6 @@ pub struct Effort {
 impl Default for Effort {
     /// What `host-sim tune` spends on our law and `host-sim compare` on each rival, unless they are asked for another effort.
     fn default() -> Self {
-        Self { generations: 150, population: 48, seed: 1 }
+        Self { generations: 60, population: 24, seed: 1 }
     }
 }

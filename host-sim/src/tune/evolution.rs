@@ -7,7 +7,6 @@
 
 use super::candidate::{Judging, Verdict};
 use super::effort::Effort;
-use super::frontier::Frontier;
 use super::space::Point;
 use crate::interrupt::Interrupt;
 use rand::rngs::ChaCha8Rng;
@@ -27,37 +26,38 @@ fn better(a: &Verdict, b: &Verdict) -> bool {
 /// The population.
 pub struct Evolution {
     members: Vec<(Point, Verdict)>,
+    start: Verdict,
     random: ChaCha8Rng,
     judged: u64,
 }
 
 impl Evolution {
-    /// The first population, scattered around the file's own gains; those of it that are accepted go into `frontier`.
+    /// The first population, scattered around where the search starts, which is judged first and belongs to it.
     #[must_use]
-    pub fn new(judge: &impl Judging, effort: &Effort, frontier: &mut Frontier, interrupt: &Interrupt) -> Self {
+    pub fn new(judge: &impl Judging, effort: &Effort, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
-        let mut points = vec![start.clone()];
-        points.resize_with(effort.population.max(4), || {
-            start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect()
-        });
-        let (members, judged) = judge_all(judge, points, interrupt);
-        for (point, verdict) in members.iter().filter(|(_, verdict)| verdict.accepted()) {
-            frontier.offer(point, verdict);
-        }
-        Self { members, random, judged }
+        let own = judge.judge(&start);
+        let scattered = (1..effort.population.max(4))
+            .map(|_| start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+        let (others, judged) = judge_all(judge, scattered.collect(), interrupt);
+        let members = [(start, own.clone())].into_iter().chain(others).collect();
+        Self { members, start: own, random, judged: 1 + judged }
     }
 
-    /// One generation; accepted candidates go into `frontier` as well.
-    pub fn generation(&mut self, judge: &impl Judging, frontier: &mut Frontier, interrupt: &Interrupt) {
+    /// What the start showed.
+    #[must_use]
+    pub fn start(&self) -> &Verdict {
+        &self.start
+    }
+
+    /// One generation.
+    pub fn generation(&mut self, judge: &impl Judging, interrupt: &Interrupt) {
         let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
         let (trials, judged) = judge_all(judge, trials, interrupt);
         self.judged += judged;
         for ((point, verdict), member) in trials.into_iter().zip(&mut self.members) {
-            if verdict.accepted() {
-                frontier.offer(&point, &verdict);
-            }
             if better(&verdict, &member.1) {
                 *member = (point, verdict);
             }
@@ -131,5 +131,41 @@ mod tests {
         assert!(better(&poor, &rejected) && !better(&rejected, &poor));
         assert!(better(&verdict(0.4, f64::INFINITY), &rejected), "the nearer to acceptance wins");
         assert!(better(&verdict(0.0, 3.0), &poor), "of two accepted the cheaper");
+    }
+
+    /// Judges by the distance from a start that cannot be bettered, or from elsewhere.
+    struct Bowl {
+        bottom: f64,
+    }
+
+    impl Judging for Bowl {
+        fn start(&self) -> Point {
+            vec![0.0; 3]
+        }
+
+        fn judge(&self, point: &Point) -> Verdict {
+            verdict(0.0, point.iter().map(|x| (x - self.bottom).powi(2)).sum())
+        }
+    }
+
+    fn searched(judge: &Bowl) -> Evolution {
+        let mut evolution =
+            Evolution::new(judge, &Effort { generations: 30, population: 12, seed: 1 }, &Interrupt::default());
+        (0..30).for_each(|_| evolution.generation(judge, &Interrupt::default()));
+        evolution
+    }
+
+    #[test]
+    fn a_start_that_nothing_betters_is_what_is_found() {
+        let evolution = searched(&Bowl { bottom: 0.0 });
+        assert_eq!(evolution.best(), Some((vec![0.0; 3], evolution.start().clone())));
+        assert_eq!(evolution.judged(), 12 * 31);
+    }
+
+    #[test]
+    fn a_bottom_outside_the_first_population_is_found() {
+        let evolution = searched(&Bowl { bottom: 1.0 });
+        let (_, best) = evolution.best().unwrap();
+        assert!(evolution.start().cost == 3.0 && best.cost < 0.01, "{best:?}");
     }
 }

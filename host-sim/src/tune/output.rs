@@ -1,54 +1,108 @@
-//! The tuned scenario as a file: the original text with its gains, thrust floor and name replaced, comments kept.
+//! The tuned scenario as a file: the original text with its constants, thrust floor and name replaced, comments kept. Of the extended law only
+//! what does not follow from the vehicle's numbers is written.
 
 use super::Tuned;
-use super::space::named;
+use super::chosen::chosen;
 use crate::table::short;
+use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use controller_core::extended::parameters::ExtendedParameters;
+use scenario::{Scenario, bounds};
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
 /// How the line begins that says what was achieved.
 const HEAD: &str = "# Tuned:";
 
-/// `original` with the tuned gains, headed by what they achieve.
+/// `original` with the tuned constants, headed by what they achieve.
 ///
 /// # Errors
 /// If `original` is no TOML; a text that was read as a scenario is.
 pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     let mut document: DocumentMut = original.parse()?;
-    let configuration = &tuned.scenario.configuration;
-    document["name"] = value(tuned.scenario.name.as_str());
-    for (section, key, constant) in named(configuration) {
-        if !document.contains_key(section) {
-            document[section] = Item::Table(Table::new());
-        }
-        document[section][key] = value(shortest(constant));
+    let scenario = &tuned.scenario;
+    document["name"] = value(scenario.name.as_str());
+    for (section, key, constant) in constants(scenario) {
+        set(&mut document, section, key, constant.map(shortest));
     }
-    if let Some(table) = document["gains"].as_table_mut() {
+    if let Some(table) = document.get_mut("gains").and_then(Item::as_table_mut) {
         // Whatever stood here was said of other gains.
         table.decor_mut().set_suffix("                               # found by `host-sim tune`");
     }
-    match configuration.thrust_floor() {
-        Some(floor) => {
-            if !document.contains_key("control") {
-                document["control"] = Item::Table(Table::new());
+    if scenario.configuration.paper().is_none() {
+        let control = document.entry("control").or_insert_with(|| Item::Table(Table::new()));
+        control["law"] = value("extended");
+    }
+    let said = |text: &str| {
+        let head = format!(
+            "{HEAD} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
+            short(tuned.verdict.shown.height_lost),
+            short(tuned.verdict.shown.gust),
+            100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
+        );
+        // A file that was tuned before loses what it said then.
+        let before = text.strip_prefix(HEAD).and_then(|said| said.split_once('\n'));
+        head + before.map_or(text, |(_, rest)| rest)
+    };
+    let text = said(&document.to_string());
+    // Bounds that follow from the constants may be others now than those that were judged.
+    let judged = scenario.configuration.bounds();
+    if Scenario::parse(&text, "").is_ok_and(|read| read.configuration.bounds() == judged) {
+        return Ok(text);
+    }
+    let section: DocumentMut = bounds::written(judged).parse()?;
+    if let Some(bounds) = section["reference_bounds"].as_table() {
+        // Without the place that it had in its own document.
+        document["reference_bounds"] = Item::Table(bounds.iter().map(|(key, bound)| (key, bound.clone())).collect());
+    }
+    Ok(said(&document.to_string()))
+}
+
+/// Every constant that a search may change, by section and key: none for one that follows from the vehicle's numbers.
+fn constants(scenario: &Scenario) -> Vec<(&'static str, &'static str, Option<f32>)> {
+    match (scenario.configuration.law(), scenario.airframe()) {
+        (LawParameters::Extended(law), Some(airframe)) => {
+            let given = chosen(&airframe, &law.parameters);
+            ExtendedParameters::TABLE.iter().zip(given).map(|(c, value)| (c.section, c.key, value)).collect()
+        }
+        (LawParameters::Extended(_), None) => Vec::new(),
+        (LawParameters::Paper(PaperLaw { gains: g, thrust_floor }), _) => {
+            let gains = [
+                ("k_p", g.k_p),
+                ("k_v", g.k_v),
+                ("k_f", g.k_f),
+                ("k_s", g.k_s),
+                ("k_theta", g.k_theta),
+                ("k_omega", g.k_omega),
+                ("m_p", g.m_p),
+                ("m_theta", g.m_theta),
+                ("m_omega", g.m_omega),
+            ];
+            let gains = gains.map(|(key, value)| ("gains", key, Some(value)));
+            gains.into_iter().chain([("control", "thrust_floor", *thrust_floor)]).collect()
+        }
+    }
+}
+
+/// Writes or takes away one key; a section appears with its first key and goes with its last.
+fn set(document: &mut DocumentMut, section: &str, key: &str, constant: Option<f64>) {
+    match constant {
+        Some(number) => {
+            let table = document.entry(section).or_insert_with(|| Item::Table(Table::new()));
+            let before =
+                table.get(key).and_then(|item| item.as_float().or(item.as_integer().map(|whole| whole as f64)));
+            // What stays the same keeps what is said of it.
+            if before.is_none_or(|before| before as f32 != number as f32) {
+                table[key] = value(number);
             }
-            document["control"]["thrust_floor"] = value(shortest(floor));
         }
         None => {
-            if let Some(control) = document.get_mut("control").and_then(Item::as_table_like_mut) {
-                control.remove("thrust_floor");
+            if let Some(table) = document.get_mut(section).and_then(Item::as_table_like_mut) {
+                table.remove(key);
+                if table.is_empty() {
+                    document.remove(section);
+                }
             }
         }
     }
-    let head = format!(
-        "{HEAD} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
-        short(tuned.verdict.shown.height_lost),
-        short(tuned.verdict.shown.gust),
-        100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
-    );
-    let text = document.to_string();
-    // A file that was tuned before loses what it said then.
-    let rest = text.strip_prefix(HEAD).and_then(|said| said.split_once('\n')).map_or(text.as_str(), |(_, rest)| rest);
-    Ok(head + rest)
 }
 
 /// The double with the fewest digits that rounds to `single`, so that the file reads like the number that flies.

@@ -23,3 +23,17 @@ pub struct Requirements {
     /// Whether the thrust projection may be used.
     pub projection: bool,
 }
+
+impl Default for Requirements {
+    /// What `host-sim tune` asks for unless it is told otherwise.
+    fn default() -> Self {
+        Self {
+            margin: 0.0,
+            loops: LoopMargin { gain: 1.75, delay: 0.003 },
+            position_error: 0.02,
+            mrp_error: 0.01,
+            recovery: 20.0,
+            projection: true,
+        }
+    }
+}

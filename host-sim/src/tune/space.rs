@@ -1,69 +1,92 @@
 //! The search space: which constants of a law are searched, and a point of it as a configuration.
 //!
-//! A point holds natural logarithms. Under the paper's law: nine gains, and the thrust floor as a fraction of its greatest
-//! admissible value; delta and alpha stay as the file has them: they are about noise. Under the extended law: what its
-//! table of constants says ([`ExtendedParameters::TABLE`]).
+//! Under the paper's law a point holds natural logarithms: of nine gains, and of the thrust floor as a fraction of its greatest
+//! admissible value; delta and alpha stay as the file has them: they are about noise.
+//!
+//! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`] marks; those of [`ALONG`]
+//! move with them, and all others follow by the formulas, unless the file chose them. So a candidate spends no more than
+//! there is. A factor of one leaves a constant to the formulas as well: the start is the file's law to the bit.
 
+use super::chosen::chosen;
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::extended::defaults::{self, Given, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 use controller_core::gains::{GainParameters, Gains};
+use scenario::Scenario;
 
 /// A point of the search space.
 pub type Point = Vec<f64>;
 
-/// A constant under its name in a scenario file: section, key, value.
-pub type Named = (&'static str, &'static str, f32);
+/// Constants that move with a searched one: with which power of its factor. w, k_t and r_0 together are the stiffness of the tilt.
+const ALONG: [(&str, &str, f64); 4] = [
+    ("k_v_vertical", "k_p_vertical", 2.0),
+    ("w", "k_t", 1.0),
+    ("w", "r_0", -1.0),
+    ("force_bandwidth_across", "force_bandwidth_vertical", 1.0),
+];
 
-/// The search space around one configuration.
-#[derive(Debug, Clone)]
+/// The search space around one scenario.
+#[derive(Clone)]
 pub struct Space {
-    configuration: Configuration,
+    scenario: Scenario,
+    /// What the file chose of the extended law's constants.
+    chosen: Given,
     /// The greatest thrust floor, as a share of what is admissible; none if the projection may not be used.
     floor: Option<f32>,
 }
 
 impl Space {
-    /// Around `configuration`; thrust floors of the paper's law up to the share `floor` of what is admissible, or none.
+    /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of what is admissible, or none.
     #[must_use]
-    pub fn new(configuration: &Configuration, floor: Option<f32>) -> Self {
-        Self { configuration: configuration.clone(), floor }
+    pub fn new(scenario: &Scenario, floor: Option<f32>) -> Self {
+        let own = match (scenario.configuration.law(), scenario.airframe()) {
+            (LawParameters::Extended(law), Some(airframe)) => chosen(&airframe, &law.parameters),
+            _ => NOTHING_GIVEN,
+        };
+        Self { scenario: scenario.clone(), chosen: own, floor }
     }
 
     /// The file's own constants: where the search starts.
     #[must_use]
     pub fn start(&self) -> Point {
-        let logarithms = |values: &[f32]| values.iter().map(|value| f64::from(*value).ln()).collect();
-        match self.configuration.law() {
+        let configuration = &self.scenario.configuration;
+        match configuration.law() {
             LawParameters::Paper(PaperLaw { gains: g, thrust_floor }) => {
-                let floor = thrust_floor.map_or(0.5, |floor| floor / self.configuration.least_thrust());
-                logarithms(&[g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor])
+                let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.least_thrust());
+                let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor];
+                values.iter().map(|value| f64::from(*value).ln()).collect()
             }
-            LawParameters::Extended(law) => {
-                logarithms(&searched(&law.parameters).map(|named| named.2).collect::<Vec<_>>())
-            }
+            LawParameters::Extended(_) => vec![0.0; searched().count()],
         }
     }
 
     /// The configuration with the constants of `point`, if the law is defined for them.
     #[must_use]
     pub fn configuration(&self, point: &Point) -> Option<Configuration> {
-        match self.configuration.law() {
+        match self.scenario.configuration.law() {
             LawParameters::Paper(law) => self.papers(law, point),
-            LawParameters::Extended(law) => {
-                let mut values = law.parameters.values();
-                let searched =
-                    values.iter_mut().zip(&ExtendedParameters::TABLE).filter(|(_, constant)| constant.searched);
-                for ((value, _), x) in searched.zip(point) {
-                    *value = x.exp() as f32;
-                }
-                let parameters = ExtendedParameters::from_values(values);
-                let own = &self.configuration;
-                let parameters = Extended::new(parameters, own.vehicle()).ok()?;
-                let law = ExtendedLaw { parameters, ..*law };
-                let tuned = Configuration::extended(*own.vehicle(), *own.limits(), law, *own.bounds()).ok()?;
-                own.rotors().map_or(Ok(tuned.clone()), |rotors| tuned.with_rotors(rotors.clone())).ok()
+            LawParameters::Extended(law) => self.extended(law, point),
+        }
+    }
+
+    fn extended(&self, law: &ExtendedLaw, point: &Point) -> Option<Configuration> {
+        let airframe = self.scenario.airframe()?;
+        let own = law.parameters.values();
+        let mut given = self.chosen;
+        for (place, x) in searched().zip(point).filter(|(_, x)| **x != 0.0) {
+            let key = ExtendedParameters::TABLE[place].key;
+            let along = ALONG.iter().filter(|(with, ..)| *with == key).map(|(_, key, power)| (*key, *power));
+            for (key, power) in along.chain([(key, 1.0)]) {
+                let place = ExtendedParameters::TABLE.iter().position(|constant| constant.key == key)?;
+                given[place] = Some(rounded(f64::from(own[place]) * (power * x).exp()));
             }
         }
+        let parameters = defaults::constants(&airframe, &given);
+        let parameters = Extended::new(parameters, airframe.vehicle).ok()?;
+        let law = ExtendedLaw { parameters, ..*law };
+        let bounds = *self.scenario.configuration.bounds();
+        let tuned = Configuration::extended(*airframe.vehicle, *airframe.limits, law, bounds).ok()?;
+        airframe.rotors.map_or(Ok(tuned.clone()), |rotors| tuned.with_rotors(rotors.clone())).ok()
     }
 
     fn papers(&self, law: &PaperLaw, point: &Point) -> Option<Configuration> {
@@ -71,10 +94,11 @@ impl Space {
         let [k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, floor] = *numbers.as_slice() else {
             return None;
         };
+        let own = &self.scenario.configuration;
         let GainParameters { delta, alpha, .. } = *law.gains;
         let parameters = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
-        let gains = Gains::new(parameters, self.configuration.vehicle()).ok()?;
-        let configuration = self.configuration.with_gains(gains).ok()?;
+        let gains = Gains::new(parameters, own.vehicle()).ok()?;
+        let configuration = own.with_gains(gains).ok()?;
         match self.floor {
             None => Some(configuration),
             Some(greatest) => {
@@ -85,30 +109,12 @@ impl Space {
     }
 }
 
-/// The constants of `configuration` that a search changes, by their names in a scenario file.
-#[must_use]
-pub fn named(configuration: &Configuration) -> Vec<Named> {
-    match configuration.law() {
-        LawParameters::Paper(PaperLaw { gains: g, .. }) => {
-            let gains = [
-                ("k_p", g.k_p),
-                ("k_v", g.k_v),
-                ("k_f", g.k_f),
-                ("k_s", g.k_s),
-                ("k_theta", g.k_theta),
-                ("k_omega", g.k_omega),
-                ("m_p", g.m_p),
-                ("m_theta", g.m_theta),
-                ("m_omega", g.m_omega),
-            ];
-            gains.map(|(key, value)| ("gains", key, value)).to_vec()
-        }
-        LawParameters::Extended(law) => searched(&law.parameters).collect(),
-    }
+/// Four significant digits, so that what is written is short and is what was judged.
+fn rounded(value: f64) -> f32 {
+    format!("{value:.3e}").parse().unwrap_or(value as f32)
 }
 
-/// The extended law's searched constants.
-fn searched(parameters: &ExtendedParameters) -> impl Iterator<Item = Named> {
-    let named = ExtendedParameters::TABLE.into_iter().zip(parameters.values());
-    named.filter(|(constant, _)| constant.searched).map(|(constant, value)| (constant.section, constant.key, value))
+/// The places of the extended law's searched constants in its table.
+fn searched() -> impl Iterator<Item = usize> {
+    (0..ExtendedParameters::COUNT).filter(|&place| ExtendedParameters::TABLE[place].searched)
 }

@@ -1,7 +1,14 @@
 //! A small search from beginning to end, and each requirement on its own.
 
 use super::candidate::Judging;
+use super::chosen::chosen;
+use super::space::Space;
 use super::*;
+use controller_core::certificate::configuration::LawParameters;
+use controller_core::extended::defaults;
+use controller_core::extended::parameters::ExtendedParameters;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use scenario::PAPER;
 use scenario::stability::LoopMargin;
 
@@ -96,8 +103,7 @@ fn a_small_search_finds_something_at_least_as_good_as_its_start() {
     assert_eq!(tuned.judged, 6 * 3);
     let own = verdict(&paper(), EASY);
     assert!(tuned.verdict.cost <= own.cost);
-    assert!(tuned.frontier.least_height().is_some_and(|least| least <= own.shown.height_lost));
-    assert!(tuned.frontier.table().starts_with("height lost [m]"));
+    assert_eq!(tuned.before, own);
     // The scenario it hands out is the one it judged.
     assert_eq!(verdict(&tuned.scenario, EASY), tuned.verdict);
 }
@@ -141,7 +147,8 @@ fn a_rewritten_file_keeps_its_comments_and_flies_the_tuned_gains() {
             scenario.configuration = scenario.configuration.with_thrust_floor(floor).unwrap();
         }
         scenario.name = "mine".to_owned();
-        Tuned { verdict: verdict(&scenario, EASY), scenario, frontier: Frontier::default(), judged: 0 }
+        let verdict = verdict(&scenario, EASY);
+        Tuned { before: verdict.clone(), verdict, scenario, judged: 0 }
     };
     let (plain, floored) = (tuned(None), tuned(Some(0.4)));
     let text = output::rewritten(PAPER, &floored).unwrap();
@@ -172,4 +179,130 @@ fn the_widest_bounds_leave_the_margin_and_no_more() {
         Certificate::new(&wider).unwrap().tightest().unwrap().margin()
     };
     assert!((0.05..0.0501).contains(&margin(bounds)), "{}", margin(bounds));
+}
+
+/// The files of the extended law that this project ships, beside the siblings on the paper's trajectory.
+const EXTENDED: [&str; 3] = [
+    include_str!("../../../vehicles/hummingbird.toml"),
+    include_str!("../../../vehicles/study.toml"),
+    include_str!("../../../scenarios/paper-extended.toml"),
+];
+
+fn extended() -> [Scenario; 3] {
+    EXTENDED.map(|text| Scenario::parse(text, "f").unwrap())
+}
+
+fn parameters(scenario: &Scenario) -> ExtendedParameters {
+    let LawParameters::Extended(law) = scenario.configuration.law() else { panic!("{}", scenario.name) };
+    *law.parameters
+}
+
+/// The keys that `scenario`'s file must hold for its constants.
+fn keys(scenario: &Scenario) -> Vec<&'static str> {
+    let given = chosen(&scenario.airframe().unwrap(), &parameters(scenario));
+    let all = ExtendedParameters::TABLE.iter().zip(given).filter(|(_, value)| value.is_some());
+    all.map(|(constant, _)| constant.key).collect()
+}
+
+#[test]
+fn what_the_files_of_the_extended_law_chose_is_found_again_and_nothing_else() {
+    let [hummingbird, study, paper] = extended();
+    assert_eq!(keys(&hummingbird), ["yaw_acceleration"]);
+    assert_eq!(keys(&study), ["turn_reserve", "yaw_acceleration", "yaw_rate", "force_heading"]);
+    assert!(keys(&paper).is_empty());
+}
+
+#[test]
+fn a_search_of_the_extended_law_starts_from_the_files_constants_to_the_bit() {
+    for scenario in extended() {
+        let space = Space::new(&scenario, None);
+        assert_eq!(space.configuration(&space.start()).as_ref(), Some(&scenario.configuration), "{}", scenario.name);
+    }
+}
+
+#[test]
+fn the_chosen_constants_make_all_of_any_point_again_to_the_bit() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for scenario in extended() {
+        let (space, airframe) = (Space::new(&scenario, None), scenario.airframe().unwrap());
+        let mut defined = 0;
+        for _ in 0..20 {
+            let point = space.start().iter().map(|_| 0.4 * (random.random::<f64>() - 0.5)).collect();
+            let Some(configuration) = space.configuration(&point) else { continue };
+            let wanted = parameters(&Scenario { configuration, ..scenario.clone() });
+            let given = chosen(&airframe, &wanted);
+            assert_eq!(defaults::constants(&airframe, &given), wanted, "{}", scenario.name);
+            defined += 1;
+        }
+        assert!(defined > 10, "{}: {defined}", scenario.name);
+    }
+}
+
+#[test]
+fn the_files_of_the_extended_law_meet_the_usual_requirements_as_they_are() {
+    for scenario in extended() {
+        let verdict = verdict(&scenario, Requirements::default());
+        assert!(verdict.accepted(), "{}: {verdict:?}", scenario.name);
+    }
+}
+
+#[test]
+fn a_tuned_file_of_the_extended_law_is_short_and_reads_back_to_the_same_law() {
+    for (text, scenario) in EXTENDED.into_iter().zip(extended()) {
+        let tuned = tune(&scenario, Requirements::default(), SMALL, &Interrupt::default());
+        let tuned = tuned.unwrap_or_else(|closest| panic!("{closest:?}"));
+        assert!(tuned.improved(), "{}", scenario.name);
+        let written = output::rewritten(text, &tuned).unwrap();
+        let read = Scenario::parse(&written, "f").unwrap_or_else(|error| panic!("{error}\n{written}"));
+        assert!(read.flies_like(&tuned.scenario), "{written}");
+        let [before, after] = [&scenario, &read].map(|scenario| keys(scenario).len());
+        assert!(after <= before + 18, "{written}");
+        let (_, value) = written.split_once("k_p_across = ").unwrap();
+        assert!(value.lines().next().unwrap().len() <= 6, "{written}");
+        // Tuned again from there, it holds no more.
+        let again = Tuned { scenario: read, ..tuned };
+        assert_eq!(output::rewritten(&written, &again).unwrap(), written);
+    }
+}
+
+#[test]
+fn a_file_with_every_constant_loses_those_that_follow_from_the_vehicle() {
+    let [scenario, ..] = extended();
+    let (before, _) = EXTENDED[0].split_once("[gains]").unwrap();
+    let (_, after) = EXTENDED[0].split_once("[control]").unwrap();
+    let all = scenario::extended::written(&parameters(&scenario));
+    let text = format!("{before}{all}\n[control]{after}");
+    assert!(Scenario::parse(&text, "f").unwrap().flies_like(&scenario));
+    let verdict = verdict(&scenario, Requirements::default());
+    let tuned = Tuned { before: verdict.clone(), verdict, scenario, judged: 1 };
+    assert!(!tuned.improved());
+    let written = output::rewritten(&text, &tuned).unwrap();
+    assert!(Scenario::parse(&written, "f").unwrap().flies_like(&tuned.scenario), "{written}");
+    assert!(written.contains("yaw_acceleration = 6.0") && !written.contains("k_p_across"), "{written}");
+    assert!(!written.contains("[estimates]") && written.contains("law = \"extended\""), "{written}");
+}
+
+#[test]
+fn a_vehicle_without_a_law_in_its_file_is_tuned_under_the_extended_one() {
+    let bare = EXTENDED[2].replace("law = \"extended\"\n", "");
+    let scenario = Scenario::parse(&bare, "f").unwrap();
+    let tuned =
+        tune(&scenario, Requirements::default(), SMALL, &Interrupt::default()).unwrap_or_else(|e| panic!("{e:?}"));
+    let written = output::rewritten(&bare, &tuned).unwrap();
+    assert!(written.contains("law = \"extended\""), "{written}");
+    assert!(Scenario::parse(&written, "f").unwrap().flies_like(&tuned.scenario), "{written}");
+}
+
+#[test]
+fn the_table_says_what_each_figure_was_and_is() {
+    let [scenario, ..] = extended();
+    let before = verdict(&scenario, Requirements::default());
+    let mut after = before.clone();
+    (after.shown.height_lost, after.mean[0], after.cost) = (0.5, 0.6, 3.0);
+    let text = Tuned { before, verdict: after, scenario, judged: 2 }.table();
+    let line =
+        |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{name}: {text}"));
+    let numbers: Vec<&str> = line("upside down: height lost").split_whitespace().skip(5).collect();
+    assert!(numbers.len() == 4 && numbers[1] == "0.5" && numbers[3] == "0.6", "{text}");
+    assert!(line("cost").ends_with(" 3") && line("storm").split_whitespace().count() == 8, "{text}");
 }

@@ -454,6 +454,9 @@ class Tuned:
     def cost(self) -> float:
         """What the search made small."""
     @property
+    def cost_before(self) -> float:
+        """The same of the constants that the search started from."""
+    @property
     def judged(self) -> int:
         """Candidates."""
 
@@ -461,18 +464,18 @@ def tune(
     scenario: Scenario,
     *,
     name: str | None = None,
-    generations: int = 150,
-    population: int = 48,
+    generations: int = 60,
+    population: int = 24,
     seed: int = 1,
-    margin: float = 0.05,
-    gain_margin: float = 2.0,
+    margin: float = 0.0,
+    gain_margin: float = 1.75,
     delay_margin: float = 0.003,
-    position_error: float = 1e-3,
-    mrp_error: float = 1e-4,
+    position_error: float = 0.02,
+    mrp_error: float = 0.01,
     recovery: float = 20.0,
     projection: bool = True,
 ) -> Tuned:
-    """Searches gains that certify and then please a pilot most; minutes to hours, on all cores. As `host-sim tune`.
+    """Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As `host-sim tune`.
 
     Args:
         name: of the tuned scenario; left out: its own with `-tuned`.

@@ -1,0 +1,37 @@
+//! `certify --show`: every constant that is used, as sections of a scenario file.
+
+use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use scenario::{Scenario, bounds, extended};
+
+/// The sections that stand for what `scenario` flies with.
+#[must_use]
+pub fn constants(scenario: &Scenario) -> String {
+    let configuration = &scenario.configuration;
+    let (law, constants) = match configuration.law() {
+        LawParameters::Extended(law) => ("extended", extended::written(&law.parameters)),
+        LawParameters::Paper(PaperLaw { gains: g, thrust_floor }) => {
+            let values = [
+                ("k_p", g.k_p),
+                ("k_v", g.k_v),
+                ("k_f", g.k_f),
+                ("k_s", g.k_s),
+                ("k_theta", g.k_theta),
+                ("k_omega", g.k_omega),
+                ("m_p", g.m_p),
+                ("m_theta", g.m_theta),
+                ("m_omega", g.m_omega),
+                ("delta", g.delta),
+                ("alpha", g.alpha),
+            ];
+            let lines: String = values.iter().map(|(key, value)| format!("{key} = {value:?}\n")).collect();
+            let floor =
+                thrust_floor.map_or(String::new(), |floor| format!("# with [control] thrust_floor = {floor:?}\n"));
+            ("paper", format!("{floor}[gains]\n{lines}"))
+        }
+    };
+    format!(
+        "# {}: all that `[control] law = \"{law}\"` flies with, in place of these sections\n{constants}\n{}",
+        scenario.name,
+        bounds::written(configuration.bounds())
+    )
+}
