@@ -15,7 +15,6 @@ use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::extended::ExtendedBounds;
 use controller_core::extended::controller::Controller;
 use controller_core::extended::parameters::Extended;
-use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::{Quaternion, Vector3};
@@ -87,14 +86,6 @@ struct World {
 impl World {
     fn new(configuration: Configuration) -> Option<Self> {
         let certified = Certified::new(configuration.clone()).ok()?;
-        // No row of the certificate keeps the thrust floor of the greatest torque below T_max.
-        let torque = bounds(&configuration).torque.cast();
-        let p = law(&configuration).parameters;
-        let range = ThrustRange::new(configuration.rotors(), p.floor_margin, configuration.limits().thrust_max);
-        let raised = range.least(&torque, p.scale_greatest).max(range.least(&-torque, p.scale_greatest));
-        if raised > configuration.limits().thrust_max {
-            return None;
-        }
         let allocation = configuration.rotors().map(|rotors| (MinimumNorm::new(rotors), Mixer::new(rotors)));
         Some(Self { bounds: bounds(&configuration), parameters: law(&configuration).parameters, certified, allocation })
     }
@@ -148,7 +139,7 @@ impl World {
             ],
         };
         let most = 1.0 + EVALUATION_ERROR;
-        assert!(tick.torque.iter().chain(&tick.motion[2..]).all(|share| *share <= most), "{tick:?}: {wrench:?}");
+        assert!(tick.torque.iter().chain(&tick.motion).all(|share| *share <= most), "{tick:?}: {wrench:?}");
         assert!(f64::from(wrench.thrust) >= self.bounds.thrust.least);
         // No proof says how far beyond its envelope c may go; it may not run away.
         assert!(tick.envelope[0] < 4.0 && tick.envelope[1] < 1.3, "{tick:?}");

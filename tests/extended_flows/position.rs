@@ -6,9 +6,8 @@
 use crate::support::extended::{law, random_configuration, random_parameters};
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::extended::parameters::Extended;
-use controller_core::extended::position::{PositionFeedback, PositionLaw, net_level};
+use controller_core::extended::position::{Filters, PositionFeedback, PositionLaw, net_level};
 use controller_core::heading::Heading;
-use controller_core::position::FilterState;
 use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3};
@@ -18,13 +17,14 @@ use rand::RngExt;
 const GRAVITY: f32 = 9.81;
 const PERIOD: f32 = 1e-7;
 
-/// Position and velocity errors, c and x.
+/// Position and velocity errors, c, x and y.
 #[derive(Debug, Clone, Copy)]
 struct Translation {
     position: Vector3<f64>,
     velocity: Vector3<f64>,
     c: Vector3<f64>,
     x: Vector3<f64>,
+    y: Vector3<f64>,
 }
 
 impl Translation {
@@ -34,6 +34,7 @@ impl Translation {
             velocity: self.velocity + flow.velocity * time,
             c: self.c + flow.c * time,
             x: self.x + flow.x * time,
+            y: self.y + flow.y * time,
         }
     }
 }
@@ -72,8 +73,8 @@ impl Loop {
         let far = random::log_uniform(rng, 0.01, 100.0);
         let fast = random::log_uniform(rng, 0.01, 30.0);
         let mut filter = || random::vector(rng, 5.0).cast() - self.force;
-        let (c, x) = (filter(), filter());
-        Translation { position: random::vector(rng, far).cast(), velocity: random::vector(rng, fast).cast(), c, x }
+        let [c, x, y] = [filter(), filter(), filter()];
+        Translation { position: random::vector(rng, far).cast(), velocity: random::vector(rng, fast).cast(), c, x, y }
     }
 
     fn core(&self, x: &Translation) -> PositionFeedback {
@@ -83,8 +84,8 @@ impl Loop {
             attitude: Quaternion::identity(),
             angular_velocity: Vector3::zeros(),
         };
-        let filter = FilterState { filtered: x.c.cast(), intermediate: x.x.cast() };
-        self.law.feedback(&state, &origin(), &filter, &self.believed, self.greatest, self.caught)
+        let filters = Filters { command: x.c.cast(), intermediate: x.x.cast(), smoothed: x.y.cast() };
+        self.law.feedback(&state, &origin(), &filters, &self.believed, self.greatest, self.caught)
     }
 
     /// The core's feedback and drive with a force that is `more` than what is believed.
@@ -94,16 +95,22 @@ impl Loop {
             position: x.velocity,
             velocity: x.c + self.force + more,
             c: (x.x - x.c) * f64::from(self.p.k_f),
-            x: (feedback - x.x) * f64::from(self.p.k_s),
+            x: (x.y - x.x) * f64::from(self.p.k_s),
+            y: (feedback - x.y) * f64::from(self.p.k_d),
         }
+    }
+
+    /// 1/k_f, 1/k_s and 1/k_d, s.
+    fn lags(&self) -> [f64; 3] {
+        [self.p.k_f, self.p.k_s, self.p.k_d].map(|bandwidth| 1.0 / f64::from(bandwidth))
     }
 
     /// z_1 and z_2 in double precision.
     fn z(&self, x: &Translation) -> [Vector3<f64>; 2] {
-        let [k_f, k_s] = [self.p.k_f, self.p.k_s].map(f64::from);
-        let (c, driven) = (x.c + self.force, x.x + self.force);
-        let z_1 = x.position + x.velocity * (1.0 / k_f + 1.0 / k_s) + c / (k_f * k_s);
-        [z_1, x.velocity + c / k_f + driven / k_s]
+        let [f, s, d] = self.lags();
+        let [c, driven, smoothed] = [x.c, x.x, x.y].map(|filter| filter + self.force);
+        let z_1 = x.position + x.velocity * (f + s + d) + c * (f * (s + d)) + driven * (s * d);
+        [z_1, x.velocity + c * f + driven * s + smoothed * d]
     }
 
     /// The vertical's level in either direction.
@@ -146,7 +153,7 @@ impl Loop {
     fn resting(&self, x: &Translation) -> Translation {
         let mut still = *x;
         (still.position.z, still.velocity.z) = (0.0, 0.0);
-        (still.c.z, still.x.z) = (-self.force.z, -self.force.z);
+        (still.c.z, still.x.z, still.y.z) = (-self.force.z, -self.force.z, -self.force.z);
         still
     }
 }
@@ -196,8 +203,9 @@ fn v_0_never_rises_along_flows() {
             let v_dot = (v_0(&x.after(&along, step)) - v_0(&x.after(&along, -step))) / (2.0 * step);
             let [_, z_2] = flying.z(&x);
             // Differences, and the core's rounding of z: where the feedback is steep, k_p of a rounding of 100 m.
-            let (c, driven) = (x.c.norm() / f64::from(p.k_f), x.x.norm() / f64::from(p.k_s));
-            let steep = 6e-8 * (gain * (x.position.norm() + x.velocity.norm()) + rate * (c + driven));
+            let [f, s, d] = flying.lags();
+            let filtered = x.c.norm() * f + x.x.norm() * s + x.y.norm() * d;
+            let steep = 6e-8 * (gain * (x.position.norm() + x.velocity.norm()) + rate * filtered);
             let forced = level + flying.force.norm() + f64::from(GRAVITY);
             let allowed = z_2.norm() * (2e-6 * forced + 4.0 * steep) + 1e-15 * v_0(&x) / step;
             assert!(
@@ -266,14 +274,14 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         );
         // z is linear in the state, so that any step will do.
         let [after, before] = [0.5, -0.5].map(|time| flying.z(&x.after(&along, time)));
-        let [k_f, k_s] = [flying.p.k_f, flying.p.k_s].map(f64::from);
         let [z_1_dot, z_2_dot] = [after[0] - before[0], after[1] - before[1]];
-        let moved = more * (1.0 / k_f + 1.0 / k_s);
+        let lags = flying.lags();
+        let moved = more * lags.iter().sum::<f64>();
         assert!((z_1_dot - z_2 - moved).norm() < 1e-9 * (1.0 + z_1_dot.norm()), "{z_1_dot} {z_2} {moved}");
-        // The core's drive is the feedback's less x, in ticks without an end.
-        let drive = core.drive.cast::<f64>() / k_s + x.x;
+        // The core's drive is y less x, in ticks without an end.
+        let drive = core.drive.cast::<f64>() * lags[1] + x.x;
         let feedback = core.feedback.cast::<f64>();
-        assert!((drive - feedback).norm() < 1e-4 * (1.0 + feedback.norm() + x.x.norm()));
+        assert!((drive - x.y).norm() < 1e-4 * (1.0 + feedback.norm() + x.x.norm() + x.y.norm()));
         let pushed = feedback + flying.force + more;
         assert!((z_2_dot - pushed).norm() < 1e-9 * (1.0 + z_2_dot.norm()), "{z_2_dot} {pushed}");
     }

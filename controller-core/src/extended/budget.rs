@@ -74,7 +74,7 @@ pub struct TorqueBudget {
     pub floor: f64,
     /// L, N per rad/s^2.
     pub floor_per_acceleration: f64,
-    /// The thrust of all rotors for each unit of s, and what bias and yaw take of it, N.
+    /// The thrust of all rotors for each unit of s, infinite without rotors, and what bias and yaw take of it, N.
     pub ceiling: [f64; 2],
 }
 
@@ -151,7 +151,7 @@ impl TorqueBudget {
             (torque.x.abs() + torque.y.abs()) * bias_tilt + torque.z.abs() * (bias_yaw + j.z * acceleration)
         };
         let (mut floor, mut per_acceleration) = (0.0, 0.0);
-        let mut ceiling = [f64::from(limits.thrust_max), 0.0];
+        let mut ceiling = [f64::INFINITY, 0.0];
         for share in &shares {
             floor = math::greater_f64(floor, scales[1] * share.least + beside(&share.torque));
             per_acceleration =

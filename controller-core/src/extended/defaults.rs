@@ -15,7 +15,7 @@
 //! | k_v, k_p across; vertical | 0.54 w_a, 0.435 k_v^2; 1.4 and 1.96 times that |
 //! | A_h, gamma | what the thrust leaves beside 0.7 of the weight; 75 degrees or what the least lift allows |
 //! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
-//! | D_h | 0.8 A_h, or 0.8 of what the weakest thrust holds, without the drag at 5 m/s |
+//! | D_h | 0.8 A_h, or 0.72 of what the weakest thrust holds, without the drag at 5 m/s |
 //! | L across; vertical | 1.1 w_a; 1.33 times that |
 //! | yaw: feedback, A, bias | 4, 5 and 4 % of the greatest yaw torque |
 
@@ -154,8 +154,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
     let a_across = or("a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
     let force_across =
-        or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.8 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
-    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.85 * (weakest - gravity)), 0.0);
+        or("force_across", lesser_f64(0.8 * a_across, greater_f64(0.72 * level(weakest) - 5.0 * f64::from(drag), 0.0)));
+    let force_down = greater_f64(lesser_f64(0.8 * (greatest - gravity), 0.76 * (weakest - gravity)), 0.0);
 
     let k_f = or("k_f", 1.12 * w_a);
     let k_v = or("k_v_across", 0.54 * w_a);

@@ -6,7 +6,7 @@
 //! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
 //! that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had. The vertical
 //! speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to that of the descent.
-//! The extended law keeps what it knows of the vehicle, its torque bias and thrust scale, and learns nothing meanwhile.
+//! The extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and learns nothing meanwhile.
 //!
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
 //! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
@@ -345,16 +345,21 @@ impl<'m> Chain<'m> {
         self.sinking.is_motion()
     }
 
-    /// The acceleration beside the one that was asked for, m/s^2, world.
+    /// The vertical force per mass that the law reckons with, m/s^2: what the rotors lack, mostly.
+    fn vertical_force(&self) -> f32 {
+        self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
+    }
+
+    /// The acceleration beside the one that was asked for and the one that the law knows of, m/s^2, world.
     pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
         let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);
         let asked = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);
-        estimated.acceleration + Vector3::z() * self.gravity - asked
+        estimated.acceleration + Vector3::z() * (self.gravity - self.vertical_force()) - asked
     }
 
-    /// The vertical acceleration that a thrust means, m/s^2.
+    /// The vertical acceleration that a thrust means with the force that the law knows of, m/s^2.
     pub fn asked_acceleration(&self, flown: &Flown) -> f32 {
-        flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity
+        flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity + self.vertical_force()
     }
 
     /// This tick's thrusts, N, in the rotors' order; the last ones if it was refused, none before the first.

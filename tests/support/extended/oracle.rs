@@ -21,15 +21,20 @@ const ROOM_LEFT: f64 = 0.01;
 const LEVEL_LEAST: f64 = 0.3;
 const SHARE_ACROSS: f64 = 0.95;
 
-/// k, 1/s (section 3).
+/// k, 1/s, and the part of alpha that q may take (section 3).
 const SOFTNESS: f64 = 10.0;
+const TURNED: f64 = 2.0 / 3.0;
 
-/// c_0, m/s^2, and the bandwidth of the slow averages, 1/s (section 7).
+/// How far beyond Omega a tick may take the thrust direction (section 4).
+const RATE_BEYOND: f64 = 1.15;
+
+/// c_0, m/s^2, and the bandwidth of the slow averages, 1/s (section 9).
 const LEAST_VARIATION: f64 = 2.0;
 const SLOW: f64 = 0.7;
 
-/// When the net catches, s, and how near the target is, m and m/s (section 13).
+/// When the net catches, s, what it forgives of a silent time, and how near the target is, m and m/s (section 13).
 pub const PATIENCE: f64 = 60.0;
+const FORGIVEN: f64 = 0.05;
 const NEAR: f64 = 0.05;
 
 /// What the law knows from the tick before.
@@ -49,12 +54,12 @@ pub struct Net {
     pub caught: bool,
 }
 
-/// What is averaged: zeta, the torque bias, ybar and fbar; and the scale.
+/// What is averaged: zeta, the torque bias, ybar and fbar (none before the first interval); and the scale.
 #[derive(Debug, Clone, Copy)]
 pub struct Averages {
     pub force: Vector3<f64>,
     pub bias: Vector3<f64>,
-    pub slow: [Vector3<f64>; 2],
+    pub slow: Option<[Vector3<f64>; 2]>,
     pub scale: f64,
 }
 
@@ -70,8 +75,8 @@ pub struct Tick {
     pub reference: [Vector3<f64>; 4],
     /// psi, psi', psi''.
     pub heading: [f64; 3],
-    /// c and x.
-    pub filters: [Vector3<f64>; 2],
+    /// c, x and y.
+    pub filters: [Vector3<f64>; 3],
     /// chi and W; none before the first tick.
     pub lag: Option<[f64; 2]>,
     pub lift: Option<Lift>,
@@ -109,7 +114,7 @@ pub struct Answer {
     pub torque: Vector3<f64>,
     pub omega_d: Vector3<f64>,
     pub omega_d_dot: Vector3<f64>,
-    pub filters: [Vector3<f64>; 2],
+    pub filters: [Vector3<f64>; 3],
     pub averages: Averages,
     /// chi and W.
     pub lag: [f64; 2],
@@ -119,16 +124,9 @@ pub struct Answer {
     pub net: Net,
     /// R~^T omega_d'.
     pub wanted: Vector3<f64>,
-    pub branches: Branches,
-}
-
-/// Which way the tick went where it can go two, and how near it was to where the law jumps.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Branches {
-    /// The frame's rate, its acceleration, its cone; |u|, c_z; the damping's share; the floor, the ceiling.
-    pub taken: [bool; 8],
-    /// How far rho was from where the cone begins to act, rad/s, if its acceleration is beyond alpha there.
-    pub jump: f64,
+    /// Which way the tick went where it can go two: the frame's rate, its acceleration, the same with W, its cone; |u|, c_z; the damping's
+    /// share; the floor, the ceiling; W cut.
+    pub taken: [bool; 10],
 }
 
 /// A row of the budget: t, y, R.
@@ -263,8 +261,8 @@ impl Law {
     /// The budget's fixed part, section 4.
     fn spend(&mut self, torque_max: &Vector3<f64>) {
         let (p, j) = (&self.p, self.moments());
-        let [yaw_acceleration, yaw_rate, turn_rate, margin] =
-            [p.yaw_acceleration, p.yaw_rate, p.turn_rate, p.floor_margin].map(double);
+        let [yaw_acceleration, yaw_rate, margin] = [p.yaw_acceleration, p.yaw_rate, p.floor_margin].map(double);
+        let turn_rate = RATE_BEYOND * double(p.turn_rate);
         let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(double);
         let [s_lo, s_hi] = [p.scale_least, p.scale_greatest].map(double);
         // Two components of omega_d across each other, at Omega and W_max: their product is at most half the square.
@@ -291,6 +289,10 @@ impl Law {
             let bias = most(|b| b.x.abs() + b.y.abs()) * bias_tilt + y * bias_yaw;
             self.rows.push(Row { tilt: t, yaw: y, room: range - 2.0 * margin - bias - t * tilt - y * yaw });
             let greatest = |of: &dyn Fn(&Rotor) -> f64| self.rotors.iter().map(of).fold(0.0, f64::max);
+            let (t, y) = (greatest(&|r| r.per_thrust().xy().norm()), greatest(&|r| r.per_thrust().z.abs()));
+            let below = self.thrust_max - greatest(&|r| s_hi * r.least / r.row[0]) - 2.0 * margin;
+            let bias = greatest(&|r| r.per_thrust().x.abs() + r.per_thrust().y.abs()) * bias_tilt + y * bias_yaw;
+            self.rows.push(Row { tilt: t, yaw: y, room: below - bias - t * tilt - y * yaw });
             let raised = greatest(&|rotor| s_hi * rotor.least / rotor.row[0] + beside(&rotor.per_thrust()));
             let slope = greatest(&|rotor| {
                 let b = rotor.per_thrust();
@@ -346,15 +348,16 @@ impl Law {
 
         let (mut net, mut filters) = (t.net, t.filters);
         if net.acted > PATIENCE && !net.caught {
-            (net, filters) = (Net { acted: 0.0, caught: true }, [-d, -d]);
+            (net, filters) = (Net { acted: 0.0, caught: true }, [-d; 3]);
         }
         let greatest = self.greatest(scale) * (1.0 + t.nudge.greatest);
         let most = if net.caught { self.net_level() } else { f64::INFINITY };
         let ([z_1, z_2], feedback) = self.feedback(t, &filters, &Envelope { d, greatest, most });
-        let [c, x] = filters;
+        let [c, x, y] = filters;
         let k_f = double(p.k_f);
         let c_rate = k_f * (x - c);
-        let drive = (feedback - x) * ((1.0 - (-double(p.k_s) * h).exp()) / h);
+        let smoothed = feedback + (y - feedback) * (-double(p.k_d) * h).exp();
+        let drive = (smoothed - x) * ((1.0 - (-double(p.k_s) * h).exp()) / h);
         let c_second = k_f * (drive - c_rate);
 
         let kappa = Vector3::new(1.0, 1.0, 0.0) * double(p.drag_across);
@@ -389,38 +392,46 @@ impl Law {
         let sine = if cosine > 0.0 { error[(0, 2)].hypot(error[(1, 2)]) } else { 1.0 };
         let alpha = self.budget(n, pull.xy().norm(), sine).0 + t.nudge.budget;
         let vertical = [c.z, c_rate.z, c_second.z];
-        let (change, mut branches) = self.limited(&wanted, turn, alpha, greatest, &vertical, &t.nudge.turn);
+        let (change, limited) = self.limited(&wanted, turn, alpha, greatest, &vertical, &t.nudge.turn);
         let command = Command { u_ddot: u_ddot + change, ..command };
 
-        let (omega_d, omega_d_dot, after) = self.lagging(lag, &command, t.nudge.heading);
+        let (omega_d, omega_d_dot, mut after) = self.lagging(lag, &command, t.nudge.heading);
+        // A third of alpha is W's at the next tick.
+        let turning = papers.transpose() * wanted.p;
+        let fastest =
+            (1.0 - TURNED) * alpha.max(double(p.turn_reserve)) / (turning.x.abs() + turning.y.abs()).max(1e-3);
+        let slowed = after[1].abs() > fastest;
+        after[1] = cut(after[1], fastest);
         let (rate, turned) = (error.transpose() * omega_d, error.transpose() * omega_d_dot);
         let torque = self.inertia * turned - skew(self.inertia * rate) * rate - pull - bias;
         let asked = self.mass * u.dot(&axis);
         let [least, ceiling] = self.thrusts(&torque, scale);
         let thrust = ceiling.min(least.max(asked));
-        branches.taken[5..].copy_from_slice(&[eased, asked < least, asked > ceiling]);
+        let [rate, acceleration, whole, cone, swells, falls] = limited;
         if z_1.norm() < NEAR && z_2.norm() < NEAR {
             net = Net { acted: 0.0, caught: false };
-        } else if branches.taken[..5].contains(&true) || thrust < asked {
+        } else if limited.contains(&true) || thrust < asked {
             net.acted += h;
+        } else {
+            net.acted = (net.acted - FORGIVEN * h).max(0.0);
         }
         Answer {
             thrust,
             torque,
             omega_d,
             omega_d_dot,
-            filters: self.filtered(filters, drive + change / k_f),
+            filters: self.filtered([c, x], drive + change / k_f, smoothed),
             averages,
             lag: after,
             lifted,
             lift,
             net,
             wanted: turned,
-            branches,
+            taken: [rate, acceleration, whole, cone, swells, falls, eased, asked < least, asked > ceiling, slowed],
         }
     }
 
-    /// Sections 2, 5 and 7: the averages with what happened since the last tick.
+    /// Sections 2, 7 and 9: the averages with what happened since the last tick.
     fn learnt(&self, t: &Tick, axis: &Vector3<f64>) -> Averages {
         let before = t.averages;
         let Some(last) = t.last.filter(|_| !t.held) else { return before };
@@ -430,8 +441,10 @@ impl Law {
         let made = (t.velocity - last.velocity) / h + Vector3::new(drag.x, drag.y, self.gravity);
         let commanded = (last.axis + axis) / 2.0 * (t.acted[0] / self.mass);
 
-        let slow = [made - before.slow[0], commanded - before.slow[1]].map(|x| x * weight(SLOW));
-        let slow = [before.slow[0] + slow[0], before.slow[1] + slow[1]];
+        // They begin with the first interval.
+        let [slow_made, slow_commanded] = before.slow.unwrap_or([made, commanded]);
+        let slow =
+            [(slow_made, made), (slow_commanded, commanded)].map(|(slow, new)| slow + (new - slow) * weight(SLOW));
         let (y, f) = (made - slow[0], commanded - slow[1]);
         let step = double(p.scale_rate) * h * (y - before.scale * f).dot(&f)
             / (f.norm_squared() + LEAST_VARIATION * LEAST_VARIATION);
@@ -443,7 +456,7 @@ impl Law {
         let torque = Vector3::new(t.acted[1], t.acted[2], t.acted[3]) * scale;
         let observed = self.inertia * (t.omega - last.omega) / h + skew(omega) * self.inertia * omega - torque;
         let bias = before.bias + (observed - before.bias) * weight(double(p.torque_bandwidth));
-        Averages { force, bias, slow, scale }
+        Averages { force, bias, slow: Some(slow), scale }
     }
 
     /// The net's level, section 13: c' and c'' take half of Omega and half of alpha_0 at the least |u|.
@@ -456,12 +469,12 @@ impl Law {
     }
 
     /// Section 1: z_1, z_2 and ubar.
-    fn feedback(&self, t: &Tick, [c, x]: &[Vector3<f64>; 2], e: &Envelope) -> ([Vector3<f64>; 2], Vector3<f64>) {
+    fn feedback(&self, t: &Tick, filters: &[Vector3<f64>; 3], e: &Envelope) -> ([Vector3<f64>; 2], Vector3<f64>) {
         let p = &self.p;
-        let (k_f, k_s) = (double(p.k_f), double(p.k_s));
-        let (opposed, driven) = (c + e.d, x + e.d);
-        let z_1 = t.position_error + t.velocity_error * (1.0 / k_f + 1.0 / k_s) + opposed / (k_f * k_s);
-        let z_2 = t.velocity_error + opposed / k_f + driven / k_s;
+        let [f, s, d] = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / double(bandwidth));
+        let [c, x, y] = filters.map(|filter| filter + e.d);
+        let z_1 = t.position_error + t.velocity_error * (f + s + d) + c * (f * (s + d)) + x * (s * d);
+        let z_2 = t.velocity_error + c * f + x * s + y * d;
 
         let (k_p, k_v) = (double(p.k_p_vertical), double(p.k_v_vertical));
         let speed = double(if z_1.z > 0.0 { p.v_down } else { p.v_up });
@@ -539,13 +552,17 @@ impl Law {
         greatest: f64,
         [c, c_rate, c_second]: &[f64; 3],
         nudge: &Vector3<f64>,
-    ) -> (Vector3<f64>, Branches) {
+    ) -> (Vector3<f64>, [bool; 6]) {
         let (parameters, h) = (&self.p, self.period);
         let Turn { rho, n, r, p, q: wanted, along: radial } = turn;
         let [rate, reserve] = [parameters.turn_rate, parameters.turn_reserve].map(double);
         let most = alpha.max(reserve);
         let (next, faster) = shortened(p + wanted * h, rate);
         let mut q = if faster { (next - p) / h + nudge } else { *wanted };
+        let (own, shorter) = shortened(q, TURNED * most);
+        if shorter {
+            q = own + nudge;
+        }
 
         // e3 without its part along rho.
         let z = Vector3::z() - rho * rho.z;
@@ -553,10 +570,9 @@ impl Law {
         let least = -(reserve / rate) * (rho.z - double(parameters.tilt_max).cos());
         let carried = p.cross(rho) * yaw_rate;
         let tilted = rising < least;
-        let jump = if q.norm() > most { (rising - least).abs() } else { f64::INFINITY };
         if tilted {
             let inwards = z * ((least - rising) / (z.norm_squared().max(1e-6) * h));
-            q = shortened(q, most).0 + shortened(inwards, most).0 + nudge;
+            q += shortened(inwards, most).0 + nudge;
         }
         let (whole, sooner) = shortened(q + carried, most);
         if sooner {
@@ -578,8 +594,7 @@ impl Law {
         if swells {
             along += shrinking - swelling;
         }
-        let taken = [faster, sooner, tilted, swells, falls, false, false, false];
-        (tangential + rho * along, Branches { taken, jump })
+        (tangential + rho * along, [faster, shorter, sooner, tilted, swells, falls])
     }
 
     /// Section 5: the frame's motion that lags in heading, and chi and W a period later.
@@ -609,8 +624,13 @@ impl Law {
         [least, each(|rotor| rotor.greatest).map(|most| most - margin).fold(self.thrust_max, f64::min)]
     }
 
-    /// c and x a period later, with the drive held.
-    fn filtered(&self, [mut c, mut x]: [Vector3<f64>; 2], drive: Vector3<f64>) -> [Vector3<f64>; 2] {
+    /// c and x a period later, with the drive held, and y at `smoothed`.
+    fn filtered(
+        &self,
+        [mut c, mut x]: [Vector3<f64>; 2],
+        drive: Vector3<f64>,
+        smoothed: Vector3<f64>,
+    ) -> [Vector3<f64>; 3] {
         let k_f = double(self.p.k_f);
         let flow = |c: Vector3<f64>, x: Vector3<f64>| k_f * (x - c);
         let steps = 60;
@@ -628,7 +648,7 @@ impl Law {
         if c.z < lowest {
             (c.z, x.z) = (lowest, x.z.max(lowest));
         }
-        [c, x]
+        [c, x, smoothed]
     }
 }
 

@@ -9,8 +9,8 @@ use crate::support::oracle::rounding::{ROUNDINGS, ULP};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector4};
 
 /// What is compared.
-pub const NAMES: [&str; 11] =
-    ["thrust", "torque", "omega_d", "omega_d'", "c", "x", "zeta", "bias", "averages", "scale", "chi, W"];
+pub const NAMES: [&str; 12] =
+    ["thrust", "torque", "omega_d", "omega_d'", "c", "x", "y", "zeta", "bias", "averages", "scale", "chi, W"];
 
 /// The place of omega_d' among them.
 pub const ACCELERATION: usize = 3;
@@ -27,12 +27,22 @@ pub fn distances(a: &Answer, b: &Answer) -> [f64; NAMES.len()] {
         (a.omega_d_dot - b.omega_d_dot).norm(),
         (a.filters[0] - b.filters[0]).norm(),
         (a.filters[1] - b.filters[1]).norm(),
+        (a.filters[2] - b.filters[2]).norm(),
         (s.force - t.force).norm(),
         (s.bias - t.bias).norm(),
-        (s.slow[0] - t.slow[0]).norm().hypot((s.slow[1] - t.slow[1]).norm()),
+        apart(s.slow, t.slow),
         (s.scale - t.scale).abs(),
         lag.hypot(a.lag[1] - b.lag[1]),
     ]
+}
+
+/// The distance between slow averages.
+fn apart(a: Option<[Vector3<f64>; 2]>, b: Option<[Vector3<f64>; 2]>) -> f64 {
+    match (a, b) {
+        (Some(a), Some(b)) => (a[0] - b[0]).norm().hypot((a[1] - b[1]).norm()),
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    }
 }
 
 /// What positions and velocities were subtracted from, m and m/s, and what omega_d' of the last tick is known to, rad/s^2.
@@ -46,20 +56,21 @@ pub struct Scales {
 /// `t` with one quantity at a time moved by one rounding.
 fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> Vec<Tick> {
     let (p, h) = (&law.p, law.period);
-    let [k_f, k_s, drag] = [p.k_f, p.k_s, p.drag_across].map(f64::from);
+    let [k_f, k_s, k_d, drag] = [p.k_f, p.k_s, p.k_d, p.drag_across].map(f64::from);
     let Scales { far, fast, wanted } = *scales;
     let averages = t.averages;
-    let (zeta, slow) = (averages.force.norm(), averages.slow.map(|x| x.norm()));
+    let (zeta, slow) = (averages.force.norm(), averages.slow.map(|slow| slow.map(|x| x.norm())));
     let d = f64::from(p.force_across).hypot(f64::from(p.force_up.max(p.force_down))).min(zeta);
-    let [c, x] = t.filters.map(|x| x.norm());
+    let [c, x, y] = t.filters.map(|x| x.norm());
     let [v_d, a_d, j_d, s_d] = t.reference.map(|r| r.norm());
     // The terms that add up to z_1 and z_2, and to u, u' and u''.
-    let z_1 = far + fast * (1.0 / k_f + 1.0 / k_s) + (c + d) / (k_f * k_s);
-    let z_2 = fast + (c + d) / k_f + (x + d) / k_s;
+    let [f, s, of_y] = [1.0 / k_f, 1.0 / k_s, 1.0 / k_d];
+    let z_1 = far + fast * (f + s + of_y) + (c + d) * (f * (s + of_y)) + (x + d) * (s * of_y);
+    let z_2 = fast + (c + d) * f + (x + d) * s + (y + d) * of_y;
     let u = c + law.gravity + a_d + drag * v_d;
     let u_dot = k_f * (c + x) + j_d + drag * a_d;
     let level = law.gravity + f64::from(p.a_across) + d;
-    let u_ddot = k_f * (k_s * (level + x) + k_f * (c + x)) + s_d + drag * j_d;
+    let u_ddot = k_f * (k_s * (level + y + x) + k_f * (c + x)) + s_d + drag * j_d;
     // rho'' is a difference over a period where the frame's rate or its cone limits it.
     let spin = answer.omega_d.norm() + f64::from(p.turn_reserve / p.turn_rate);
     let turn = answer.omega_d_dot.norm() + spin * spin + spin / (h * f64::from(p.tilt_max.sin()));
@@ -87,15 +98,19 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
         for averages in [
             Averages { force: averages.force + along(zeta), ..averages },
             Averages { bias: averages.bias + along(averages.bias.norm()), ..averages },
-            Averages { slow: [averages.slow[0] + along(slow[0]), averages.slow[1]], ..averages },
-            Averages { slow: [averages.slow[0], averages.slow[1] + along(slow[1])], ..averages },
         ] {
             moved.push(Tick { averages, ..*t });
+        }
+        if let (Some([made, commanded]), Some(sizes)) = (averages.slow, slow) {
+            for slow in [[made + along(sizes[0]), commanded], [made, commanded + along(sizes[1])]] {
+                moved.push(Tick { averages: Averages { slow: Some(slow), ..averages }, ..*t });
+            }
         }
         if let Some(last) = t.last {
             // Gravity, thrust and drag over the period, beside the difference of velocities.
             let change = t.acted[0].abs() * averages.scale / law.mass + law.gravity + drag * t.velocity.norm();
-            let speed = along((t.velocity - last.velocity).norm() + (change + slow[0] + slow[1]) * h);
+            let slow: f64 = slow.into_iter().flatten().sum();
+            let speed = along((t.velocity - last.velocity).norm() + (change + slow) * h);
             moved.push(Tick { last: Some(Last { velocity: last.velocity + speed, ..last }), ..*t });
             moved.push(Tick { last: Some(Last { axis: last.axis + along(1.0), ..last }), ..*t });
             let rate = along((t.omega - last.omega).norm() + last.omega.norm() * last.omega.norm() * h);
@@ -139,7 +154,7 @@ pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64
     let (after, before) = (&answer.averages, &t.averages);
     // The drive moves both filters by less than what is left of them.
     let moved = (answer.filters[1] - t.filters[1]).norm();
-    let slow = |averages: &Averages| averages.slow[0].norm() + averages.slow[1].norm();
+    let slow = |averages: &Averages| averages.slow.into_iter().flatten().map(|x| x.norm()).sum::<f64>();
     let mut sums = [
         thrust,
         torque,
@@ -147,6 +162,7 @@ pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64
         acceleration,
         answer.filters[0].norm() + t.filters[0].norm() + t.filters[1].norm() + moved,
         answer.filters[1].norm() + t.filters[1].norm() + moved,
+        answer.filters[2].norm() + t.filters[2].norm(),
         after.force.norm() + before.force.norm(),
         after.bias.norm() + before.bias.norm(),
         slow(after) + slow(before),

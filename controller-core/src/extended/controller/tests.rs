@@ -207,7 +207,7 @@ fn a_flight_that_stays_limited_is_caught_once_and_let_go_at_its_target() {
         controller.hold_estimates();
         controller.step(&resting(random.vector(50.0)), &hover()).unwrap();
         assert!(controller.memory().net.is_caught());
-        let FilterState { filtered: c, .. } = controller.memory().filter;
+        let c = controller.memory().filters.command;
         assert!(c.xy().norm() <= net && c.z.abs() <= net, "{c} {net}");
     }
     let mut at_target = 0;

@@ -24,9 +24,26 @@ fn the_heading_catches_up_and_never_turns_faster_than_it_may() {
             assert!(desired.acceleration.z.abs() <= parameters.yaw_acceleration * (1.0 + 1e-5));
             assert!(desired.velocity.z.abs() <= parameters.yaw_rate * (1.0 + 1e-5));
             assert!((desired.velocity.xy().norm() - motion.velocity.xy().norm()).abs() < 1e-6);
-            lag = advanced(&lag, &desired, 0.01);
+            lag = advanced(&lag, &desired, 0.01, f32::MAX);
         }
         assert!(lag.half_angle.y.abs() < 2e-3, "from {start}: {lag:?}");
+    }
+}
+
+#[test]
+fn where_the_frame_turns_fast_the_heading_turns_slower_and_catches_up_later() {
+    let parameters = example::parameters();
+    let still = AngularMotion { velocity: Vector3::zeros(), acceleration: Vector3::zeros() };
+    let (sin, cos) = 1.0_f32.sin_cos();
+    for rate in [2.0, -2.0] {
+        let mut lag = HeadingLag { half_angle: Vector2::new(cos, sin), rate };
+        for tick in 0..1_500 {
+            let fastest = if tick < 300 { 0.2 } else { f32::MAX };
+            let desired = turning(&lag, &still, &parameters, 0.01);
+            lag = advanced(&lag, &desired, 0.01, fastest);
+            assert!(lag.rate.abs() <= fastest);
+        }
+        assert!(lag.half_angle.y.abs() < 2e-3, "{lag:?}");
     }
 }
 

@@ -6,20 +6,20 @@ use crate::attitude_reference::DesiredAttitude;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::example::{Craft, greatest_accelerations};
 use crate::extended::net::{Net, PATIENCE};
-use crate::extended::position::PositionLaw;
+use crate::extended::position::{Filters, PositionLaw};
 use crate::extended::turning::{Circumstances, TurningLimit};
 use crate::heading::Heading;
-use crate::position::FilterState;
 use crate::reference::Trajectory;
 use crate::reference::hover::Hover;
 use nalgebra::Vector3;
 
-const FAR: [f32; 2] = [1.0, 1.0];
-const NEAR: [f32; 2] = [1e-3, 1e-3];
+/// z_1 and z_2.
+const FAR: [Vector3<f32>; 2] = [Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)];
+const NEAR: [Vector3<f32>; 2] = [Vector3::new(0.03, 0.0, 0.0), Vector3::new(0.0, 0.03, 0.0)];
 
-fn waited(net: &mut Net, seconds: f32, squares: [f32; 2], limited: bool) {
+fn waited(net: &mut Net, seconds: f32, [z_1, z_2]: [Vector3<f32>; 2], limited: bool) {
     for _ in 0..(seconds * 100.0) as u32 {
-        net.observe(squares, limited, 0.01);
+        net.observe(&z_1, &z_2, limited, 0.01);
     }
 }
 
@@ -36,10 +36,11 @@ fn the_net_catches_after_its_patience_of_limited_time_and_lets_go_near_the_targe
     waited(&mut net, 3.0 * PATIENCE, FAR, true);
     assert!(!net.catches() && net.is_caught() && net.times() == 1);
     // Near in place alone, or at rest alone, is not near.
-    waited(&mut net, 1.0, [0.0, 1.0], false);
-    waited(&mut net, 1.0, [1.0, 0.0], false);
+    let [[far, fast], [near, slow]] = [FAR, NEAR];
+    waited(&mut net, 1.0, [near, fast], false);
+    waited(&mut net, 1.0, [far, slow], false);
     assert!(net.is_caught());
-    net.observe(NEAR, true, 0.01);
+    waited(&mut net, 0.01, NEAR, true);
     assert!(!net.is_caught() && !net.catches());
 }
 
@@ -48,9 +49,29 @@ fn near_the_target_its_patience_begins_anew() {
     let mut net = Net::FRESH;
     for _ in 0..3 {
         waited(&mut net, 0.9 * PATIENCE, FAR, true);
-        net.observe(NEAR, false, 0.01);
+        waited(&mut net, 0.01, NEAR, false);
     }
     assert!(!net.catches() && net.times() == 0);
+}
+
+#[test]
+fn a_twentieth_of_the_silent_time_is_forgiven() {
+    // Limited for a share of each second: caught above 1/21, never below.
+    let caught = |ticks: u32| {
+        let mut net = Net::FRESH;
+        (0..1_000_000_u32).any(|tick| {
+            let [z_1, z_2] = FAR;
+            net.observe(&z_1, &z_2, tick % 100 < ticks, 0.01);
+            net.catches()
+        })
+    };
+    assert!(!caught(4) && caught(6));
+    // What is forgiven is not saved up.
+    let mut net = Net::FRESH;
+    waited(&mut net, 1.0, FAR, true);
+    waited(&mut net, 100.0 * PATIENCE, FAR, false);
+    waited(&mut net, 1.01 * PATIENCE, FAR, true);
+    assert!(net.catches());
 }
 
 /// The worst feedback that the net's level allows: any errors, jumping, of any size, under a constant force.
@@ -70,7 +91,7 @@ fn under_the_nets_level_the_frame_is_never_limited() {
         while (Vector3::z() * gravity - d).norm() > 0.98 * greatest {
             d *= 0.9;
         }
-        let mut filter = FilterState { filtered: -d, intermediate: -d };
+        let mut filter = Filters::at(-d);
         let (mut state, mut yaw_rate) = (at(Vector3::zeros(), Vector3::zeros()), 0.0);
         for tick in 0..2_000 {
             if random.below(20) == 0 {
@@ -79,7 +100,7 @@ fn under_the_nets_level_the_frame_is_never_limited() {
             }
             let feedback = position.feedback(&state, &origin, &filter, &d, greatest, true);
             let wanted = (feedback.drive - feedback.rate) * position.k_f();
-            let c = filter.filtered;
+            let c = filter.command;
             let desired = DesiredAttitude::new(&Vector3::new(c.x, c.y, c.z + gravity), &Heading::FORWARD);
             let circumstances = Circumstances {
                 budget: p.turn_reserve,
@@ -90,7 +111,7 @@ fn under_the_nets_level_the_frame_is_never_limited() {
             };
             let limited = limit.limited(&desired.turn(&feedback.rate, &wanted), &circumstances);
             assert_eq!(limited.change, None, "{craft:?} {d} tick {tick}");
-            filter = position.advance(&filter, &feedback.drive);
+            filter = position.advance(&filter, &feedback.smoothed, &feedback.drive);
         }
     }
 }

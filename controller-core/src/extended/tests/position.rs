@@ -4,9 +4,8 @@ use super::Random;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::example::{self, Craft, greatest_accelerations};
 use crate::extended::parameters::ExtendedParameters;
-use crate::extended::position::{PositionFeedback, PositionLaw};
+use crate::extended::position::{Filters, PositionFeedback, PositionLaw};
 use crate::heading::Heading;
-use crate::position::FilterState;
 use crate::reference::hover::Hover;
 use crate::reference::{Reference, Trajectory};
 use crate::state::State;
@@ -42,7 +41,8 @@ fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
         for _ in 0..300 {
             let size = random.logarithmic(0.01, 1e4);
             let state = at(random.vector(size), random.vector(size));
-            let filter = FilterState { filtered: random.vector(5.0), intermediate: random.vector(5.0) };
+            let [command, intermediate, smoothed] = [5.0; 3].map(|size| random.vector(size));
+            let filter = Filters { command, intermediate, smoothed };
             let d = force(&mut random, &p);
             let greatest = random.between(weakest, strongest);
             let ubar = law.feedback(&state, &origin(), &filter, &d, greatest, false).feedback;
@@ -65,11 +65,12 @@ fn the_filters_step_is_that_of_their_equations() {
     let law = PositionLaw::new(&p, 9.81, period).unwrap();
     let mut random = Random(62);
     for _ in 0..100 {
-        let filter = FilterState { filtered: random.vector(3.0), intermediate: random.vector(3.0) };
+        let [command, intermediate, smoothed] = [3.0; 3].map(|size| random.vector(size));
+        let filter = Filters { command, intermediate, smoothed: Vector3::zeros() };
         let drive = random.vector(100.0);
-        let found = law.advance(&filter, &drive);
+        let found = law.advance(&filter, &smoothed, &drive);
         // Midpoint steps of the equations in double precision.
-        let (mut c, mut x) = (filter.filtered.map(f64::from), filter.intermediate.map(f64::from));
+        let (mut c, mut x) = (filter.command.map(f64::from), filter.intermediate.map(f64::from));
         let (steps, k_f, slope) = (1_000, f64::from(p.k_f), drive.map(f64::from));
         let step = f64::from(period) / f64::from(steps);
         for _ in 0..steps {
@@ -77,8 +78,9 @@ fn the_filters_step_is_that_of_their_equations() {
             c += (x + slope * (0.5 * step) - middle) * (k_f * step);
             x += slope * step;
         }
-        assert!((found.filtered.map(f64::from) - c).norm() < 2e-6, "{found:?} {c}");
+        assert!((found.command.map(f64::from) - c).norm() < 2e-6, "{found:?} {c}");
         assert!((found.intermediate.map(f64::from) - x).norm() < 2e-6, "{found:?} {x}");
+        assert_eq!(found.smoothed, smoothed);
     }
 }
 
@@ -86,8 +88,16 @@ fn the_filters_step_is_that_of_their_equations() {
 fn what_the_filter_makes_never_falls_below_its_end() {
     let p = example::parameters();
     let law = PositionLaw::new(&p, 9.81, 0.01).unwrap();
-    let falling = FilterState { filtered: Vector3::zeros(), intermediate: Vector3::new(0.0, 0.0, -50.0) };
-    assert_eq!(law.advance(&falling, &Vector3::zeros()).filtered.z, -p.a_down);
+    let (zero, below) = (Vector3::zeros(), Vector3::new(1.0, 2.0, -90.0));
+    let falling = Filters { command: zero, intermediate: below, smoothed: below };
+    let next = law.advance(&falling, &below, &zero);
+    // x_z goes along: it would push c_z further. What is across stays.
+    assert_eq!([next.command.z, next.intermediate.z], [-p.a_down; 2]);
+    assert_eq!(next.intermediate.xy(), below.xy());
+    // One that leads back up is not held back.
+    let rising = Filters { command: Vector3::z() * (-p.a_down - 1.0), intermediate: zero, smoothed: zero };
+    let next = law.advance(&rising, &zero, &zero);
+    assert_eq!([next.command.z, next.intermediate.z], [-p.a_down, 0.0]);
 }
 
 /// A point mass under the law's acceleration and a constant force D that is known, in ticks: what each tick had.
@@ -97,13 +107,13 @@ fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&Pos
     let law = PositionLaw::new(&p, gravity, h).unwrap();
     let [greatest, _] = greatest_accelerations(&Craft::example(), &p);
     let mut state = start;
-    let mut filter = FilterState { filtered: -force, intermediate: -force };
+    let mut filter = Filters::at(-force);
     for _ in 0..ticks {
         let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, false);
         see(&feedback);
-        let next = law.advance(&filter, &feedback.drive);
+        let next = law.advance(&filter, &feedback.smoothed, &feedback.drive);
         // c moves nearly straight within a tick.
-        let acceleration = (filter.filtered + next.filtered) * 0.5 + force;
+        let acceleration = (filter.command + next.command) * 0.5 + force;
         state.position += state.velocity * h + acceleration * (0.5 * h * h);
         state.velocity += acceleration * h;
         filter = next;
@@ -114,6 +124,7 @@ const FORCES: [[f32; 3]; 3] = [[0.0; 3], [3.0, -4.0, 1.5], [-2.0, 5.0, -6.0]];
 
 #[test]
 fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
+    let kept = (-0.002 * example::parameters().k_d).exp();
     for d in FORCES.map(Vector3::from) {
         let mut before: Option<PositionFeedback> = None;
         flown(at(Vector3::new(4.0, -3.0, 2.0), Vector3::new(1.0, 2.0, -3.0)), d, 2_000, |now| {
@@ -123,8 +134,10 @@ fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
                 // Half a tick of z_2', some tens of m/s^2, and rounding of metres over a tick.
                 assert!((moved - (before.z_2 + now.z_2) * 0.5).norm() < 5e-3, "{moved} {}", now.z_2);
                 let moved = (now.z_2 - before.z_2) / h;
-                // Half a tick of ubar', and rounding of m/s over a tick.
-                let expected = before.feedback + d;
+                // ubar is held for a tick, and x goes to where y will be: half a tick's way of y is ahead. Beside it,
+                // the square of a tick, and rounding of m/s over one.
+                let ahead = (before.feedback - before.smoothed) * (0.5 * (1.0 - kept) / kept);
+                let expected = before.feedback + d + ahead;
                 assert!((moved - expected).norm() < 1e-2 * (1.0 + expected.norm()), "{moved} {expected}");
             }
         });

@@ -2,13 +2,13 @@
 
 use super::Random;
 use crate::attitude_reference::DesiredAttitude;
+use crate::extended::budget::RATE_BEYOND;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::example::{Craft, greatest_accelerations};
 use crate::extended::parameters::ExtendedParameters;
-use crate::extended::position::PositionLaw;
+use crate::extended::position::{Filters, PositionLaw};
 use crate::extended::turning::{Circumstances, TurningLimit};
 use crate::heading::Heading;
-use crate::position::FilterState;
 use nalgebra::{Vector2, Vector3};
 
 /// What a drive came to at worst.
@@ -31,9 +31,10 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
     let position = PositionLaw::new(p, gravity, h).unwrap();
     let limit = TurningLimit::new(p, h);
     let [greatest, _] = greatest_accelerations(craft, p);
-    let held = (1.0 - (-p.k_s * h).exp()) / h;
-    let mut filter = FilterState::ZERO;
-    let (mut ubar, mut budget, mut yaw_rate) = (Vector3::zeros(), 0.0, 0.0);
+    let (held, smoothing) = ((1.0 - (-p.k_s * h).exp()) / h, 1.0 - (-p.k_d * h).exp());
+    let mut filter = Filters::at(Vector3::zeros());
+    let (mut ubar, mut budget, mut heading, mut fastest, mut carried) =
+        (Vector3::zeros(), 0.0, 0.0, f32::MAX, f32::MAX);
     let mut worst = Worst::default();
     for tick in 0..5_000 {
         if random.below(40) == 0 {
@@ -45,10 +46,12 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
         }
         if random.below(30) == 0 {
             budget = p.turn_acceleration * random.signed();
-            yaw_rate = p.yaw_rate * random.signed();
+            heading = p.yaw_rate * random.signed();
         }
-        let FilterState { filtered: c, intermediate: x } = filter;
-        let drive = (ubar - x) * held;
+        let Filters { command: c, intermediate: x, smoothed: y } = filter;
+        let smoothed = y + (ubar - y) * smoothing;
+        let drive = (smoothed - x) * held;
+        let yaw_rate = f32::clamp(heading, -fastest, fastest);
         let rate = (x - c) * p.k_f;
         let wanted = (drive - rate) * p.k_f;
         let command = Vector3::new(c.x, c.y, c.z + gravity);
@@ -72,8 +75,8 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
         let resolved = command.norm() < 2.0 * greatest;
         let rounding = 1e-4 * (1.0 + turn.acceleration.norm());
         assert!(!resolved || (made - limited.acceleration).norm() <= rounding, "{craft:?} {tick}: {made} {limited:?}");
-        filter = position.advance(&filter, &(drive + change / p.k_f));
-        assert!(filter.filtered.z >= -p.a_down);
+        filter = position.advance(&filter, &smoothed, &(drive + change / p.k_f));
+        assert!(filter.command.z >= -p.a_down);
     }
     worst
 }
