@@ -82,7 +82,7 @@ fn references_that_turn_the_frame_too_fast_or_too_suddenly_fail_their_rows() {
     assert!((rate.required / expected - 1.0).abs() < 1e-4 && rate.available == f64::from(p.turn_rate), "{rate}");
     let snap = 6.089 + 0.47 * 3.876 + 2.0 * f64::from(p.k_f * (p.k_s + p.k_f)) * net;
     // Beside it what turns p: 2 r / n along it, W across, p and r / n together as long as |u'| / n.
-    for yaw_rate in [0.0, 0.5, 1.0, 1.4, 1.5, 5.0] {
+    for yaw_rate in [1e-3, 0.5, 1.0, 1.4, 1.5, 5.0] {
         let [.., acceleration, _] = feasible_rows(&ExtendedParameters { yaw_rate, ..p }, example::REFERENCES);
         let turned = |part: f64| {
             let (along, across) = (part.cos() * expected, part.sin() * expected);

@@ -124,19 +124,20 @@ const FORCES: [[f32; 3]; 3] = [[0.0; 3], [3.0, -4.0, 1.5], [-2.0, 5.0, -6.0]];
 
 #[test]
 fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
-    let kept = (-0.002 * example::parameters().k_d).exp();
+    let k_d = example::parameters().k_d;
+    let kept = (-0.002 * k_d).exp();
     for d in FORCES.map(Vector3::from) {
         let mut before: Option<PositionFeedback> = None;
         flown(at(Vector3::new(4.0, -3.0, 2.0), Vector3::new(1.0, 2.0, -3.0)), d, 2_000, |now| {
             if let Some(before) = before.replace(*now) {
                 let h = 0.002;
                 let moved = (now.z_1 - before.z_1) / h;
-                // Half a tick of z_2', some tens of m/s^2, and rounding of metres over a tick.
-                assert!((moved - (before.z_2 + now.z_2) * 0.5).norm() < 5e-3, "{moved} {}", now.z_2);
-                let moved = (now.z_2 - before.z_2) / h;
                 // ubar is held for a tick, and x goes to where y will be: half a tick's way of y is ahead. Beside it,
-                // the square of a tick, and rounding of m/s over one.
+                // the square of a tick, and rounding of metres or m/s over one.
                 let ahead = (before.feedback - before.smoothed) * (0.5 * (1.0 - kept) / kept);
+                let expected = (before.z_2 + now.z_2) * 0.5 + ahead / k_d;
+                assert!((moved - expected).norm() < 5e-3, "{moved} {expected}");
+                let moved = (now.z_2 - before.z_2) / h;
                 let expected = before.feedback + d + ahead;
                 assert!((moved - expected).norm() < 1e-2 * (1.0 + expected.norm()), "{moved} {expected}");
             }
