@@ -15,6 +15,7 @@ use crate::extended::tests::Random;
 use crate::heading::Heading;
 use crate::reference::hover::Hover;
 use crate::reference::{ReferenceBounds, Trajectory};
+use crate::vehicle::LimitParameters;
 
 fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
     let configuration = craft.configuration(parameters, ReferenceBounds::REST);
@@ -57,6 +58,56 @@ fn rotors_that_deliver_more_than_commanded_show_no_force_once_their_scale_is_kno
         assert!((wrench.thrust - 0.5 * 9.81).abs() < 1e-4, "{wrench:?}");
     }
     assert!(controller.estimates().force.norm() < 1e-4 && controller.thrust_scale() == 1.1);
+}
+
+/// On rotors that deliver `truth` of what is commanded, level, under a constant `force` along the vertical: its states
+/// from a start 2 m too high, while its scale never gets worse.
+fn risen(controller: &mut Controller, truth: f32, force: f32, ticks: u32) -> State {
+    let (mut state, h) = (resting(Vector3::new(0.0, 0.0, 2.0)), 0.01);
+    for tick in 0..ticks {
+        let before = (controller.thrust_scale() - truth).abs();
+        let (wrench, _) = controller.step(&state, &hover()).unwrap();
+        let after = (controller.thrust_scale() - truth).abs();
+        // Rounding of velocities over a tick, where thrust hardly varies.
+        assert!(after <= before + 1e-6, "tick {tick}: {after} after {before}");
+        let acceleration = truth * wrench.thrust / controller.thrust_scale() / 0.5 - 9.81 + force;
+        state.position.z += h * (state.velocity.z + 0.5 * h * acceleration);
+        state.velocity.z += h * acceleration;
+    }
+    state
+}
+
+#[test]
+fn from_the_first_tick_on_the_thrust_scale_never_gets_worse() {
+    for (truth, force) in [(1.1, 0.0), (1.1, -1.0), (0.95, 1.0), (1.0, -2.0)] {
+        let mut controller = controller(&example::parameters());
+        risen(&mut controller, truth, force, 1_500);
+        let left = (controller.thrust_scale() - truth).abs();
+        assert!(left < 0.9 * (1.0 - truth).abs() + 1e-5, "{truth} {force}: {left}");
+    }
+}
+
+#[test]
+fn a_restart_keeps_what_thrust_lacks_and_forgets_the_force_across() {
+    let mut controller = controller(&example::parameters());
+    let state = risen(&mut controller, 1.0, -2.0, 1_500);
+    controller.memory.averages.force.x = 1.0;
+    controller.memory.averages.torque.y = 0.01;
+    let (wrench, _) = controller.step(&state, &hover()).unwrap();
+    let before = controller.estimates();
+    assert!((before.force.z + 2.0).abs() < 0.01 && before.force.x > 0.5 && before.torque.y > 0.005, "{before:?}");
+    controller.restart();
+    let vertical = Vector3::new(0.0, 0.0, before.force.z);
+    assert_eq!(controller.estimates(), Estimates { force: vertical, ..before });
+    assert_eq!(controller.memory.filters, Filters::at(-vertical));
+    // So the thrust goes on as it was; and nothing is learnt from before the restart.
+    let (again, _) = controller.step(&state, &hover()).unwrap();
+    assert!((again.thrust / wrench.thrust - 1.0).abs() < 1e-3, "{again:?} {wrench:?}");
+    // What is beyond the level is not kept.
+    let far = Vector3::new(0.0, 0.0, -1e3);
+    controller.memory.averages.force = far;
+    controller.restart();
+    assert_eq!(controller.memory.averages.force, controller.learning.force.believed(&far));
 }
 
 fn anywhere(random: &mut Random) -> State {
@@ -151,38 +202,72 @@ fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
     assert!((uneven.torque.z / steady.torque.z - 1.0).abs() < 0.02, "{} and {}", uneven.torque.z, steady.torque.z);
 }
 
+/// What the law asks of `craft` with every constant by its formula, along states that jump, checked against the bounds
+/// and the rotors; whether the craft is certified at rest, without which nothing is promised.
+fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random) -> bool {
+    let p = craft.constants(&NOTHING_GIVEN);
+    let configuration = craft.configuration(&p, ReferenceBounds::REST);
+    let certificate = ExtendedCertificate::new(&configuration, &craft.law(&p)).unwrap();
+    if !certificate.inequalities.iter().all(|row| row.holds()) {
+        return false;
+    }
+    let bounds = certificate.bounds;
+    let mut controller = of(craft, &p);
+    let rotors = MinimumNorm::new(&craft.rotors);
+    let mut state = anywhere(random);
+    for tick in 0..ticks {
+        match random.below(60) {
+            // Anywhere at once, or pushed, or turned.
+            0 => state = anywhere(random),
+            1 => state.position = random.vector(100.0),
+            2 => state.angular_velocity = random.vector(40.0),
+            _ => {
+                state.velocity += random.vector(0.3);
+                state.angular_velocity += random.vector(0.5);
+            }
+        }
+        let (wrench, diagnostics) = controller.step(&state, &hover()).unwrap();
+        let scale = controller.thrust_scale();
+        let Wrench { thrust, torque } = wrench;
+        assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.greatest);
+        let excess = torque.abs().map(f64::from) - bounds.torque;
+        assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
+        let asked = Wrench { thrust: thrust / scale, torque: torque / scale };
+        assert!(!rotors.allocate(&asked).unwrap().clipped, "{craft:?} {tick}: {asked:?} {diagnostics:?}");
+    }
+    true
+}
+
 #[test]
 fn no_sequence_of_states_makes_it_ask_for_more_than_limits_and_rotors_give() {
     let mut random = Random(81);
     for number in 0..60 {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
-        let p = craft.constants(&NOTHING_GIVEN);
-        let configuration = craft.configuration(&p, ReferenceBounds::REST);
-        let bounds = ExtendedCertificate::new(&configuration, &craft.law(&p)).unwrap().bounds;
-        let mut controller = of(&craft, &p);
-        let rotors = MinimumNorm::new(&craft.rotors);
-        let mut state = anywhere(&mut random);
-        for tick in 0..1_500 {
-            match random.below(60) {
-                // Anywhere at once, or pushed, or turned.
-                0 => state = anywhere(&mut random),
-                1 => state.position = random.vector(100.0),
-                2 => state.angular_velocity = random.vector(40.0),
-                _ => {
-                    state.velocity += random.vector(0.3);
-                    state.angular_velocity += random.vector(0.5);
-                }
-            }
-            let (wrench, diagnostics) = controller.step(&state, &hover()).unwrap();
-            let scale = controller.thrust_scale();
-            let Wrench { thrust, torque } = wrench;
-            assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.greatest);
-            let excess = torque.abs().map(f64::from) - bounds.torque;
-            assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
-            let asked = Wrench { thrust: thrust / scale, torque: torque / scale };
-            assert!(!rotors.allocate(&asked).unwrap().clipped, "{craft:?} {tick}: {asked:?} {diagnostics:?}");
-        }
+        assert!(kept_to_its_limits(&craft, 1_500, &mut random), "{craft:?}");
     }
+}
+
+/// Torques that the rotors could give raise the thrust floor above a low T_max: then T_max would push a rotor below its
+/// least.
+#[test]
+fn no_rotor_goes_below_its_least_where_the_thrust_limit_is_low() {
+    let mut random = Random(83);
+    let limited = |craft: Craft, thrust_max: f32| {
+        let limits = LimitParameters { thrust_max, torque_max: craft.limits.torque_max * 4.0 };
+        Craft { limits: Limits::new(limits, &craft.vehicle).unwrap(), ..craft }
+    };
+    let mut certified = 0;
+    for thrust_max in [7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0] {
+        let craft = limited(Craft::example(), thrust_max);
+        certified += u32::from(kept_to_its_limits(&craft, 6_000, &mut random));
+    }
+    for _ in 0..40 {
+        let craft = Craft::random(&mut random);
+        let weight = craft.vehicle.mass * craft.vehicle.gravity;
+        let craft = limited(craft, weight * random.between(1.5, 3.0));
+        certified += u32::from(kept_to_its_limits(&craft, 1_500, &mut random));
+    }
+    assert!(certified > 40, "{certified}");
 }
 
 #[test]

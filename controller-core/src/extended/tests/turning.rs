@@ -2,7 +2,7 @@
 
 use super::Random;
 use crate::attitude_reference::DesiredAttitude;
-use crate::extended::budget::RATE_BEYOND;
+use crate::extended::budget::{RATE_BEYOND, THRUST_LEFT};
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::example::{Craft, greatest_accelerations};
 use crate::extended::parameters::ExtendedParameters;
@@ -16,6 +16,8 @@ use nalgebra::{Vector2, Vector3};
 struct Worst {
     /// The turning rate for each Omega.
     rate: f32,
+    /// |W| |p| for each third of alpha.
+    carried: f32,
     /// How far below the cosine of its cone rho_z came.
     beyond_cone: f32,
     /// |u| for each U.
@@ -33,8 +35,8 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
     let [greatest, _] = greatest_accelerations(craft, p);
     let (held, smoothing) = ((1.0 - (-p.k_s * h).exp()) / h, 1.0 - (-p.k_d * h).exp());
     let mut filter = Filters::at(Vector3::zeros());
-    let (mut ubar, mut budget, mut heading, mut fastest, mut carried) =
-        (Vector3::zeros(), 0.0, 0.0, f32::MAX, f32::MAX);
+    let (mut ubar, mut budget, mut heading) = (Vector3::zeros(), 0.0, 0.0);
+    let (mut fastest, mut before) = (f32::MAX, f32::MAX);
     let mut worst = Worst::default();
     for tick in 0..5_000 {
         if random.below(40) == 0 {
@@ -63,6 +65,10 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
 
         let whole = limited.acceleration + Vector2::new(turn.rate.y, -turn.rate.x) * yaw_rate;
         assert!(whole.norm() <= budget.max(p.turn_reserve) * (1.0 + 1e-5), "{craft:?} {tick}");
+        // W keeps to its third of the last tick's alpha, but for what that tick added to |p|.
+        let carried = yaw_rate.abs() * turn.rate.norm() / before - h * yaw_rate.abs();
+        worst.carried = worst.carried.max(3.0 * carried);
+        (fastest, before) = (limited.yaw_rate, budget.max(p.turn_reserve));
         worst.rate = worst.rate.max(turn.rate.norm() / p.turn_rate);
         worst.beyond_cone = worst.beyond_cone.max(p.tilt_max.cos() - up.z);
         worst.thrust = worst.thrust.max(command.norm() / greatest);
@@ -89,7 +95,11 @@ fn the_frame_turns_within_its_budget_and_rate_and_never_falls_too_fast() {
         let worst = driven(&craft, &craft.constants(&NOTHING_GIVEN), &mut random);
         assert!(worst.changed > 1_000, "{worst:?}");
         // A tick's q is that of its start, and alpha is cut after Omega: measured, a tenth beyond it in ticks of 10 ms.
-        assert!(worst.rate < 1.0 + 15.0 * craft.period, "{craft:?}: {worst:?}");
+        assert!(worst.rate < (1.0 + 15.0 * craft.period).min(RATE_BEYOND), "{craft:?}: {worst:?}");
+        // A tick's end is not its start: measured, half a percent in ticks of 10 ms.
+        assert!(worst.carried < 1.0 + craft.period, "{craft:?}: {worst:?}");
+        // Even where rho leaves its cone: what a tick adds to |u| is well within what is left of the thrust.
+        assert!(worst.thrust * (1.0 - THRUST_LEFT as f32) < 1.0, "{craft:?}: {worst:?}");
     }
 }
 
