@@ -91,6 +91,15 @@ impl Law {
         }
     }
 
+    /// How often the [net](crate::extended::net) came into force since the reset; the paper's law needs none.
+    #[must_use]
+    pub fn net_times(&self) -> u32 {
+        match self {
+            Self::Paper(_) => 0,
+            Self::Extended(law) => law.memory().net.times(),
+        }
+    }
+
     /// Changes the time between steps, s.
     ///
     /// # Errors

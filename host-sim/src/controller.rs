@@ -60,6 +60,15 @@ impl Controller {
         }
     }
 
+    /// How often the extended law's net came into force.
+    #[must_use]
+    pub fn net_times(&self) -> u32 {
+        match self {
+            Self::Ours(law) => law.net_times(),
+            Self::Rival(_) => 0,
+        }
+    }
+
     /// What has been estimated, if anything is.
     #[must_use]
     pub fn estimates(&self) -> Option<Estimates> {

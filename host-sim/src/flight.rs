@@ -193,6 +193,12 @@ impl Flight {
         }
     }
 
+    /// How often the extended law's net came into force so far.
+    #[must_use]
+    pub fn net_times(&self) -> u32 {
+        self.controller.net_times()
+    }
+
     /// One control tick and the plant's motion until the next.
     ///
     /// # Errors

@@ -43,6 +43,8 @@ pub struct Outcome {
     pub beyond: u64,
     /// Greatest share of each certified bound that was used.
     pub shares: Shares,
+    /// How often the law's net came into force.
+    pub net: u64,
     /// Ticks flown: fewer than the flight has where it could not go on.
     pub ticks: u64,
 }
@@ -81,6 +83,7 @@ impl Outcome {
             clipped: 0,
             beyond: 0,
             shares: Shares::default(),
+            net: 0,
             ticks: 0,
         };
         for _ in 0..scenario.timing.ticks {
@@ -91,6 +94,7 @@ impl Outcome {
             outcome.observe(&tick, start, scenario.timing.period_us);
             outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
         }
+        outcome.net = flight.net_times().into();
         let duration = scenario.timing.duration();
         let end = (scenario.timing.ticks * scenario.timing.period_us) as f64 / 1e6;
         let settled = outcome.settled.filter(|since| *since < end);

@@ -13,6 +13,7 @@
 //! | `height_lost`, `rise`, `settled`, `final_error` | m, m, s, m | [`Outcome`]; `settled` is null where it was away at the end |
 //! | `share_thrust`, `share_torque_x` …, `share_rotor_1` … | | greatest part of each certified bound |
 //! | `clipped`, `beyond`, `ticks` | ticks | |
+//! | `net` | | how often the extended law's net came into force |
 //! | `verdict` | | `holds`, `away`, `late` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
 //!
 //! A file of another law than ours says which in its schema's metadata, under `law`.
@@ -101,7 +102,7 @@ pub fn schema(manifest: &Manifest) -> Schema {
     fields.push(Field::new("settled", DataType::Float64, true));
     fields.extend(SHARES.iter().map(|name| number(name)));
     fields.extend((1..=manifest.rotors as usize).map(|rotor| number(&share_of_rotor(rotor))));
-    fields.extend(["clipped", "beyond", "ticks"].map(count));
+    fields.extend(["clipped", "beyond", "net", "ticks"].map(count));
     fields.push(Field::new("verdict", DataType::Utf8, false));
     let schema = Schema::new(fields);
     match manifest.rival() {
@@ -139,6 +140,7 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     columns.extend([
         counts(|row| row.outcome.clipped),
         counts(|row| row.outcome.beyond),
+        counts(|row| row.outcome.net),
         counts(|row| row.outcome.ticks),
     ]);
     let proven = manifest.rival().is_none();

@@ -31,6 +31,8 @@ pub struct Summary {
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
+    /// Flights in which the law's net came into force.
+    pub net: u64,
     /// Why the scenario may not fly, if so.
     pub refusal: Option<String>,
     /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight tracks.
@@ -113,6 +115,7 @@ impl Summary {
             rival,
             beyond: ever("beyond"),
             clipped: ever("clipped"),
+            net: ever("net"),
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
                 && verdicts.iter().all(|verdict| *verdict == HOLDS),
@@ -139,6 +142,9 @@ impl fmt::Display for Summary {
             if self.rival.is_some() { " of ours" } else { "" },
             self.clipped
         )?;
+        if self.net > 0 {
+            writeln!(f, "the extended law's net came into force in {} flights\n", self.net)?;
+        }
         writeln!(f, "{}", self.quantiles)?;
         for (what, flights) in &self.worst {
             writeln!(f, "{what}: {flights}")?;
