@@ -265,4 +265,14 @@ fn a_thrust_limit_below_what_torques_raise_the_floor_to_fails_its_row() {
     let least = 40.0 - (row.available - row.required) as f32;
     assert!(row.holds() && least > 6.0, "{row}");
     assert!(row_at(least + 0.01).holds() && !row_at(least - 0.01).holds());
+    // Idling rotors take their least from it, as commanded where they deliver the most.
+    let quad = QuadX { speed_min: 200.0, ..example::QUAD };
+    let idling = Craft { rotors: Rotors::quad_x(quad).unwrap(), ..Craft::example() };
+    let available = |craft: &Craft| {
+        let inequalities = certificate(craft, &p, ReferenceBounds::REST).inequalities;
+        inequalities.iter().find(|row| row.name == name).unwrap().available
+    };
+    let taken = 4.0 * f64::from(p.scale_greatest * quad.thrust_coefficient * 200.0 * 200.0);
+    let difference = available(&Craft::example()) - available(&idling);
+    assert!((difference / taken - 1.0).abs() < 1e-4, "{difference} {taken}");
 }

@@ -16,6 +16,7 @@ use crate::heading::Heading;
 use crate::reference::hover::Hover;
 use crate::reference::{ReferenceBounds, Trajectory};
 use crate::vehicle::LimitParameters;
+use nalgebra::Vector2;
 
 fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
     let configuration = craft.configuration(parameters, ReferenceBounds::REST);
@@ -268,6 +269,29 @@ fn no_rotor_goes_below_its_least_where_the_thrust_limit_is_low() {
         certified += u32::from(kept_to_its_limits(&craft, 1_500, &mut random));
     }
     assert!(certified > 40, "{certified}");
+}
+
+#[test]
+fn the_heading_turns_no_faster_than_a_third_of_alpha_lets_it_while_the_thrust_turns() {
+    let alpha = 3.0;
+    let p = ExtendedParameters { turn_reserve: alpha, turn_acceleration: alpha, ..example::parameters() };
+    let mut controller = controller(&p);
+    let (mut random, mut state, mut bound) = (Random(84), resting(Vector3::zeros()), 0);
+    for tick in 0..3_000 {
+        if tick % 50 == 0 {
+            state = resting(random.vector(20.0));
+            // Far behind: it wants to turn as fast as it may.
+            let (sin, cos) = 1.3_f32.sin_cos();
+            controller.memory.heading = Some(HeadingLag { half_angle: Vector2::new(cos, sin), rate: 0.0 });
+        }
+        let rate = controller.memory.heading.unwrap().rate;
+        let (_, diagnostics) = controller.step(&state, &hover()).unwrap();
+        let turning = (diagnostics.desired_angular_velocity.norm_squared() - rate * rate).max(0.0).sqrt();
+        let carried = controller.memory.heading.unwrap().rate.abs() * turning;
+        assert!(carried <= alpha / 3.0 + 1e-4, "{tick}: {carried}");
+        bound += u32::from(carried > 0.6 * alpha / 3.0);
+    }
+    assert!(bound > 100, "{bound}");
 }
 
 #[test]

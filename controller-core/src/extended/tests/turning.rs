@@ -123,3 +123,20 @@ fn the_thrust_direction_stays_in_its_cone_and_below_u_where_the_reserve_bends_th
         );
     }
 }
+
+#[test]
+fn a_sudden_turn_gets_two_thirds_of_alpha_and_the_heading_the_last() {
+    let limit = TurningLimit::new(
+        &ExtendedParameters { turn_reserve: 3.0, ..Craft::example().constants(&NOTHING_GIVEN) },
+        0.01,
+    );
+    let upright = DesiredAttitude::new(&Vector3::new(0.0, 0.0, 9.81), &Heading::FORWARD);
+    let turn = upright.turn(&Vector3::new(4.0, 0.0, 0.0), &Vector3::new(0.0, 2_000.0, 0.0));
+    for (budget, alpha) in [(12.0, 12.0), (-1.0, 3.0)] {
+        let circumstances =
+            Circumstances { budget, yaw_rate: 0.0, up: upright.up(), greatest: 40.0, vertical: [0.0; 3] };
+        let limited = limit.limited(&turn, &circumstances);
+        assert!((limited.acceleration.norm() * 1.5 / alpha - 1.0).abs() < 1e-5, "{limited:?}");
+        assert!((limited.yaw_rate * turn.rate.norm() * 3.0 / alpha - 1.0).abs() < 1e-5, "{limited:?}");
+    }
+}
