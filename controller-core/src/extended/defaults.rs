@@ -17,7 +17,7 @@
 //! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
 //! | D_h | 0.8 A_h, or 0.72 of what the weakest thrust holds, without the drag at 5 m/s |
 //! | L across; vertical | 1.1 w_a; 1.33 times that |
-//! | yaw: feedback, A, bias | 4, 5 and 4 % of the greatest yaw torque |
+//! | yaw: feedback, A, bias | 6, 6 and 4 % of the greatest yaw torque |
 
 use super::actuators::ActuatorParameters;
 use super::budget::{THRUST_LEFT, TorqueBudget};
@@ -93,7 +93,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
 
     // The least thrust near the target must hold the idling rotors and what these torques raise the thrust floor by.
     let a_down = or("a_down", FALL * gravity);
-    let up = or("force_up", 0.33 * a_down);
+    let up = or("force_up", 0.36 * a_down);
     let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
     let raised = |by: Numbers| TorqueBudget::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
     let by_tilt = raised(Numbers { torque_tilt: 1.0, ..bare });
@@ -111,7 +111,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let product = 0.12 * lesser_f64(of_yaw, tilt_most / greater_f64(flatness, 1e-12));
     let turn_rate = or("turn_rate", lesser_f64((0.08 * nimble).clamp(2.5, 5.0), math::sqrt_f64(product)));
     let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.65 * product)));
-    let yaw_feedback = 0.04 * yaw_most;
+    let yaw_feedback = 0.06 * yaw_most;
     let mut n = Numbers {
         turn_rate,
         yaw_rate,
