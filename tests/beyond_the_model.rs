@@ -42,8 +42,9 @@ fn a_rotor_may_lose_a_fifth_of_its_thrust_and_no_more_is_promised() {
         let row = |course: &Course| format!("{:8.3} {:8.4}", course.excursion, course.end_error);
         println!("{share:4.1}  {}  {}", row(&first), row(&second));
         if share >= 0.8 {
-            assert!(first.excursion < 0.15 && first.end_error < 0.05, "{share}: {first:?}");
-            assert!(second.excursion < 1.0 && second.end_error < 0.1, "{share}: {second:?}");
+            assert!(first.excursion < 0.05 && first.end_error < 0.05, "{share}: {first:?}");
+            // A fifth of a rotor is more torque than the study's levels hold.
+            assert!(second.excursion < 0.15 && second.end_error < 0.15, "{share}: {second:?}");
         }
         if share == 0.0 {
             assert!(first.settled.is_none() && second.settled.is_none(), "a quadrotor that flies on three rotors?");
@@ -82,10 +83,7 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
             // While the thrust still equals the weight, a rounding lifts it now and then.
             assert!(tick.surroundings.standing || tick.time_us < 500_000, "{name}: left the ground");
             let Estimates { force, torque, scale } = tick.estimates.unwrap();
-            assert!(
-                (scale - 1.0).abs() < 1e-4 && force.value.norm() < 1e-3 && torque.norm() < 1e-6,
-                "{name}: {tick:?}"
-            );
+            assert!((scale - 1.0).abs() < 1e-4 && force.norm() < 1e-3 && torque.norm() < 1e-6, "{name}: {tick:?}");
         }
     }
 }
@@ -161,7 +159,7 @@ fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory);
     let standing = asked_of_the_rotors(&mut pilot, 1, LIFTED);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
-    // Twelve centimetres higher what holds it up is taken for thrust.
+    // Twelve centimetres higher it learns from how it was moved, to whatever end: that was no thrust.
     let flying = asked_of_the_rotors(&mut pilot, LIFTED + 1, LIFTED + 120);
-    assert!(flying < 0.99, "{}", 1.0 / flying);
+    assert!((flying - 1.0).abs() > 0.01, "{}", 1.0 / flying);
 }

@@ -27,7 +27,7 @@ const MARGIN: f64 = 1e-3;
 const DURATION: f64 = 3.0;
 
 /// A circle with a heave, flown with a turning or swinging heading, as hard as the bounds allow.
-struct Motion {
+pub struct Motion {
     /// Radius of the circle and amplitude of the heave, m.
     amplitude: [f64; 2],
     /// Of circle and heave, rad/s.
@@ -37,7 +37,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn within(bounds: &ReferenceBounds, rng: &mut ChaCha8Rng) -> Self {
+    pub fn within(bounds: &ReferenceBounds, rng: &mut ChaCha8Rng) -> Self {
         let w = f64::from(random::log_uniform(rng, 0.2, 4.0));
         let [horizontal, vertical, jerk, snap] =
             [bounds.horizontal_acceleration, bounds.vertical_acceleration, bounds.jerk, bounds.snap].map(f64::from);
@@ -60,7 +60,7 @@ impl Motion {
         Self { amplitude: [horizontal, vertical].map(|a| scale * a / (w * w)), frequency: w, heading }
     }
 
-    fn at(&self, t: f64) -> Reference {
+    pub fn at(&self, t: f64) -> Reference {
         let w = self.frequency;
         let derivative = |order: i32| {
             let phase = w * t + f64::from(order) * TAU / 4.0;

@@ -6,7 +6,7 @@
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | the state it is told | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
@@ -51,6 +51,7 @@ mod recovery;
 mod rotor_lag;
 mod sampled_loop;
 mod sharp_derivation;
+mod steady_circle;
 mod support;
 mod touchdown;
 mod tuned;

@@ -119,13 +119,15 @@ fn figures(subject: &Subject, required: &Required) -> Vec<Figure> {
             required.windy,
         ),
         figure("noise, all 20 ms late: position", noisy.rms, "m", required.noise),
-        figure("noise: change of a rotor's command per tick", noisy.activity, "N", 0.04),
+        figure("noise: change of a rotor's command per tick", noisy.activity, "N", required.activity),
     ];
-    figures.extend(subject.offsets().into_iter().map(|(what, value)| figure(what, value, "m", 0.01)));
+    figures.extend(subject.offsets().into_iter().map(|(what, value)| figure(what, value, "m", required.offset)));
     figures
 }
 
-/// What differs between the vehicles.
+/// What differs between the vehicles. Every vehicle has 15 rad/s of tilt bandwidth: what the gyro's noise makes of the rotors' commands is the price. Thrust that
+/// is 20 % high from the first tick on is read as too low a scale, and the rest is beyond the force's level upwards: 26 mm. 5 mm of centre of mass are more
+/// torque than the study's level: 12 mm.
 struct Required {
     height: f64,
     recovered: f64,
@@ -134,6 +136,8 @@ struct Required {
     far: f64,
     windy: f64,
     noise: f64,
+    activity: f64,
+    offset: f64,
 }
 
 fn show(name: &str, required: &Required) {
@@ -151,13 +155,36 @@ fn show(name: &str, required: &Required) {
 fn the_hummingbird_does_what_is_required() {
     show(
         "hummingbird",
-        &Required { height: 5.0, recovered: 8.0, gust: 1.5, step: 3.0, far: 9.0, windy: 0.05, noise: 3e-3 },
+        &Required {
+            height: 1.0,
+            recovered: 1.5,
+            gust: 0.08,
+            step: 1.3,
+            far: 3.0,
+            windy: 0.01,
+            noise: 3e-3,
+            activity: 0.06,
+            offset: 0.03,
+        },
     );
 }
 
 #[test]
 fn the_study_does_what_is_required() {
-    show("study", &Required { height: 12.0, recovered: 15.0, gust: 1.5, step: 3.0, far: 9.0, windy: 0.2, noise: 1e-2 });
+    show(
+        "study",
+        &Required {
+            height: 2.5,
+            recovered: 2.2,
+            gust: 0.08,
+            step: 1.3,
+            far: 3.0,
+            windy: 0.02,
+            noise: 3e-3,
+            activity: 0.065,
+            offset: 0.03,
+        },
+    );
 }
 
 #[test]
@@ -167,5 +194,5 @@ fn the_papers_vehicle_loses_less_than_three_metres() {
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
     let course = Subject { scenario: scenario.clone(), certified }.fly(&recovery(&scenario, 40.0).unwrap());
     println!("paper's vehicle: {:.2} m lost, back after {:.2} s", course.height_lost, course.settled.unwrap());
-    assert!(course.height_lost <= 3.0 && course.settled.unwrap() < 12.0, "{course:?}");
+    assert!(course.height_lost <= 1.5 && course.settled.unwrap() < 2.5, "{course:?}");
 }

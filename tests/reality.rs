@@ -93,7 +93,8 @@ fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
     }
     println!("slowest filter, rad/s: {quick:.1}");
     let [lost, kept] = [0.9, 1.1].map(|share| course(&told(share * quick)).end_error);
-    assert!(lost > 0.01 && kept < 1e-4, "{quick} rad/s: {lost} and {kept} m");
+    // What oscillates is held by the law's levels.
+    assert!(lost > 1e-3 && kept < 1e-4, "{quick} rad/s: {lost} and {kept} m");
 }
 
 #[test]

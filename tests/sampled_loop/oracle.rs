@@ -3,7 +3,8 @@
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
 use super::common::{IDEAL, body_axis, model, vehicle};
-use controller_core::certificate::configuration::LawParameters;
+use crate::support::extended::{law as extended, paper_vehicle, without_estimates};
+use controller_core::certificate::configuration::ExtendedLaw;
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;
@@ -12,7 +13,6 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
 use nalgebra::{DMatrix, DVector, Quaternion, Vector3};
-use scenario::Scenario;
 use scenario::sampled_loop::{Axis, LoopModel, Timing};
 
 /// One axis: what is measured (position, velocity, tilt, rate; only those the axis has move) and remembered.
@@ -26,8 +26,20 @@ pub struct Motion {
     pub intermediate: f64,
 }
 
-/// What the law makes of it: force command (torque, or thrust beyond hover) and ubar.
+/// What stands still between two ticks: ubar, as under the paper's law, or x', as under the extended one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Held {
+    Feedback,
+    Drive,
+}
+
+/// What the paper's law makes of it: force command (torque, or thrust beyond hover) and ubar.
 pub fn law(axis: Axis, gains: &GainParameters, x: Motion) -> (f64, f64) {
+    law_with(axis, gains, x, gains.k_s.into())
+}
+
+/// The same where x' is `towards` times ubar - x.
+fn law_with(axis: Axis, gains: &GainParameters, x: Motion, towards: f64) -> (f64, f64) {
     let [k_p, k_v, k_f, k_s, k_theta, k_omega] =
         [gains.k_p, gains.k_v, gains.k_f, gains.k_s, gains.k_theta, gains.k_omega].map(f64::from);
     let z_1 = x.position + (1.0 / k_f + 1.0 / k_s) * x.velocity + x.filtered / (k_f * k_s);
@@ -38,7 +50,7 @@ pub fn law(axis: Axis, gains: &GainParameters, x: Motion) -> (f64, f64) {
     }
     let g = f64::from(vehicle().gravity);
     let filtered_rate = -k_f * (x.filtered - x.intermediate);
-    let intermediate_rate = -k_s * (x.intermediate - ubar);
+    let intermediate_rate = -towards * (x.intermediate - ubar);
     let follows = if matches!(axis, Axis::LateralX | Axis::LateralY) { 1.0 / g } else { 0.0 };
     let desired = x.filtered * follows;
     let desired_rate = filtered_rate * follows;
@@ -60,8 +72,12 @@ fn exponential(matrix: DMatrix<f64>) -> DMatrix<f64> {
     (0..20).fold(sum, |power, _| &power * &power)
 }
 
-/// The largest eigenvalue's magnitude with the command scaled by `gain`.
+/// The largest eigenvalue's magnitude under the paper's law, with the command scaled by `gain`.
 pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: Timing, gain: f64) -> f64 {
+    spectral_radius_with(Held::Feedback, axis, gains, timing, gain)
+}
+
+fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: Timing, gain: f64) -> f64 {
     // Physical state (position, velocity, angle, rate, actual force), then the command.
     let mut rates = DMatrix::zeros(6, 6);
     rates[(0, 1)] = 1.0;
@@ -84,7 +100,11 @@ pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: Timing, gain:
         rates.column_mut(4).fill(0.0);
     }
     let [k_f, k_s] = [gains.k_f, gains.k_s].map(f64::from);
-    let filter_rates = DMatrix::from_row_slice(3, 3, &[-k_f, k_f, 0.0, 0.0, -k_s, k_s, 0.0, 0.0, 0.0]);
+    let (towards, of_x) = match held {
+        Held::Feedback => (k_s, [-k_s, k_s]),
+        Held::Drive => ((1.0 - (-k_s * timing.period).exp()) / timing.period, [0.0, 1.0]),
+    };
+    let filter_rates = DMatrix::from_row_slice(3, 3, &[-k_f, k_f, 0.0, 0.0, of_x[0], of_x[1], 0.0, 0.0, 0.0]);
     let filter_step = exponential(filter_rates * timing.period);
 
     let whole = timing.delay_samples.floor();
@@ -97,13 +117,14 @@ pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: Timing, gain:
     let step = |x: DVector<f64>| {
         let motion =
             Motion { position: x[0], velocity: x[1], angle: x[2], rate: x[3], filtered: x[5], intermediate: x[6] };
-        let (command, ubar) = law(axis, gains, motion);
+        let (command, ubar) = law_with(axis, gains, motion, towards);
+        let input = if held == Held::Drive { towards * (ubar - motion.intermediate) } else { ubar };
         let command_of = |age: usize| if age == 0 { gain * command } else { x[6 + age] };
         let mut physical = DVector::from_fn(6, |i, _| if i < 5 { x[i] } else { command_of(whole + 1) });
         physical = &first * physical;
         physical[5] = command_of(whole);
         physical = &second * physical;
-        let filters = &filter_step * DVector::from_vec(vec![x[5], x[6], ubar]);
+        let filters = &filter_step * DVector::from_vec(vec![x[5], x[6], input]);
         DVector::from_fn(size, |i, _| match i {
             0..5 => physical[i],
             5..7 => filters[i - 5],
@@ -230,26 +251,24 @@ fn spectral_radii_agree_with_eigenvalues_of_the_written_out_loop() {
 }
 
 #[test]
-fn the_extended_law_without_estimates_is_the_papers_with_other_slopes() {
-    // The same vehicle. Without the section nothing is estimated.
-    let (before, estimates) = include_str!("../../scenarios/paper-extended.toml").split_once("[estimates]").unwrap();
-    let (_, after) = estimates.split_once("[control]").unwrap();
-    let scenario = Scenario::parse(&format!("{before}[control]{after}"), "paper-extended").unwrap();
-    assert_eq!(*scenario.configuration.vehicle(), vehicle());
-    let LawParameters::Extended(law) = scenario.configuration.law() else { panic!("another law") };
-    let (p, a) = (&law.parameters.position, &law.parameters.attitude);
-    let tilt = a.w / 4.0 + a.k_t / (2.0 * a.eta_t.hypot(1.0));
-    let yaw = a.w * a.eta / (4.0 * (1.0 + a.eta));
+fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_drive_held() {
+    // The same vehicle.
+    let configuration = without_estimates(&paper_vehicle().configuration);
+    assert_eq!(*configuration.vehicle(), vehicle());
+    let ExtendedLaw { parameters: p, .. } = extended(&configuration);
+    let tilt = p.w / 4.0 + p.k_t / (2.0 * p.eta_t.hypot(1.0));
+    let yaw = p.w * p.eta / (4.0 * (1.0 + p.eta));
     let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL };
-    let model = LoopModel::new(&vehicle(), scenario.configuration.law(), timing).unwrap();
+    let model = LoopModel::new(&vehicle(), configuration.law(), timing).unwrap();
     for axis in Axis::ALL {
-        let across = [p.k_p_across, p.k_v_across, p.k_f_across, p.k_s_across];
-        let vertical = [p.k_p_vertical, p.k_v_vertical, p.k_f_vertical, p.k_s_vertical];
-        let [k_p, k_v, k_f, k_s] = if axis == Axis::Vertical { vertical } else { across };
-        let (stiffness, k_omega) = if axis == Axis::Yaw { (yaw, a.k_omega_z) } else { (tilt, a.k_omega_t) };
+        let (across, vertical) = ([p.k_p_across, p.k_v_across], [p.k_p_vertical, p.k_v_vertical]);
+        let [k_p, k_v] = if axis == Axis::Vertical { vertical } else { across };
+        let (stiffness, k_omega) = if axis == Axis::Yaw { (yaw, p.k_omega_z) } else { (tilt, p.k_omega_t) };
         let k_theta = 16.0 * stiffness;
+        let (k_f, k_s) = (p.k_f, p.k_s);
         let gains = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, ..GainParameters::TABLE_1 };
-        let (found, expected) = (model.spectral_radius(axis), spectral_radius(axis, &gains, timing, 1.0));
+        let found = model.spectral_radius(axis);
+        let expected = spectral_radius_with(Held::Drive, axis, &gains, timing, 1.0);
         // The slopes are in single precision here.
         assert!((found - expected).abs() < 1e-7, "{axis:?}: {found} against {expected}");
     }

@@ -21,7 +21,7 @@ use super::sharp;
 use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::error::ParameterError;
-use crate::extended::budget::{ROWS, THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{RATE_BEYOND, ROWS, THRUST_LEFT, TorqueBudget};
 use crate::extended::parameters::Extended;
 use crate::extended::position::net_level;
 use crate::math;
@@ -224,7 +224,7 @@ fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueB
         together = math::lesser_f64(together, thrust * f64::from(p.scale_greatest));
     }
     ExtendedBounds {
-        rates: [f64::from(p.turn_rate) * raised, turning * raised],
+        rates: [f64::from(p.turn_rate * RATE_BEYOND) * raised, turning * raised],
         thrust: Interval { least: f64::from(p.floor_margin) / raised, greatest: together * raised },
         torque: Vector3::new(across, across, about) * raised,
         rotors,

@@ -55,6 +55,9 @@ impl Row {
     }
 }
 
+/// How far beyond Omega a tick may take the thrust direction: alpha is cut after Omega.
+pub const RATE_BEYOND: f32 = 1.15;
+
 /// How many rows there are at most.
 pub const ROWS: usize = 4;
 
@@ -113,7 +116,8 @@ impl TorqueBudget {
         let p = parameters;
         let j = vehicle.inertia.map(f64::from);
         let inertia = [math::greater_f64(j.x, j.y), j.z];
-        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate].map(f64::from);
+        let [acceleration, rate, turn_rate] =
+            [p.yaw_acceleration, p.yaw_rate, p.turn_rate * RATE_BEYOND].map(f64::from);
         let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(f64::from);
         // Half of |omega_d|^2: the greatest product of two orthogonal components.
         let product = 0.5 * (turn_rate * turn_rate + rate * rate);

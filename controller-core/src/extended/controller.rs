@@ -144,7 +144,7 @@ impl Controller {
             range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
-            memory: Memory::fresh(vehicle, Averages::hovering(Vector3::zeros(), 1.0, vehicle.gravity)),
+            memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
         })
     }
 
@@ -158,16 +158,17 @@ impl Controller {
 
     /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
     pub fn reset(&mut self) {
-        let averages = Averages::hovering(Vector3::zeros(), 1.0, self.vehicle.gravity);
+        let averages = Averages::known(Vector3::zeros(), 1.0);
         self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
-    /// The same with what has been estimated of the vehicle itself kept, torque and thrust scale: how a flight goes on without a
-    /// pose. The force is forgotten: it came from velocities that are no longer known.
+    /// The same with what has been estimated of the vehicle itself kept: how a flight goes on without a pose. The force across is forgotten:
+    /// it came from velocities that are no longer known. The one along the vertical is kept: it is what the thrust lacks, mostly.
     pub fn restart(&mut self) {
-        let Averages { torque, scale, .. } = self.memory.averages;
-        let averages = Averages::hovering(torque, scale.scale, self.vehicle.gravity);
-        self.memory = Memory::fresh(&self.vehicle, averages);
+        let Averages { torque, scale, force } = self.memory.averages;
+        let vertical = Vector3::new(0.0, 0.0, self.learning.force.believed(&force).z);
+        let averages = Averages { force: vertical, ..Averages::known(torque, scale.scale) };
+        self.memory = Memory { filters: Filters::at(-vertical), ..Memory::fresh(&self.vehicle, averages) };
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on
@@ -282,7 +283,7 @@ impl Controller {
         self.memory.filters = self.position.advance(&filters, &feedback.smoothed, &drive);
         self.memory.averages = learnt;
         let turning = heading::turning(&lag, &papers, &self.law.parameters, self.period);
-        self.memory.heading = Some(heading::advanced(&lag, &turning, self.period));
+        self.memory.heading = Some(heading::advanced(&lag, &turning, self.period, limited.yaw_rate));
         self.memory.lift = Some(lifted.lift);
 
         let acceleration = rotate_back(&error, &turning.acceleration);

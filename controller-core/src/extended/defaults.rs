@@ -100,15 +100,17 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
     let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / by_yaw);
     let by_tilt = greater_f64(by_tilt, 1e-12);
-    let bias_tilt = lesser_f64(0.035 * tilt_most, 0.1 * mass * gravity / by_tilt);
+    let bias_tilt = lesser_f64(0.055 * tilt_most, 0.1 * mass * gravity / by_tilt);
     let bias_yaw = lesser_f64(0.04 * yaw_most, 0.06 * mass * gravity / by_yaw);
     let all = bias_tilt * by_tilt + (bias_yaw + light) * by_yaw;
     let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));
     let nimble = tilt_most / greatest_inertia;
-    // The gyroscopic torque about z takes half of the yaw torque at most.
-    let product = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
-    let turn_rate = or("turn_rate", lesser_f64((0.08 * nimble).clamp(2.5, 5.0), math::sqrt_f64(0.6 * product)));
-    let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.4 * product)));
+    // The gyroscopic torque takes an eighth at most of what there is about z and about the tilt's axes.
+    let flatness = greater_f64((j.z - j.x).abs(), (j.z - j.y).abs());
+    let of_yaw = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
+    let product = 0.12 * lesser_f64(of_yaw, tilt_most / greater_f64(flatness, 1e-12));
+    let turn_rate = or("turn_rate", lesser_f64((0.08 * nimble).clamp(2.5, 5.0), math::sqrt_f64(product)));
+    let yaw_rate = or("yaw_rate", lesser_f64(2.5, math::sqrt_f64(0.65 * product)));
     let yaw_feedback = 0.04 * yaw_most;
     let mut n = Numbers {
         turn_rate,

@@ -59,8 +59,8 @@ impl Craft {
         }
     }
 
-    /// A plausible vehicle: 20 g to 5 kg, thrust of 1.6 to 10 weights, four, six or eight rotors (two on each arm), arms and moments of
-    /// inertia as vehicles of its mass have them, lags up to 80 ms, delays up to three ticks.
+    /// A plausible vehicle: 20 g to 5 kg, thrust of 1.6 to 10 weights, four, six or eight rotors (two on each arm),
+    /// arms and moments of inertia as vehicles of its mass have them, lags up to 80 ms, delays up to three ticks.
     pub fn random(random: &mut Random) -> Self {
         let mass = random.logarithmic(0.02, 5.0);
         let arm = 0.19 * mass.cbrt() * random.between(0.7, 1.4);

@@ -105,13 +105,16 @@ pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &ExtendedPa
     }
 }
 
-/// The lag one period later.
+/// The lag one period later, W at most `fastest`, rad/s: where the thrust direction turns fast, W would carry the frame beyond its budget.
 #[must_use]
-pub fn advanced(lag: &HeadingLag, turning: &Turning, period: f32) -> HeadingLag {
+pub fn advanced(lag: &HeadingLag, turning: &Turning, period: f32, fastest: f32) -> HeadingLag {
     let half = 0.5 * period * turning.lag_rate;
     let (c, s) = (lag.half_angle.x, lag.half_angle.y);
     let (cos, sin) = (c - half * s, s + half * c);
     let length = math::sqrt(cos * cos + sin * sin);
     let scale = if cos < 0.0 { -1.0 / length } else { 1.0 / length };
-    HeadingLag { half_angle: Vector2::new(cos * scale, sin * scale), rate: lag.rate + turning.acceleration.z * period }
+    HeadingLag {
+        half_angle: Vector2::new(cos * scale, sin * scale),
+        rate: math::within(lag.rate + turning.acceleration.z * period, fastest),
+    }
 }

@@ -37,10 +37,10 @@ pub struct Averages {
 }
 
 impl Averages {
-    /// Of a vehicle of which torque bias and thrust scale are known, hovering under `gravity`, m/s^2.
+    /// Of a vehicle of which torque bias and thrust scale are known.
     #[must_use]
-    pub fn hovering(torque: Vector3<f32>, scale: f32, gravity: f32) -> Self {
-        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale, gravity) }
+    pub fn known(torque: Vector3<f32>, scale: f32) -> Self {
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale) }
     }
 }
 

@@ -25,6 +25,7 @@ use crate::math;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
 use crate::state::State;
+use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// The least level of a feedback, m/s^2: what is left where a force takes all of the envelope.
@@ -212,13 +213,19 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the last bit.
+    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the last bit; x_z does not
+    /// lead it there.
     #[must_use]
     pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
         let mut command = c + ((x - c) * self.towards + drive * self.ramp);
-        command.z = math::greater(command.z, -self.a_down);
-        Filters { command, intermediate: x + drive * self.period, smoothed: *smoothed }
+        let mut intermediate = x + drive * self.period;
+        if command.z < -self.a_down {
+            cold_path();
+            command.z = -self.a_down;
+            intermediate.z = math::greater(intermediate.z, -self.a_down);
+        }
+        Filters { command, intermediate, smoothed: *smoothed }
     }
 }
 

@@ -5,8 +5,7 @@
 //!
 //! y - ybar = s (f - fbar) for any constant force,   s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
 //!
-//! So |s - s*| never rises while force and scale are constant, once the averages have forgotten how they began, and s stands
-//! still where thrust does. Rotors are commanded f / s.
+//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are commanded f / s.
 
 use super::parameters::ExtendedParameters;
 use crate::math;
@@ -18,23 +17,20 @@ const LEAST_VARIATION: f64 = 2.0;
 /// Bandwidth of the slow averages, 1/s.
 const SLOW: f64 = 0.7;
 
-/// The slow averages and the scale.
+/// The scale and what it is learnt from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaleEstimate {
-    /// ybar, m/s^2.
-    pub made: Vector3<f32>,
-    /// fbar, m/s^2.
-    pub commanded: Vector3<f32>,
+    /// ybar and fbar, m/s^2; none before the first interval, with which they begin: any other beginning would look like a variation.
+    pub slow: Option<[Vector3<f32>; 2]>,
     /// s.
     pub scale: f32,
 }
 
 impl ScaleEstimate {
-    /// The scale known, hovering under `gravity`, m/s^2.
+    /// The scale known.
     #[must_use]
-    pub fn at(scale: f32, gravity: f32) -> Self {
-        let hover = Vector3::new(0.0, 0.0, gravity);
-        Self { made: hover, commanded: hover / scale, scale }
+    pub fn at(scale: f32) -> Self {
+        Self { slow: None, scale }
     }
 }
 
@@ -68,14 +64,16 @@ impl ThrustScale {
     /// The estimate after an interval in which `made` was observed and `commanded` acted, both m/s^2, world frame.
     #[must_use]
     pub fn learnt(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
-        let ScaleEstimate { made: slow_made, commanded: slow_commanded, scale } = estimate;
+        let scale = estimate.scale;
+        let Some([slow_made, slow_commanded]) = estimate.slow else {
+            return ScaleEstimate { slow: Some([*made, *commanded]), scale };
+        };
         // From the averages before this interval; those with it are e^(-h SLOW) times as far, which is in c_0.
         let (made, commanded) = (made - slow_made, commanded - slow_commanded);
         let square = commanded.norm_squared();
         let step = self.gain * (made.dot(&commanded) - scale * square) / (square + self.least_square);
         ScaleEstimate {
-            made: slow_made + made * self.slow,
-            commanded: slow_commanded + commanded * self.slow,
+            slow: Some([slow_made + made * self.slow, slow_commanded + commanded * self.slow]),
             scale: math::between(scale + step, self.least, self.greatest),
         }
     }

@@ -7,12 +7,14 @@
 //! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
 //! | \|q + W (p_2, -p_1)\| <= alpha, at least alpha_0 | omega'_d12 and the budget ([`super::budget`]); W turns p in the frame's axes, not its length |
+//! | \|q\| <= 2 alpha / 3, \|W\| \|p\| <= alpha / 3 | both have their part: W is cut for the next tick ([`super::heading::advanced`]) |
 //! | \|p + h q\| <= Omega | |
 //! | (p + h q) . z >= -(alpha_0 / Omega) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
-//! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U |
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | c_z stays above -A_- |
+//! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
 //!
-//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: the last two lines add along rho. What was changed of u'' is the
+//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: the last two lines add along rho. Where rho has left its cone, a little along the
+//! vertical is much along rho: there c_z is left to the filters' own end ([`super::position`]), or u would grow without bound. What was changed of u'' is the
 //! drive's: x' = drive + (change of u'') / k_f.
 
 use super::parameters::ExtendedParameters;
@@ -23,6 +25,9 @@ use nalgebra::{Vector2, Vector3};
 
 /// k, 1/s: how softly u arrives at its ends; at most half a tick's.
 const SOFTNESS: f32 = 10.0;
+
+/// The part of alpha that q may take.
+const TURNED: f32 = 2.0 / 3.0;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +63,8 @@ pub struct Circumstances {
 pub struct Limited {
     /// q, rad/s^2.
     pub acceleration: Vector2<f32>,
+    /// What W may be at the next tick, rad/s: a third of alpha over |p|.
+    pub yaw_rate: f32,
     /// What was added to u'', axes of the desired frame, m/s^4; none where nothing was.
     pub change: Option<Vector3<f32>>,
 }
@@ -90,6 +97,7 @@ impl TurningLimit {
             q = (shortened(next, self.rate) - rate) / self.period;
         }
         let most = math::greater(budget, self.reserve);
+        q = shortened(q, TURNED * most);
         q = self.kept_in_cone(q, &rate, &up, most);
         let carried = Vector2::new(rate.y, -rate.x) * yaw_rate;
         let whole = q + carried;
@@ -106,24 +114,22 @@ impl TurningLimit {
             tangential = (q - wanted) * magnitude;
         }
         let k = self.softness;
-        let swelling = radial_acceleration + magnitude * rate.norm_squared();
-        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - greatest);
-        if swelling > least_shrinking {
-            cold_path();
-            along = least_shrinking - swelling;
-        }
-        let mut falling = c_wanted;
-        if turned || along != 0.0 {
-            cold_path();
-            falling += tangential.dot(&up.xy()) + along * up.z;
-        }
+        let falling = if turned { c_wanted + tangential.dot(&up.xy()) } else { c_wanted };
         let least_rising = -2.0 * k * c_rate - k * k * (c + self.a_down);
         if falling < least_rising {
             cold_path();
-            along += (least_rising - falling) / up.z;
+            along = (least_rising - falling) / up.z;
+        }
+        let swelling = radial_acceleration + magnitude * rate.norm_squared() + along;
+        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - greatest);
+        if swelling > least_shrinking {
+            cold_path();
+            along += least_shrinking - swelling;
         }
         let changed = turned || along != 0.0;
-        Limited { acceleration: q, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
+        // |p| from below: without a root, and never zero.
+        let yaw_rate = most * (1.0 - TURNED) / math::greater(rate.x.abs() + rate.y.abs(), 1e-3);
+        Limited { acceleration: q, yaw_rate, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
     }
 
     /// `q` with so much towards the vertical, at most `most`, that rho stays in its cone.

@@ -100,7 +100,7 @@ fn a_file_of_name_vehicle_and_rotors_is_complete() {
 fn a_constant_of_the_extended_law_is_the_files_and_the_others_follow() {
     let with = |lines: &str| Scenario::parse(&EXTENDED.replace("[gains]", &format!("[gains]\n{lines}")), "f");
     let parameters = |scenario: Scenario| match scenario.configuration.law() {
-        LawParameters::Extended(law) => **&law.parameters,
+        LawParameters::Extended(law) => *law.parameters,
         LawParameters::Paper(_) => panic!(),
     };
     let (own, slower) = (parameters(with("").unwrap()), parameters(with("k_f = 5.0").unwrap()));

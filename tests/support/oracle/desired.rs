@@ -47,6 +47,12 @@ impl Command {
     }
 }
 
+/// R and omega at zero of a `frame` that moves at the rate `fastest`, 1/s.
+pub fn velocity(frame: impl Fn(f64) -> Matrix3<f64>, fastest: f64) -> (Matrix3<f64>, Vector3<f64>) {
+    let now = frame(0.0);
+    (now, unskew(&(now.transpose() * central_difference(frame, 1.0 / (200.0 * fastest)))))
+}
+
 /// R, omega and omega' at zero of a `frame` that moves at the rate `fastest`, 1/s.
 pub fn differentiate(frame: impl Fn(f64) -> Matrix3<f64>, fastest: f64) -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>) {
     let step = 1.0 / (200.0 * fastest);

@@ -115,6 +115,13 @@ fn a_floor_above_the_thrust_at_the_target_fails_its_row() {
     let name = "G floor at the target < thrust";
     assert!(!failing(&with(0.99), example::REFERENCES).contains(&name));
     assert!(failing(&with(1.01), example::REFERENCES).contains(&name));
+    // The frame's reserve raises it by L alpha_0.
+    let [.., raised] =
+        feasible_rows(&ExtendedParameters { turn_reserve: 2.0 * p.turn_reserve, ..p }, example::REFERENCES);
+    let craft = Craft::example();
+    let budget = TorqueBudget::new(&p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
+    let expected = budget.floor_per_acceleration * f64::from(p.turn_reserve);
+    assert!(((raised.required - floor.required) / expected - 1.0).abs() < 1e-3, "{raised} {floor}");
 }
 
 #[test]

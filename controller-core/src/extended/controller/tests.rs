@@ -1,4 +1,5 @@
-//! The extended law's step as a whole: hovering, refusals, what it learns between two of them, what no state makes it exceed.
+//! The extended law's step as a whole: hovering, refusals, what it learns between two of them, what no state makes it
+//! exceed.
 
 extern crate std;
 use super::*;
@@ -44,6 +45,18 @@ fn hovering_asks_for_the_weight_and_no_torque() {
         assert!((wrench.thrust - 0.5 * 9.81).abs() < 1e-4 && wrench.torque.norm() < 1e-6, "{wrench:?}");
     }
     assert!((controller.thrust_scale() - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn rotors_that_deliver_more_than_commanded_show_no_force_once_their_scale_is_known() {
+    let mut controller = of(&Craft::example(), &example::parameters());
+    controller.memory.averages.scale.scale = 1.1;
+    controller.restart();
+    for _ in 0..300 {
+        let (wrench, _) = controller.step(&resting(Vector3::zeros()), &hover()).unwrap();
+        assert!((wrench.thrust - 0.5 * 9.81).abs() < 1e-4, "{wrench:?}");
+    }
+    assert!(controller.estimates().force.norm() < 1e-4 && controller.thrust_scale() == 1.1);
 }
 
 fn anywhere(random: &mut Random) -> State {
@@ -116,8 +129,8 @@ fn held_estimates_stay_as_they_are() {
     assert!(fly(&mut controller, 5).force.x > learnt.force.x);
 }
 
-/// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of, not the one to
-/// come.
+/// One constant acceleration seen in ticks of two lengths in turn: the interval that has passed is the one learnt of,
+/// not the one to come.
 #[test]
 fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
     let parameters = ExtendedParameters { drag_across: 0.0, ..example::parameters() };

@@ -64,7 +64,8 @@ fn across_the_switch_the_potential_falls() {
     }
 }
 
-/// The greatest lambda in (0, 1] with |P + lambda D| <= M, in double precision: |P| is below M, so the set of those is an interval from 0.
+/// The greatest lambda in (0, 1] with |P + lambda D| <= M, in double precision: |P| is below M, so the set of those is
+/// an interval from 0.
 fn greatest_share(potential: &Vector3<f64>, damping: &Vector3<f64>, most: f64) -> f64 {
     let fits = |share: f64| (potential + damping * share).norm() <= most;
     if fits(1.0) {

@@ -36,7 +36,8 @@ fn every_torque_in_the_rotors_row_leaves_each_rotor_in_its_range_at_some_thrust(
         let range = ThrustRange::new(Some(&craft.rotors), margin, craft.limits.thrust_max);
         let row = budget.rows[2];
         for _ in 0..300 {
-            // The row spent to the last, in a random share for the tilt, in a random direction; a limit's row is not asked.
+            // The row spent to the last, in a random share for the tilt, in a random direction; a limit's row is not
+            // asked.
             let share = f64::from(random.between(0.0, 1.0));
             let tilt = (share * row.room / row.tilt) as f32;
             let yaw = ((1.0 - share) * row.room / row.yaw) as f32 * random.signed().signum();

@@ -24,19 +24,19 @@ fn what_is_pending_is_what_was_commanded_less_what_has_acted() {
     }
 }
 
-/// A body on rotors with a lag, small motions in fine ticks: the projected angle moves with the projected rate, and that with the acceleration
-/// that is commanded now, whatever was commanded before.
+/// A body on rotors with a lag, small motions in fine ticks: the projected angle moves with the projected rate, and
+/// that with the acceleration that is commanded now, whatever was commanded before.
 #[test]
 fn the_projected_errors_move_as_if_the_rotors_were_ideal() {
     let inertia = example::vehicle().inertia;
     let law = AttitudeLaw::new(&example::parameters(), &inertia);
     let (period, lag) = (1e-3_f32, 0.05_f32);
     let model = ActuatorModel::new(&ActuatorParameters { lag, delay: 0.0 }, period).unwrap();
-    let mut state = ActuatorState::steady(Vector4::zeros());
-    let mut random = Random(42);
     let bias = Vector3::new(0.002, -0.001, 0.0005);
     // omega_d' is constant: its own change is not projected.
-    let wanted = Vector3::new(0.4, -0.3, 0.2);
+    let wanted = Vector3::new(40.0, -30.0, 20.0);
+    let held = inertia.component_mul(&wanted) - bias;
+    let mut state = ActuatorState::steady(Vector4::new(0.0, held.x, held.y, held.z));
     let (mut angle, mut rate) = (Vector3::new(0.02, 0.01, -0.03), Vector3::new(0.1, -0.2, 0.05));
     let projected = |state: &ActuatorState, angle: &Vector3<f32>, rate: &Vector3<f32>| {
         let pending = model.pending(state);
@@ -45,8 +45,10 @@ fn the_projected_errors_move_as_if_the_rotors_were_ideal() {
         let (q, projected_rate) = law.projected(&error, rate, &Late { time: lag, impulse, wanted });
         (q.imag() * (2.0 / q.w), projected_rate)
     };
-    for _ in 0..300 {
-        let torque = random.vector(0.01);
+    for tick in 0..300 {
+        // To one side for 40 ms, then to the other.
+        let side = if tick / 40 % 2 == 0 { 1.0 } else { -1.0 };
+        let torque = held + Vector3::new(0.02, -0.015, 0.01) * side;
         let (angle_before, rate_before) = projected(&state, &angle, &rate);
         state.command(Vector4::new(0.0, torque.x, torque.y, torque.z));
         let acted = model.advance(&mut state);

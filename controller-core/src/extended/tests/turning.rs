@@ -24,7 +24,8 @@ struct Worst {
     changed: u32,
 }
 
-/// The filters driven by a ubar that jumps about its envelope, while the budget jumps down to the reserve and the heading turns.
+/// The filters driven by a ubar that jumps about its envelope, while the budget jumps down to the reserve and the
+/// heading turns.
 fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
     let (gravity, h) = (craft.vehicle.gravity, craft.period);
     let position = PositionLaw::new(p, gravity, h).unwrap();
