@@ -128,10 +128,10 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
     );
     assert_eq!(text.matches("What ").count(), 1, "{text}");
     // Too quick for its lag.
-    let late = EXTENDED[0].replace("[gains] ", "[gains]\nk_p_vertical = 800.0\nk_v_vertical = 60.0\n# ");
+    let late = EXTENDED[0].replace("[gains] ", "[gains]\nk_omega_t = 1.5\n# ");
     let (text, certified) = report(&late);
     assert!(
-        !certified && line(&text, "What it fails in: the sampled loop vertical").contains("k_v_vertical"),
+        !certified && line(&text, "What it fails in: the sampled loop roll").contains("lower gains.k_omega_t"),
         "{text}"
     );
 }
