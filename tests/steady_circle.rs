@@ -13,9 +13,9 @@ use scenario::timing::Timing;
 const FLOWN: f64 = 60.0;
 const THERE: f64 = 40.0;
 
-/// Greatest distance from the reference from then on, m: in a vertical force, and in one across, where thrust has to vary all the way round, and what
+/// Greatest distance from the reference from then on, m: in no force or a vertical one, 0.13 mm of which are the circle's own; and in one across, where thrust has to vary all the way round, and what
 /// is held for a tick and lags by 5 ms is late: 0.15 mm for each 5 ms, whatever the scale.
-const OFF: [f64; 2] = [1e-4, 4e-4];
+const OFF: [f64; 2] = [2e-4, 4e-4];
 
 /// The Hummingbird's circle in air that does nothing, with a force per mass and rotors that deliver `thrust_scale` of what is commanded.
 fn circle(acceleration: Vector3<f64>, thrust_scale: f64) -> Scenario {
@@ -50,6 +50,7 @@ fn a_constant_force_and_a_wrong_thrust_scale_together_leave_no_offset_on_a_circl
     let mut missed = Vec::new();
     let [vertical, across] = OFF;
     for (name, force, most) in [
+        ("nowhere", Vector3::zeros(), vertical),
         ("up", Vector3::z() * 0.9, vertical),
         ("down", Vector3::z() * -0.9, vertical),
         ("across", Vector3::x() * 0.9, across),
@@ -57,7 +58,7 @@ fn a_constant_force_and_a_wrong_thrust_scale_together_leave_no_offset_on_a_circl
         for scale in [0.93, 1.0, 1.07] {
             assert!((f64::from(p.scale_least)..f64::from(p.scale_greatest)).contains(&scale));
             let (off, learnt) = flown(&circle(force, scale));
-            println!("0.9 m/s^2 {name:6}, thrust scale {scale}: {:.4} mm off, learnt {learnt:.4}", 1e3 * off);
+            println!("0.9 m/s^2 {name:7}, thrust scale {scale}: {:.4} mm off, learnt {learnt:.4}", 1e3 * off);
             assert!((f64::from(learnt) - scale).abs() < 1e-3, "{name}, {scale}: learnt {learnt}");
             missed.extend((off > most).then_some((name, scale, off)));
         }

@@ -106,6 +106,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
             Answer { in_flight: &[(Descend, 1.3)], idling: None, forbids_arming: false, ..NO_POSES }
         }
         Failure::FrameMoves => NOTHING,
+        Failure::Thermal => Answer { is_gentle: false, ..NOTHING },
         Failure::PoseVague => Answer { in_flight: &[], idling: None, forbids_arming: false, ..NO_POSES },
         Failure::SetpointsLost if phase == Phase::Moving => {
             Answer { in_flight: &[(Hold, 1.05)], most: Hold, ..NOTHING }
@@ -135,6 +136,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         // From high enough, or on its legs, it flies on.
         Failure::Tipped => Answer { idling: Some(1.7), ..LOST },
         Failure::Leaned => LOST,
+        Failure::HeldDown => Answer { in_flight: &[(Land, 12.0)], most: Land, ..NOTHING },
         Failure::Killed => {
             Answer { in_flight: &[(Off, 0.011)], idling: Some(0.011), descending: Some(0.011), ..AT_ONCE }
         }

@@ -24,40 +24,53 @@ pub struct Motion {
     pub rate: f64,
     pub filtered: f64,
     pub intermediate: f64,
+    pub smoothed: f64,
 }
 
-/// What stands still between two ticks: ubar, as under the paper's law, or x', as under the extended one.
+/// What stands still between two ticks: ubar, as under the paper's law, or x', as under the extended one, which has a filter of bandwidth
+/// `k_d` before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Held {
     Feedback,
-    Drive,
+    Drive { k_d: f64 },
 }
 
 /// What the paper's law makes of it: force command (torque, or thrust beyond hover) and ubar.
 pub fn law(axis: Axis, gains: &GainParameters, x: Motion) -> (f64, f64) {
-    law_with(axis, gains, x, gains.k_s.into())
+    law_with(Held::Feedback, axis, gains, x, 0.0)
 }
 
-/// The same where x' is `towards` times ubar - x.
-fn law_with(axis: Axis, gains: &GainParameters, x: Motion, towards: f64) -> (f64, f64) {
+/// The same in ticks of `period`, s: x goes towards the second, ubar or y at the next tick.
+fn law_with(held: Held, axis: Axis, gains: &GainParameters, x: Motion, period: f64) -> (f64, f64) {
     let [k_p, k_v, k_f, k_s, k_theta, k_omega] =
         [gains.k_p, gains.k_v, gains.k_f, gains.k_s, gains.k_theta, gains.k_omega].map(f64::from);
-    let z_1 = x.position + (1.0 / k_f + 1.0 / k_s) * x.velocity + x.filtered / (k_f * k_s);
-    let z_2 = x.velocity + x.filtered / k_f + x.intermediate / k_s;
+    let [f, s] = [1.0 / k_f, 1.0 / k_s];
+    let d = if let Held::Drive { k_d } = held { 1.0 / k_d } else { 0.0 };
+    let z_1 = x.position + (f + s + d) * x.velocity + f * (s + d) * x.filtered + s * d * x.intermediate;
+    let z_2 = x.velocity + f * x.filtered + s * x.intermediate + d * x.smoothed;
     let ubar = -(k_p * z_1 + k_v * z_2);
+    let (towards, ahead) = match held {
+        Held::Feedback => (k_s, ubar),
+        Held::Drive { k_d } => (held_towards(k_s, period), ubar + (x.smoothed - ubar) * (-k_d * period).exp()),
+    };
     if axis == Axis::Vertical {
-        return (f64::from(vehicle().mass) * x.filtered, ubar);
+        return (f64::from(vehicle().mass) * x.filtered, ahead);
     }
     let g = f64::from(vehicle().gravity);
     let filtered_rate = -k_f * (x.filtered - x.intermediate);
-    let intermediate_rate = -towards * (x.intermediate - ubar);
+    let intermediate_rate = -towards * (x.intermediate - ahead);
     let follows = if matches!(axis, Axis::LateralX | Axis::LateralY) { 1.0 / g } else { 0.0 };
     let desired = x.filtered * follows;
     let desired_rate = filtered_rate * follows;
     let desired_acceleration = -k_f * (filtered_rate - intermediate_rate) * follows;
     let inertia = f64::from(vehicle().inertia[body_axis(axis).unwrap()]);
     let mrp = (x.angle - desired) / 4.0;
-    (-0.25 * k_theta * mrp - k_omega * (x.rate - desired_rate) + inertia * desired_acceleration, ubar)
+    (-0.25 * k_theta * mrp - k_omega * (x.rate - desired_rate) + inertia * desired_acceleration, ahead)
+}
+
+/// What brings x to where its filter would in a tick if it is held.
+fn held_towards(k_s: f64, period: f64) -> f64 {
+    (1.0 - (-k_s * period).exp()) / period
 }
 
 /// e^matrix: the series of matrix / 2^20, squared twenty times.
@@ -102,7 +115,7 @@ fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: 
     let [k_f, k_s] = [gains.k_f, gains.k_s].map(f64::from);
     let (towards, of_x) = match held {
         Held::Feedback => (k_s, [-k_s, k_s]),
-        Held::Drive => ((1.0 - (-k_s * timing.period).exp()) / timing.period, [0.0, 1.0]),
+        Held::Drive { .. } => (held_towards(k_s, timing.period), [0.0, 1.0]),
     };
     let filter_rates = DMatrix::from_row_slice(3, 3, &[-k_f, k_f, 0.0, 0.0, of_x[0], of_x[1], 0.0, 0.0, 0.0]);
     let filter_step = exponential(filter_rates * timing.period);
@@ -112,14 +125,24 @@ fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: 
     let (first, second) = (exponential(&rates * early), exponential(&rates * (timing.period - early)));
     let whole = whole as usize;
 
-    // Order: physical (5), filters (2), then the commands of ticks k-1, k-2, ...
-    let size = 7 + whole + 1;
+    // Order: physical (5), filters (3), then the commands of ticks k-1, k-2, ...
+    let size = 8 + whole + 1;
     let step = |x: DVector<f64>| {
-        let motion =
-            Motion { position: x[0], velocity: x[1], angle: x[2], rate: x[3], filtered: x[5], intermediate: x[6] };
-        let (command, ubar) = law_with(axis, gains, motion, towards);
-        let input = if held == Held::Drive { towards * (ubar - motion.intermediate) } else { ubar };
-        let command_of = |age: usize| if age == 0 { gain * command } else { x[6 + age] };
+        let motion = Motion {
+            position: x[0],
+            velocity: x[1],
+            angle: x[2],
+            rate: x[3],
+            filtered: x[5],
+            intermediate: x[6],
+            smoothed: x[7],
+        };
+        let (command, ahead) = law_with(held, axis, gains, motion, timing.period);
+        let (input, smoothed) = match held {
+            Held::Feedback => (ahead, 0.0),
+            Held::Drive { .. } => (towards * (ahead - motion.intermediate), ahead),
+        };
+        let command_of = |age: usize| if age == 0 { gain * command } else { x[7 + age] };
         let mut physical = DVector::from_fn(6, |i, _| if i < 5 { x[i] } else { command_of(whole + 1) });
         physical = &first * physical;
         physical[5] = command_of(whole);
@@ -128,7 +151,8 @@ fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: 
         DVector::from_fn(size, |i, _| match i {
             0..5 => physical[i],
             5..7 => filters[i - 5],
-            _ => command_of(i - 7),
+            7 => smoothed,
+            _ => command_of(i - 8),
         })
     };
     let full = DMatrix::from_columns(
@@ -137,7 +161,7 @@ fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: 
     // Only what belongs to the axis: an attitude alone has no position, a vertical motion no angle.
     let kept: Vec<usize> = (0..size)
         .filter(|i| match axis {
-            Axis::Roll | Axis::Pitch | Axis::Yaw => !matches!(i, 0 | 1 | 5 | 6),
+            Axis::Roll | Axis::Pitch | Axis::Yaw => !matches!(i, 0 | 1 | 5..8),
             Axis::Vertical => !matches!(i, 2 | 3),
             Axis::LateralX | Axis::LateralY => true,
         })
@@ -194,6 +218,7 @@ fn the_law_here_is_the_slope_of_the_law_that_flies() {
                 rate: -x.rate,
                 filtered: -x.filtered,
                 intermediate: -x.intermediate,
+                ..Motion::default()
             };
             let (expected, _) = law(axis, &GainParameters::TABLE_1, x);
             let moves = match body_axis(axis) {
@@ -268,7 +293,8 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
         let (k_f, k_s) = (p.k_f, p.k_s);
         let gains = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, ..GainParameters::TABLE_1 };
         let found = model.spectral_radius(axis);
-        let expected = spectral_radius_with(Held::Drive, axis, &gains, timing, 1.0);
+        let held = Held::Drive { k_d: p.k_d.into() };
+        let expected = spectral_radius_with(held, axis, &gains, timing, 1.0);
         // The slopes are in single precision here.
         assert!((found - expected).abs() < 1e-7, "{axis:?}: {found} against {expected}");
     }

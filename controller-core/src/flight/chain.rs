@@ -5,7 +5,8 @@
 //! takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and the
 //! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
 //! that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had. The vertical
-//! speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to that of the descent.
+//! speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to that of the descent; how far it
+//! stays behind that is summed up as well, so that it sinks in an updraft too.
 //! The extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and learns nothing meanwhile.
 //!
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
@@ -200,8 +201,10 @@ impl<'m> Chain<'m> {
         let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
     }
 
-    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s.
-    pub fn level(&mut self, sinking: f32) {
+    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s; of its reference's, if
+    /// that is not known.
+    pub fn level(&mut self, sinking: Option<f32>) {
+        let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
         self.sinking = Sinking::at(sinking);
         self.law.restart();
@@ -283,9 +286,11 @@ impl<'m> Chain<'m> {
         let State { attitude, angular_velocity, .. } = estimated.state;
         let velocity = Vector3::new(0.0, 0.0, self.sinking.advance(estimated, self.period));
         self.reference.velocity.z = if descends { -self.sinking.descent() } else { 0.0 };
+        let mut position = self.reference.position;
+        position.z += self.sinking.behind(self.reference.velocity.z, self.period);
         // Without a pose there is nothing to learn from.
         self.law.hold_estimates();
-        self.step(&State { position: self.reference.position, velocity, attitude, angular_velocity })
+        self.step(&State { position, velocity, attitude, angular_velocity })
     }
 
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {

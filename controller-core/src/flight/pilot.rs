@@ -222,7 +222,7 @@ impl<'m> Pilot<'m> {
             (Mode::Descending, _) => {
                 let certain = !estimate.health.faults.contain(Fault::Uncertain);
                 let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
-                chain.level(known.unwrap_or(0.0));
+                chain.level(known);
             }
             _ => {}
         }

@@ -1,9 +1,10 @@
 //! The vertical motion without a pose, by what the accelerometer adds to it.
 
 use crate::estimator::EstimatedState;
+use crate::math;
 
 /// The least speed of a descent by the IMU alone, m/s.
-const DESCENT: f32 = 0.7;
+const DESCENT: f32 = 0.6;
 
 /// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
 const DRIFT: f32 = 0.05;
@@ -12,11 +13,17 @@ const DRIFT: f32 = 0.05;
 /// drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
 const MOVING: (f32, f32) = (0.3, 0.01);
 
+/// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no more is left to be made up
+/// for where the draft ends.
+const BEHIND: f32 = 0.3;
+
 /// How a vehicle that has lost its pose sinks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Sinking {
     /// m/s, upwards.
     speed: f32,
+    /// How far above its descent it is, m.
+    behind: f32,
     /// For how long, s.
     time: f32,
     /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
@@ -38,6 +45,12 @@ impl Sinking {
         self.last = Some((now, jumps));
         self.time += period;
         self.speed
+    }
+
+    /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at `wanted`, m/s.
+    pub fn behind(&mut self, wanted: f32, period: f32) -> f32 {
+        self.behind = math::between(self.behind + (self.speed - wanted) * period, -BEHIND, BEHIND);
+        self.behind
     }
 
     /// Whether the vehicle rises or sinks faster than an accelerometer's drift explains.
@@ -75,12 +88,22 @@ mod tests {
     }
 
     #[test]
+    fn what_stays_behind_its_descent_is_summed_up_to_an_end_either_way() {
+        let mut sinking = Sinking::at(-0.2);
+        let mut behind = |wanted: f32, ticks: u32| (0..ticks).fold(0.0, |_, _| sinking.behind(wanted, 0.01));
+        assert!((behind(-0.7, 20) - 0.1).abs() < 1e-6);
+        assert_eq!(behind(-0.7, 1_000), BEHIND);
+        assert!((behind(0.3, 20) - (BEHIND - 0.1)).abs() < 1e-6);
+        assert_eq!(behind(0.3, 1_000), -BEHIND);
+    }
+
+    #[test]
     fn up_or_down_it_moves_beyond_a_drift_that_grows() {
         for (speed, moves) in [(0.31, true), (-0.31, true), (0.29, false), (-0.29, false)] {
             assert_eq!(Sinking::at(speed).is_motion(), moves, "{speed} m/s");
         }
         let mut sinking = Sinking::at(-0.35);
         (0..1_000).for_each(|_| _ = sinking.advance(&at_speed(0.0, 0), 0.01));
-        assert!(!sinking.is_motion() && (sinking.descent() - 1.2).abs() < 1e-3, "{}", sinking.descent());
+        assert!(!sinking.is_motion() && (sinking.descent() - 1.1).abs() < 1e-3, "{}", sinking.descent());
     }
 }

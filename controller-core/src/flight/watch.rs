@@ -5,8 +5,8 @@
 //! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust than carries it.
 //!   Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not. Rotors that give 8 % more
 //!   than the law knows would look the same: with the law's thrust scale they do not. What rises or sinks on stands on nothing.
-//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, or the vehicle does not
-//!   come upright, or turns on.
+//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not as the ground's, or the
+//!   vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
 //! - *Tracking lost*: far from the reference; or still, well below it: a vehicle that does not get off the ground.
 //!
@@ -191,9 +191,10 @@ impl Watch {
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let held_up = self.resting.is_so(look.is_held_up(self.jerked), GROUND_LASTING, now);
+        let rests = look.is_held_up(self.jerked);
+        let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
-        let doubtful = self.doubtful.is_so(look.is_unexpected(), DOUBT_LASTING, now);
+        let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
         let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
         Seen {
             tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now),

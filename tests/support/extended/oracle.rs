@@ -305,7 +305,7 @@ impl Law {
 
     /// U, section 4: what the thrust near the target leaves.
     fn greatest(&self, scale: f64) -> f64 {
-        let each = self.rotors.iter().map(|rotor| rotor.greatest / rotor.row[0]).fold(self.thrust_max, f64::min);
+        let each = self.rotors.iter().map(|rotor| rotor.greatest / rotor.row[0]).fold(f64::INFINITY, f64::min);
         (1.0 - THRUST_LEFT) * (scale * each - self.taken).min(self.thrust_max) / self.mass
     }
 
