@@ -4,8 +4,8 @@
 //! |---|---|
 //! | A_- < g - K_a3 | T1: u_z > 0, the law is defined |
 //! | (with d up to its levels) m \|g e3 + p_d'' - d\| < what torques near the target leave of the rotors' thrust | A1: near the target the thrust is not cut |
-//! | \|omega_d12\| < Omega, \|omega'_d12\| < alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
-//! | \|w*_3\| < W_max, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
+//! | \|p\| < Omega, \|q\| < 0.6 alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
+//! | \|w*_3\| < W_max and 0.4 alpha_0 over \|p\|, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
 //! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
 //! | qbar < eta, 2 qbar M_t < w eta_t sqrt(1 - qbar^2) | E: the only equilibrium of the attitude is the target |
 //! | \|P\| < M_all | D: damping always has a share |
@@ -24,6 +24,7 @@ use crate::error::ParameterError;
 use crate::extended::budget::{RATE_BEYOND, ROWS, THRUST_LEFT, TorqueBudget};
 use crate::extended::parameters::Extended;
 use crate::extended::position::net_level;
+use crate::extended::turning;
 use crate::math;
 use crate::reference::ReferenceBounds;
 use heapless::Vec;
@@ -93,14 +94,13 @@ fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &To
 
     // Across and along the vertical the net's level is reached at once.
     let net = math::sqrt_f64(2.0) * net_level(p, vehicle.gravity);
-    let [k_f, k_s, yaw_rate] = [p.k_f, p.k_s, p.yaw_rate].map(f64::from);
+    let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
     let jerk = f64::from(reference.jerk) + 2.0 * k_f * net;
     let snap = f64::from(reference.snap) + 2.0 * k_f * (k_s + k_f) * net;
     let least = gravity - vertical - up - net;
     let rate = jerk / least * raised;
-    // p sqrt(4 r^2 / n^2 + W^2) with p^2 + r^2 / n^2 = rate^2 is greatest at p^2 = (4 rate^2 + W^2) / 8, or where p is all of it.
-    let curl = if yaw_rate < 2.0 * rate { rate * rate + 0.25 * yaw_rate * yaw_rate } else { rate * yaw_rate };
-    let acceleration = (snap / least + curl) * raised;
+    // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
+    let acceleration = (snap / least + rate * rate) * raised / f64::from(turning::TURNED);
     let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(f64::from);
     let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
     let weakest = (1.0 - THRUST_LEFT) * mass * (gravity - vertical - up);
@@ -139,10 +139,15 @@ fn heading(configuration: &Configuration, parameters: &Extended) -> [Inequality;
     let gravity = f64::from(configuration.vehicle().gravity) - f64::from(parameters.force_up);
     // With a feedback of zero the filters stay at zero, whatever their bandwidths.
     let alone = Reachable::new(1.0, 1.0, 0.0, gravity, &forced);
-    let turning = if alone.vertical_least > 0.0 { sharp::turning_rates(&alone, &forced) } else { [f64::INFINITY; 2] };
-    let [rate, acceleration] = turning.map(|rate| rate * (1.0 + ARITHMETIC_ALLOWANCE));
+    let fastest = if alone.vertical_least > 0.0 { sharp::turning_rates(&alone, &forced) } else { [f64::INFINITY; 2] };
+    let [rate, acceleration] = fastest.map(|rate| rate * (1.0 + ARITHMETIC_ALLOWANCE));
+    // The part of alpha_0 that q leaves carries the frame about rho; the law divides it by sqrt(5/4) |p| at most.
+    let turned = math::sqrt_f64(1.25) * f64::from(reference.jerk) / alone.vertical_least;
+    let carried =
+        (1.0 - f64::from(turning::TURNED)) * f64::from(parameters.turn_reserve) / math::greater_f64(turned, 1e-9);
+    let most = math::lesser_f64(f64::from(parameters.yaw_rate), carried);
     [
-        Inequality::new("A1 heading rate for the reference", "rad/s", rate, f64::from(parameters.yaw_rate)),
+        Inequality::new("A1 heading rate for the reference", "rad/s", rate, most),
         Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, f64::from(parameters.yaw_acceleration)),
     ]
 }

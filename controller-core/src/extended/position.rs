@@ -229,14 +229,14 @@ impl PositionLaw {
     }
 }
 
-/// The level of the net, m/s^2: with it c' and c'' take half of alpha_0 and half of Omega at the least |u|, so that the frame is never limited.
+/// The level of the net, m/s^2: with it c' and c'' take three tenths of alpha_0 and half of Omega at the least |u|, so that the frame is never limited.
 #[must_use]
 pub fn net_level(parameters: &ExtendedParameters, gravity: f32) -> f64 {
     let p = parameters;
     let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(f64::from);
     let least = f64::from(gravity - p.a_down);
     // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d, x + d and y + d start within M.
-    math::lesser_f64(0.5 * reserve * least / (2.0 * k_f * (k_s + k_f)), 0.5 * rate * least / (2.0 * k_f))
+    math::lesser_f64(0.3 * reserve * least / (2.0 * k_f * (k_s + k_f)), 0.5 * rate * least / (2.0 * k_f))
 }
 
 /// What makes s(x; `level`) of a vector x with this `square`.

@@ -7,7 +7,7 @@
 //! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
 //! | \|q + W (p_2, -p_1)\| <= alpha, at least alpha_0 | omega'_d12 and the budget ([`super::budget`]); W turns p in the frame's axes, not its length |
-//! | \|q\| <= 2 alpha / 3, \|W\| \|p\| <= alpha / 3 | both have their part: W is cut for the next tick ([`super::heading::advanced`]) |
+//! | \|q\| <= 0.6 alpha, \|W\| \|p\| <= 0.4 alpha | both have their part: W is cut for the next tick ([`super::heading::advanced`]) |
 //! | \|p + h q\| <= Omega | |
 //! | (p + h q) . z >= -(alpha_0 / Omega) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | c_z stays above -A_- |
@@ -27,7 +27,7 @@ use nalgebra::{Vector2, Vector3};
 const SOFTNESS: f32 = 10.0;
 
 /// The part of alpha that q may take.
-const TURNED: f32 = 2.0 / 3.0;
+pub const TURNED: f32 = 0.6;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ pub struct Circumstances {
 pub struct Limited {
     /// q, rad/s^2.
     pub acceleration: Vector2<f32>,
-    /// What W may be at the next tick, rad/s: a third of alpha over |p|.
+    /// What W may be at the next tick, rad/s: 0.4 alpha over |p|, or an eighth less.
     pub yaw_rate: f32,
     /// What was added to u'', axes of the desired frame, m/s^4; none where nothing was.
     pub change: Option<Vector3<f32>>,
@@ -90,15 +90,13 @@ impl TurningLimit {
     pub fn limited(&self, turn: &Turn, circumstances: &Circumstances) -> Limited {
         let Circumstances { budget, yaw_rate, up, greatest, vertical: [c, c_rate, c_wanted] } = *circumstances;
         let Turn { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = *turn;
-        let next = rate + wanted * self.period;
-        let mut q = wanted;
+        let most = math::greater(budget, self.reserve);
+        let mut q = self.kept_in_cone(shortened(wanted, TURNED * most), &rate, &up, most);
+        let next = rate + q * self.period;
         if next.norm_squared() > self.rate * self.rate {
             cold_path();
             q = (shortened(next, self.rate) - rate) / self.period;
         }
-        let most = math::greater(budget, self.reserve);
-        q = shortened(q, TURNED * most);
-        q = self.kept_in_cone(q, &rate, &up, most);
         let carried = Vector2::new(rate.y, -rate.x) * yaw_rate;
         let whole = q + carried;
         if whole.norm_squared() > most * most {
@@ -127,8 +125,10 @@ impl TurningLimit {
             along += least_shrinking - swelling;
         }
         let changed = turned || along != 0.0;
-        // |p| from below: without a root, and never zero.
-        let yaw_rate = most * (1.0 - TURNED) / math::greater(rate.x.abs() + rate.y.abs(), 1e-3);
+        // Without a root |p| is told to an eighth, from above.
+        let (x, y) = (rate.x.abs(), rate.y.abs());
+        let speed = if x > y { x + 0.5 * y } else { y + 0.5 * x };
+        let yaw_rate = most * (1.0 - TURNED) / math::greater(speed, 1e-3);
         Limited { acceleration: q, yaw_rate, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
     }
 

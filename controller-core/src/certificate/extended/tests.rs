@@ -4,6 +4,7 @@ use crate::extended::attitude::AttitudeLaw;
 use crate::extended::example::{self, Craft};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::Random;
+use crate::extended::turning::TURNED;
 use crate::vehicle::LimitParameters;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
@@ -81,19 +82,16 @@ fn references_that_turn_the_frame_too_fast_or_too_suddenly_fail_their_rows() {
     let expected = (3.876 + 0.47 * 2.4675 + 2.0 * f64::from(p.k_f) * net) / least;
     assert!((rate.required / expected - 1.0).abs() < 1e-4 && rate.available == f64::from(p.turn_rate), "{rate}");
     let snap = 6.089 + 0.47 * 3.876 + 2.0 * f64::from(p.k_f * (p.k_s + p.k_f)) * net;
-    // Beside it what turns p: 2 r / n along it, W across, p and r / n together as long as |u'| / n.
-    for yaw_rate in [1e-3, 0.5, 1.0, 1.4, 1.5, 5.0] {
-        let [.., acceleration, _] = feasible_rows(&ExtendedParameters { yaw_rate, ..p }, example::REFERENCES);
-        let turned = |part: f64| {
-            let (along, across) = (part.cos() * expected, part.sin() * expected);
-            across * (2.0 * along).hypot(f64::from(yaw_rate))
-        };
-        let curl = (0..=1_000).map(|part| turned(f64::from(part) * 1e-3 * core::f64::consts::FRAC_PI_2));
-        let expected = snap / least + curl.fold(0.0, f64::max);
-        // The allowance for arithmetic, three times.
-        assert!((acceleration.required / expected - 1.0).abs() < 3e-4, "{acceleration} {expected} {yaw_rate}");
-        assert!(acceleration.available == f64::from(p.turn_reserve));
-    }
+    // Beside it 2 p r / n, p and r / n together as long as |u'| / n; q may take its part of alpha_0.
+    let [.., acceleration, _] = feasible_rows(&p, example::REFERENCES);
+    let curl = (0..=1_000).map(|part| {
+        let (along, across) = (f64::from(part) * 1e-3 * core::f64::consts::FRAC_PI_2).sin_cos();
+        2.0 * expected * expected * along * across
+    });
+    let expected = (snap / least + curl.fold(0.0, f64::max)) / f64::from(TURNED);
+    // The allowance for arithmetic, three times.
+    assert!((acceleration.required / expected - 1.0).abs() < 3e-4, "{acceleration} {expected}");
+    assert!(acceleration.available == f64::from(p.turn_reserve));
     let snappy = ReferenceBounds { snap: 6.1 + 9.81 * p.turn_reserve, ..example::REFERENCES };
     assert!(failing(&p, snappy).contains(&"A1 turning acceleration"));
 }

@@ -12,6 +12,7 @@ use crate::extended::net::PATIENCE;
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::net_level;
 use crate::extended::tests::Random;
+use crate::extended::turning::TURNED;
 use crate::heading::Heading;
 use crate::reference::hover::Hover;
 use crate::reference::{ReferenceBounds, Trajectory};
@@ -272,7 +273,7 @@ fn no_rotor_goes_below_its_least_where_the_thrust_limit_is_low() {
 }
 
 #[test]
-fn the_heading_turns_no_faster_than_a_third_of_alpha_lets_it_while_the_thrust_turns() {
+fn the_heading_turns_no_faster_than_its_part_of_alpha_lets_it_while_the_thrust_turns() {
     let alpha = 3.0;
     let p = ExtendedParameters { turn_reserve: alpha, turn_acceleration: alpha, ..example::parameters() };
     let mut controller = controller(&p);
@@ -288,8 +289,8 @@ fn the_heading_turns_no_faster_than_a_third_of_alpha_lets_it_while_the_thrust_tu
         let (_, diagnostics) = controller.step(&state, &hover()).unwrap();
         let turning = (diagnostics.desired_angular_velocity.norm_squared() - rate * rate).max(0.0).sqrt();
         let carried = controller.memory.heading.unwrap().rate.abs() * turning;
-        assert!(carried <= alpha / 3.0 + 1e-4, "{tick}: {carried}");
-        bound += u32::from(carried > 0.6 * alpha / 3.0);
+        assert!(carried <= alpha * (1.0 - TURNED) + 1e-4, "{tick}: {carried}");
+        bound += u32::from(carried > 0.6 * alpha * (1.0 - TURNED));
     }
     assert!(bound > 100, "{bound}");
 }

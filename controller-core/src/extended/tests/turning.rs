@@ -7,7 +7,7 @@ use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::example::{Craft, greatest_accelerations};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::{Filters, PositionLaw};
-use crate::extended::turning::{Circumstances, TurningLimit};
+use crate::extended::turning::{Circumstances, TURNED, TurningLimit};
 use crate::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 
@@ -65,9 +65,9 @@ fn driven(craft: &Craft, p: &ExtendedParameters, random: &mut Random) -> Worst {
 
         let whole = limited.acceleration + Vector2::new(turn.rate.y, -turn.rate.x) * yaw_rate;
         assert!(whole.norm() <= budget.max(p.turn_reserve) * (1.0 + 1e-5), "{craft:?} {tick}");
-        // W keeps to its third of the last tick's alpha, but for what that tick added to |p|.
+        // W keeps to its part of the last tick's alpha, but for what that tick added to |p|.
         let carried = yaw_rate.abs() * turn.rate.norm() / before - h * yaw_rate.abs();
-        worst.carried = worst.carried.max(3.0 * carried);
+        worst.carried = worst.carried.max(carried / (1.0 - TURNED));
         (fastest, before) = (limited.yaw_rate, budget.max(p.turn_reserve));
         worst.rate = worst.rate.max(turn.rate.norm() / p.turn_rate);
         worst.beyond_cone = worst.beyond_cone.max(p.tilt_max.cos() - up.z);
@@ -94,8 +94,8 @@ fn the_frame_turns_within_its_budget_and_rate_and_never_falls_too_fast() {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
         let worst = driven(&craft, &craft.constants(&NOTHING_GIVEN), &mut random);
         assert!(worst.changed > 1_000, "{worst:?}");
-        // A tick's q is that of its start, and alpha is cut after Omega: measured, a tenth beyond it in ticks of 10 ms.
-        assert!(worst.rate < (1.0 + 15.0 * craft.period).min(RATE_BEYOND), "{craft:?}: {worst:?}");
+        // A tick's q is that of its start, and alpha is cut after Omega.
+        assert!(worst.rate < RATE_BEYOND, "{craft:?}: {worst:?}");
         // A tick's end is not its start: measured, half a percent in ticks of 10 ms.
         assert!(worst.carried < 1.0 + craft.period, "{craft:?}: {worst:?}");
         // Even where rho leaves its cone: what a tick adds to |u| is well within what is left of the thrust.
@@ -125,7 +125,7 @@ fn the_thrust_direction_stays_in_its_cone_and_below_u_where_the_reserve_bends_th
 }
 
 #[test]
-fn a_sudden_turn_gets_two_thirds_of_alpha_and_the_heading_the_last() {
+fn a_sudden_turn_gets_its_part_of_alpha_and_the_heading_the_rest() {
     let limit = TurningLimit::new(
         &ExtendedParameters { turn_reserve: 3.0, ..Craft::example().constants(&NOTHING_GIVEN) },
         0.01,
@@ -136,7 +136,7 @@ fn a_sudden_turn_gets_two_thirds_of_alpha_and_the_heading_the_last() {
         let circumstances =
             Circumstances { budget, yaw_rate: 0.0, up: upright.up(), greatest: 40.0, vertical: [0.0; 3] };
         let limited = limit.limited(&turn, &circumstances);
-        assert!((limited.acceleration.norm() * 1.5 / alpha - 1.0).abs() < 1e-5, "{limited:?}");
-        assert!((limited.yaw_rate * turn.rate.norm() * 3.0 / alpha - 1.0).abs() < 1e-5, "{limited:?}");
+        assert!((limited.acceleration.norm() / (TURNED * alpha) - 1.0).abs() < 1e-5, "{limited:?}");
+        assert!((limited.yaw_rate * turn.rate.norm() / ((1.0 - TURNED) * alpha) - 1.0).abs() < 1e-5, "{limited:?}");
     }
 }
