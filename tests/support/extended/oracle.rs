@@ -23,7 +23,7 @@ const SHARE_ACROSS: f64 = 0.95;
 
 /// k, 1/s, and the part of alpha that q may take (section 3).
 const SOFTNESS: f64 = 10.0;
-const TURNED: f64 = 2.0 / 3.0;
+const TURNED: f64 = 0.6;
 
 /// How far beyond Omega a tick may take the thrust direction (section 4).
 const RATE_BEYOND: f64 = 1.15;
@@ -396,10 +396,10 @@ impl Law {
         let command = Command { u_ddot: u_ddot + change, ..command };
 
         let (omega_d, omega_d_dot, mut after) = self.lagging(lag, &command, t.nudge.heading);
-        // A third of alpha is W's at the next tick.
+        // What q leaves of alpha is W's at the next tick, with |p| to an eighth.
         let turning = papers.transpose() * wanted.p;
-        let fastest =
-            (1.0 - TURNED) * alpha.max(double(p.turn_reserve)) / (turning.x.abs() + turning.y.abs()).max(1e-3);
+        let fastest = (1.0 - TURNED) * alpha.max(double(p.turn_reserve))
+            / (turning.x.abs().max(turning.y.abs()) + 0.5 * turning.x.abs().min(turning.y.abs())).max(1e-3);
         let slowed = after[1].abs() > fastest;
         after[1] = cut(after[1], fastest);
         let (rate, turned) = (error.transpose() * omega_d, error.transpose() * omega_d_dot);
@@ -459,13 +459,13 @@ impl Law {
         Averages { force, bias, slow: Some(slow), scale }
     }
 
-    /// The net's level, section 13: c' and c'' take half of Omega and half of alpha_0 at the least |u|.
+    /// The net's level, section 13: c' and c'' take half of Omega and three tenths of alpha_0 at the least |u|.
     fn net_level(&self) -> f64 {
         let p = &self.p;
         let [k_f, k_s] = [p.k_f, p.k_s].map(double);
         let least = self.gravity - double(p.a_down);
         let by_rate = 0.5 * double(p.turn_rate) * least / (2.0 * k_f);
-        by_rate.min(0.5 * double(p.turn_reserve) * least / (2.0 * k_f * (k_s + k_f)))
+        by_rate.min(0.3 * double(p.turn_reserve) * least / (2.0 * k_f * (k_s + k_f)))
     }
 
     /// Section 1: z_1, z_2 and ubar.
@@ -557,12 +557,8 @@ impl Law {
         let Turn { rho, n, r, p, q: wanted, along: radial } = turn;
         let [rate, reserve] = [parameters.turn_rate, parameters.turn_reserve].map(double);
         let most = alpha.max(reserve);
-        let (next, faster) = shortened(p + wanted * h, rate);
-        let mut q = if faster { (next - p) / h + nudge } else { *wanted };
-        let (own, shorter) = shortened(q, TURNED * most);
-        if shorter {
-            q = own + nudge;
-        }
+        let (own, shorter) = shortened(*wanted, TURNED * most);
+        let mut q = if shorter { own + nudge } else { *wanted };
 
         // e3 without its part along rho.
         let z = Vector3::z() - rho * rho.z;
@@ -573,6 +569,10 @@ impl Law {
         if tilted {
             let inwards = z * ((least - rising) / (z.norm_squared().max(1e-6) * h));
             q += shortened(inwards, most).0 + nudge;
+        }
+        let (next, faster) = shortened(p + q * h, rate);
+        if faster {
+            q = (next - p) / h + nudge;
         }
         let (whole, sooner) = shortened(q + carried, most);
         if sooner {
