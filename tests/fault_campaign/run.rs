@@ -10,8 +10,9 @@ use controller_core::flight::{Inputs, Mode, Outcome, Output, Reason, Request, Tr
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone.
-const GENTLE: (f64, f64) = (0.6, 1.0);
+/// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone: 0.6 m/s, and a landing's 0.5 m/s that frozen poses have
+/// taught it to take for nothing.
+const GENTLE: (f64, f64) = (0.6, 1.1);
 
 /// Ticks after the last failure after which the operator wants the vehicle down, whatever it does.
 const PATIENCE: u64 = 2_000;

@@ -115,7 +115,7 @@ impl Bench {
             }
             if stretch + 1 == STRETCHES {
                 // What neither grows nor dies is an oscillation that the levels hold.
-                return next > 0.99 * last;
+                return next > 0.997 * last;
             }
             last = next;
         }

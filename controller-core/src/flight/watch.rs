@@ -4,7 +4,8 @@
 //!   that turns round in the air: where wind carries it upwards faster than it may go down, say.
 //! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust than carries it.
 //!   Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not. Rotors that give 8 % more
-//!   than the law knows would look the same: with the law's thrust scale they do not. What rises or sinks on stands on nothing.
+//!   than the law knows would look the same: with the law's thrust scale and force they do not. What rises or sinks on stands on nothing; but a hit
+//!   is more than an accelerometer can show, and leaves a speed that is none.
 //! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not as the ground's, or the
 //!   vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
@@ -38,6 +39,9 @@ const STILL: (f32, f32) = (0.15, 0.5);
 
 /// The upward acceleration that only the ground gives, m/s^2.
 const JERK: f32 = 5.0;
+
+/// The upward acceleration of a hit, m/s^2.
+const HIT: f32 = 10.0;
 
 /// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the greatest that
 /// is measured instead.
@@ -75,6 +79,8 @@ pub(super) struct Watch {
     calm: Calm,
     /// Whether something has stopped a vehicle that goes down by the IMU alone.
     jerked: bool,
+    /// Whether it has hit something.
+    hit: bool,
     /// Whether a low battery has had its landing: whoever flies on knows.
     low_is_told: bool,
 }
@@ -106,10 +112,10 @@ impl Look<'_> {
         self.mode.is_guided() && self.flown.is_some_and(|flown| !within(&flown.position_error, most))
     }
 
-    /// Whether it stands still where it should be going up.
+    /// Whether it stays where it should be going up; with a rotor lost it may turn on the ground.
     fn is_held_down(&self) -> bool {
         let (true, Some(state), Some(flown)) = (self.mode.is_guided(), self.state, self.flown) else { return false };
-        is_still(state) && flown.reference.position.z > state.state.position.z + HELD_DOWN
+        within(&state.state.velocity, STILL.0) && flown.reference.position.z > state.state.position.z + HELD_DOWN
     }
 
     /// Whether the rotors do not give what the law asks for.
@@ -141,18 +147,18 @@ impl Look<'_> {
         Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
     }
 
-    /// Whether something stops a vehicle that goes down, in this very tick's `state`.
-    fn jerks(&self, state: Option<&EstimatedState>) -> bool {
+    /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
+    fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         let now = Look { state, ..*self };
-        self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > JERK)
+        self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether it should accelerate downwards and does not, `jerked` before or not.
-    fn is_held_up(&self, jerked: bool) -> bool {
+    /// Whether it should accelerate downwards and does not, `jerked` before or not, or with a `hit`.
+    fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
         self.by_imu().is_some_and(|(_, asked, state)| {
-            let moves = self.chain.is_some_and(Chain::moves);
+            let moves = !hit && self.chain.is_some_and(Chain::moves);
             !moves
                 && asked < falling
                 && within(&state.acceleration, measured)
@@ -187,11 +193,13 @@ impl Watch {
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
         let calm = self.calm.tick(state);
         let look = Look { mode, state: calm.as_ref(), chain, flown };
-        self.jerked = mode == Mode::Descending && (self.jerked || look.jerks(state));
+        let descends = mode == Mode::Descending;
+        self.jerked = descends && (self.jerked || look.jerks(state, JERK));
+        self.hit = descends && (self.hit || look.jerks(state, HIT));
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let rests = look.is_held_up(self.jerked);
+        let rests = look.is_held_up(self.jerked, self.hit);
         let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);

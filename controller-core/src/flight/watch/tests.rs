@@ -184,6 +184,27 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
     assert!(!landed(true, 5.5, Mode::Holding), "a jerk of an earlier descent");
 }
 
+/// What is seen in the last of so many ticks on the ground, at a speed that is none, after an upward acceleration.
+fn seen_after(jerk: f32, ticks: u64) -> Seen {
+    let mut chain = descending(&at(0.0));
+    let (mut watch, mut last, mut estimated) = (Watch::default(), Seen::default(), at(0.0));
+    for tick in 1..=ticks {
+        estimated.acceleration.z = if tick == 1 { jerk } else { 0.0 };
+        estimated.state.velocity.z = if tick == 1 { 0.0 } else { -0.55 };
+        chain.fly_level(&estimated, true).unwrap();
+        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
+        last = watch.tick(Mode::Descending, Some(&estimated), Some(&chain), FAR, &inputs);
+    }
+    last
+}
+
+#[test]
+fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
+    let long = ticks(GROUND_LASTING) + 60;
+    assert!(!seen_after(1.0, long).landed && seen_after(15.0, long).landed);
+    assert!(!seen_after(15.0, long).imu_doubtful);
+}
+
 #[test]
 fn a_low_battery_is_told_until_it_is_acted_on() {
     let mut watch = Watch::default();
