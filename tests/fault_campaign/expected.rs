@@ -106,7 +106,8 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
             Answer { in_flight: &[(Descend, 1.3)], idling: None, forbids_arming: false, ..NO_POSES }
         }
         Failure::FrameMoves => NOTHING,
-        Failure::Thermal => Answer { is_gentle: false, ..NOTHING },
+        // What the IMU feels of it without a pose, with the air's drag, may be too much for an IMU that is right.
+        Failure::Thermal => Answer { descent_may_end: true, is_gentle: false, ..NOTHING },
         Failure::PoseVague => Answer { in_flight: &[], idling: None, forbids_arming: false, ..NO_POSES },
         Failure::SetpointsLost if phase == Phase::Moving => {
             Answer { in_flight: &[(Hold, 1.05)], most: Hold, ..NOTHING }

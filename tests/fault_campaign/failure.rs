@@ -111,7 +111,7 @@ const GRASPING: f64 = 0.05;
 /// ones to its feedback, metres off, and 6.2 m/s^2 downwards.
 const GUST: (f64, f64) = (28.0, 2.5);
 const UPDRAFT: (f64, f64) = (7.2, 5.0);
-const THERMAL: (f64, f64) = (3.2, 5.0);
+const THERMAL: (f64, f64) = (2.8, 5.0);
 const WIND: (f64, f64) = (23.0, 15.0);
 
 /// What holds a vehicle down, m/s^2: more than its thrust.

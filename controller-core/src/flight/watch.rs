@@ -153,13 +153,14 @@ impl Look<'_> {
         self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether it should accelerate downwards and does not, `jerked` before or not, or with a `hit`.
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a `hit`.
     fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
         self.by_imu().is_some_and(|(_, asked, state)| {
             let moves = !hit && self.chain.is_some_and(Chain::moves);
             !moves
+                && self.chain.is_some_and(Chain::sinks)
                 && asked < falling
                 && within(&state.acceleration, measured)
                 && within(&state.state.angular_velocity, STILL.1)
