@@ -81,7 +81,9 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let w_a = [12.5, 1.44 * math::sqrt_f64(gravity / size), 0.3 / left].into_iter().fold(f64::INFINITY, lesser_f64);
 
     // What the rotors give, with constants that take nothing of it.
-    let scale = [or("scale_least", SCALE[0]), or("scale_greatest", SCALE[1])];
+    // Without rotors there is nothing that delivers another thrust than commanded.
+    let usual = if rotors.is_some() { SCALE } else { [1.0, 1.0] };
+    let scale = [or("scale_least", usual[0]), or("scale_greatest", usual[1])];
     let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
     let bare = Numbers { scale, floor_margin, ..Numbers::NOTHING };
     let free = TorqueBudget::new(&bare.parameters(), vehicle, limits, rotors);
