@@ -23,6 +23,7 @@ use super::actuators::ActuatorParameters;
 use super::budget::{THRUST_LEFT, TorqueBudget};
 use super::parameters::ExtendedParameters;
 use super::position::net_level;
+use super::turning::TURNED;
 use crate::allocation::Rotors;
 use crate::math::{self, greater_f64, lesser_f64};
 use crate::reference::ReferenceBounds;
@@ -295,12 +296,14 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     let spare = 0.5 * (held_beyond - f64::from(p.force_down));
     let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
     // What the net leaves of Omega and alpha_0, with the least |u|.
-    let net = net_level(p, airframe.vehicle.gravity);
+    let net = math::sqrt_f64(2.0) * net_level(p, airframe.vehicle.gravity);
     let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
     let least = gravity - up - vertical - net;
     let jerk = lesser_f64(8.0, 0.5 * lesser_f64(rate, math::sqrt_f64(0.2 * reserve)) * least - 2.0 * k_f * net);
     let turned = (jerk + 2.0 * k_f * net) / least;
-    let snap = 0.8 * ((reserve - 2.0 * turned * turned) * least - 2.0 * k_f * (k_s + k_f) * net);
+    let [of_turn, of_heading] = [f64::from(TURNED) * reserve, (1.0 - f64::from(TURNED)) * reserve];
+    let snap = 0.8 * ((of_turn - turned * turned) * least - 2.0 * k_f * (k_s + k_f) * net);
+    let carried = 0.7 * of_heading / greater_f64(turned, 1e-9);
     // The heading of a tilted frame turns faster by 1 / cos of its tilt.
     let tilt = math::hypot(1.0, (f64::from(p.force_heading) + horizontal) / (gravity - up));
     let single = |value: f64| greater_f64(value, 0.0) as f32;
@@ -310,7 +313,7 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
         vertical_acceleration: single(vertical),
         jerk: single(jerk),
         snap: single(lesser_f64(snap, 40.0)),
-        heading_rate: single(0.5 * yaw_rate / tilt),
+        heading_rate: single(lesser_f64(0.5 * yaw_rate, carried) / tilt),
         heading_second_derivative: single(0.3 * yaw_acceleration / tilt),
     }
 }
