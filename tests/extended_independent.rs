@@ -283,7 +283,7 @@ fn the_net_catches_a_flight_that_never_arrives_when_the_plain_transcription_says
     let mut rng = random::generator(402);
     let mut shown = Shown::default();
     let near = |net: &Net| net.caught || net.acted > PATIENCE - 0.5;
-    let plan = Plan { period: 0.07, ticks: 3_000, thrown: 0.5, compared: near };
+    let plan = Plan { period: 0.035, ticks: 5000, thrown: 0.5, compared: near };
     for _ in 0..3 {
         let configuration = random_configuration(&mut rng);
         fly(&configuration, &plan, &mut rng, &mut shown);

@@ -94,7 +94,7 @@ fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_told() {
     let before = shared.parameters.get(Name::RotorThrustMax);
     let words = said(&shared, Name::RotorThrustMax, 3.2);
     assert_eq!(words[0], "ROT_THR_MAX: refused, cannot be flown");
-    assert!(words[1].starts_with("A1 thrust against force across: needs 9."), "{words:?}");
+    assert!(words[1].starts_with("A1 thrust against force down: needs 9."), "{words:?}");
     assert_eq!(shared.parameters.get(Name::RotorThrustMax), before);
     // What one value does not allow, another may make possible.
     assert_eq!(said(&shared, Name::Mass, 0.49)[0], "MASS: refused, cannot be flown");
@@ -183,7 +183,7 @@ fn booted_with(identity: u32, stored: &[(Name, f32)]) -> (Option<Grounded>, Vec<
 fn stored_values_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
     let stored = [(Name::Mass, 0.46), (Name::RotorThrustMax, 3.2)];
     let (grounded, texts, shared) = booted_with(configuration::IDENTITY, &stored);
-    assert_eq!(grounded, Some(Grounded::Inequality("A1 thrust against force across")));
+    assert_eq!(grounded, Some(Grounded::Inequality("A1 thrust against force down")));
     assert_eq!(texts, ["MASS 0.46: cannot be flown", "ROT_THR_MAX 3.2: cannot be flown"]);
     // It can be mended from the ground.
     assert_eq!(said(&shared, Name::RotorThrustMax, 3.6), ["ROT_THR_MAX: may be flown, from the next boot on"]);

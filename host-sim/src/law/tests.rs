@@ -129,29 +129,3 @@ fn every_number_of_a_line_has_a_name_of_its_own() {
         assert!(names.contains(name), "{name}");
     }
 }
-
-#[test]
-fn a_dt_that_the_files_estimates_do_not_allow_is_refused_with_the_greatest_that_they_do() {
-    let study = Scenario::parse(scenario::STUDY, "study").unwrap();
-    let mut server = LawServer::new(&study).unwrap();
-    let problem = server.answer(&line(&[(1, "0.1")])).unwrap_err();
-    let (said, rest) = problem.split_once(" s, 0.6 over this file's greatest estimates.force_bandwidth of ").unwrap();
-    assert!(rest.ends_with("/s, found 0.1"), "{problem}");
-    let greatest = said.strip_prefix("t = 0: dt: must be at most ").unwrap();
-    server.answer(&line(&[(1, greatest)])).unwrap();
-    let more = (1.0001 * greatest.parse::<f64>().unwrap()).to_string();
-    assert!(server.answer(&line(&[(1, &more)])).is_err());
-}
-
-#[test]
-fn a_line_beyond_all_measure_is_refused_once_and_the_next_is_served() {
-    let of = |length: usize| line(&[]) + &" ".repeat(length - line(&[]).len() - 1) + "\n";
-    let (fits, long) = (of(LONGEST), of(LONGEST + 1));
-    let input = format!("{long}{fits}{}", "0".repeat(5 * LONGEST));
-    let mut output = Vec::new();
-    server().serve(input.as_bytes(), &mut output).unwrap();
-    let text = String::from_utf8(output).unwrap();
-    let lines: Vec<&str> = text.lines().collect();
-    let refused = "error: a line must have at most 65536 bytes, its end included";
-    assert!(lines.len() == 3 && !lines[1].starts_with("error") && lines[0] == refused && lines[2] == refused, "{text}");
-}
