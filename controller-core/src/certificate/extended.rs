@@ -230,7 +230,7 @@ fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueB
     }
     ExtendedBounds {
         rates: [f64::from(p.turn_rate * RATE_BEYOND) * raised, turning * raised],
-        thrust: Interval { least: f64::from(p.floor_margin) / raised, greatest: together * raised },
+        thrust: Interval { least: f64::from(p.floor_margin) / raised, greatest: together },
         torque: Vector3::new(across, across, about) * raised,
         rotors,
     }

@@ -97,10 +97,10 @@ fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_told() {
     assert!(words[1].starts_with("A1 thrust against force down: needs 9."), "{words:?}");
     assert_eq!(shared.parameters.get(Name::RotorThrustMax), before);
     // What one value does not allow, another may make possible.
-    assert_eq!(said(&shared, Name::Mass, 0.49)[0], "MASS: refused, cannot be flown");
-    assert_eq!(said(&shared, Name::ThrustMax, 20.0), ["THR_MAX: may be flown, from the next boot on"]);
-    assert_eq!(said(&shared, Name::Mass, 0.49), ["MASS: may be flown, from the next boot on"]);
-    assert_eq!(said(&shared, Name::ThrustMax, 14.0)[0], "THR_MAX: refused, cannot be flown");
+    assert_eq!(said(&shared, Name::Mass, 0.53)[0], "MASS: refused, cannot be flown");
+    assert_eq!(said(&shared, Name::RotorThrustMax, 4.5), ["ROT_THR_MAX: may be flown, from the next boot on"]);
+    assert_eq!(said(&shared, Name::Mass, 0.53), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(said(&shared, Name::RotorThrustMax, before)[0], "ROT_THR_MAX: refused, cannot be flown");
 }
 
 #[test]
