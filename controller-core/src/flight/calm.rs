@@ -2,14 +2,19 @@
 //!
 //! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An average tells one from
 //! the other: each tick takes a fifth of what is new, so that a change is known to nine tenths after 0.1 s, and of what seems to swing at
-//! 25 Hz one eighth is left. Accelerations shake most: theirs is the average of an average, and one sixtieth is left.
+//! 25 Hz one eighth is left. Accelerations shake most: theirs is the average of an average, and one sixtieth is left. A hit at speed would
+//! stay in it for longer than what was hit is asked about: of an acceleration no more counts than [`COUNTED`].
 
 use crate::estimator::EstimatedState;
+use crate::math;
 use crate::state::State;
 use nalgebra::Vector3;
 
 /// What an average takes of each tick.
 const SHARE: f32 = 0.2;
+
+/// What counts of an acceleration along each axis, m/s^2. One tick of it leaves less in the average than wind may.
+const COUNTED: f32 = 40.0;
 
 /// Averages, and how often the state had jumped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +44,8 @@ impl Calm {
             |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * SHARE);
         let velocity = averaged(state.velocity, last.map(|last| last.velocity));
         let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
-        let once = averaged(acceleration, last.map(|last| last.acceleration.0));
+        let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
+        let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
         let calm = EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps };
         self.0 = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });

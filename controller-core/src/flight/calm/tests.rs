@@ -43,3 +43,11 @@ fn without_a_state_and_at_a_jump_it_begins_anew() {
     assert_eq!(calm.tick(None), None);
     assert_eq!(left(&mut calm, 2.0, 1), (2.0, 2.0));
 }
+
+#[test]
+fn one_tick_of_a_hit_leaves_less_than_wind_may() {
+    let mut calm = Calm::default();
+    assert_eq!(left(&mut calm, 0.0, 0), (0.0, 0.0));
+    let most = [440.0].into_iter().chain([0.0; 50]).map(|motion| left(&mut calm, motion, 0).1).fold(0.0, f32::max);
+    assert!((1.0..3.5).contains(&most), "{most} m/s^2");
+}
