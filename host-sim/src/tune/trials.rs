@@ -60,7 +60,7 @@ pub struct Model {
     pub mass: f64,
     /// What rotors deliver.
     pub thrust: f64,
-    /// Centre of mass, m, body; on small vehicles nearer, by [`OFF_CENTRE_MAX`].
+    /// Centre of mass, m, body; on small vehicles nearer, by `OFF_CENTRE_MAX`.
     pub centre_of_mass: [f64; 2],
     /// Factor on the rotors' lag.
     pub lag: f64,
