@@ -13,7 +13,7 @@
 //! | limits of roll and pitch | 1 | 0 | the lesser of the two |
 //! | limit of yaw | 0 | 1 | it |
 //!
-//! What does not change from tick to tick is taken off beforehand ([`TorqueBudget::room`]): the bias estimate at its level, yaw's feedback, J_33 A,
+//! What does not change from tick to tick is taken off beforehand: the bias estimate at its level, yaw's feedback, J_33 A,
 //! and the gyroscopic torque at Omega and W_max. What is left is the tilt feedback's |P + lambda D| of this tick and J R~^T omega_d', which tilts by
 //! at most J_max |omega'| and leaks J_33 |omega'| sin theta into yaw, theta from b to rho. So the frame may turn with
 //!

@@ -3,7 +3,7 @@
 //! Under the paper's law a point holds natural logarithms: of nine gains, and of the thrust floor as a fraction of its greatest
 //! admissible value; delta and alpha stay as the file has them: they are about noise.
 //!
-//! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`] marks; those of [`ALONG`]
+//! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`] marks; those of `ALONG`
 //! move with them, and all others follow by the formulas, unless the file chose them. So a candidate spends no more than
 //! there is. A factor of one leaves a constant to the formulas as well: the start is the file's law to the bit.
 
