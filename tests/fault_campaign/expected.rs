@@ -129,9 +129,6 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED },
         Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED },
         Failure::RotorWeak => LOST,
-        // It flips, falls, and lands on its legs: of all phases here. The poses of so hard a hit are refused until they are taken for a frame
-        // that has moved, and the vehicle holds where it stands, with its motors on, until it is told to land.
-        Failure::RotorLost if phase == Phase::Holding => LOST,
         Failure::RotorLost => Answer { in_flight: &[(Off, 20.0)], descending: Some(40.0), ..LOST },
         Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
         Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },

@@ -33,6 +33,11 @@ struct Average {
 pub(super) struct Calm(Option<Average>);
 
 impl Calm {
+    /// Whether a state has jumped since the last one.
+    pub fn jumps_to(&self, estimated: &EstimatedState) -> bool {
+        self.0.is_some_and(|last| last.jumps != estimated.jumps)
+    }
+
     /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has jumped.
     pub fn tick(&mut self, estimated: Option<&EstimatedState>) -> Option<EstimatedState> {
         let Some(&EstimatedState { state, acceleration, jumps }) = estimated else {

@@ -75,7 +75,7 @@ worded! {
         /// The vehicle is outside the fence.
         FenceBreached = "Outside the fence: landing",
         /// The vehicle does not follow its reference.
-        TrackingLost = "Far from where it should be for 5 s: landing",
+        TrackingLost = "Far from where it should be: landing",
         /// The rotors do not give what the law asks for.
         Saturated = "Rotors at their limits for 1 s: landing",
         /// Control is late.

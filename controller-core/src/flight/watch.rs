@@ -9,7 +9,8 @@
 //! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not as the ground's, or the
 //!   vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
-//! - *Tracking lost*: far from the reference; or still, well below it: a vehicle that does not get off the ground.
+//! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or thrown out of its place,
+//!   where its frame seems to move just after it was struck: a crash looks like that.
 //!
 //! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the [average](super::calm). A jerk is over
 //! too soon for that.
@@ -47,6 +48,10 @@ const HIT: f32 = 10.0;
 /// is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
+/// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is believed, us.
+const STRUCK: f32 = 25.0;
+const STRUCK_LASTING: u64 = 3_000_000;
+
 /// The force that an IMU may feel beside the rotors', m/s^2: wind, drag, and rotors that are not what they should be.
 const UNEXPECTED: f32 = 4.0;
 
@@ -77,6 +82,8 @@ pub(super) struct Watch {
     doubtful: Lasting,
     turning: Lasting,
     calm: Calm,
+    /// When the vehicle was last struck in guided flight, us.
+    struck: Option<u64>,
     /// Whether something has stopped a vehicle that goes down by the IMU alone.
     jerked: bool,
     /// Whether it has hit something.
@@ -137,6 +144,15 @@ impl Look<'_> {
         stands && flown.reference.position.z + GONE_ON < state.state.position.z
     }
 
+    /// Whether something strikes a vehicle in guided flight, by this very tick's `state`.
+    fn is_struck(&self, state: Option<&EstimatedState>) -> bool {
+        let (true, Some(state), Some(chain), Some(flown)) = (self.mode.is_guided(), state, self.chain, self.flown)
+        else {
+            return false;
+        };
+        !within(&chain.unexpected(flown, state), STRUCK)
+    }
+
     /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only where nothing
     /// but the IMU is left.
     fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
@@ -192,6 +208,7 @@ impl Watch {
     ) -> Seen {
         let Inputs { now, battery, is_late, .. } = *inputs;
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
+        let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
         let calm = self.calm.tick(state);
         let look = Look { mode, state: calm.as_ref(), chain, flown };
         let descends = mode == Mode::Descending;
@@ -205,8 +222,9 @@ impl Watch {
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
         let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
+        let is_thrown = self.is_thrown(&look, state, jumps, now);
         Seen {
-            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now),
+            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now) || is_thrown,
             saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
             landed: left_behind || held_up || stands,
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
@@ -215,6 +233,15 @@ impl Watch {
             imu_doubtful: doubtful || turning,
             overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
         }
+    }
+
+    /// Whether the estimate jumps just after the vehicle was struck.
+    fn is_thrown(&mut self, look: &Look, state: Option<&EstimatedState>, jumps: bool, now: u64) -> bool {
+        if look.is_struck(state) {
+            self.struck = Some(now);
+        }
+        let recently = self.struck.is_some_and(|struck| now.saturating_sub(struck) < STRUCK_LASTING);
+        look.mode.is_guided() && jumps && recently
     }
 
     /// A low battery has been acted on.

@@ -65,7 +65,7 @@ listed! {
         BatteryCritical,
         /// The vehicle is outside the fence.
         FenceBreached,
-        /// The vehicle has been too far from its reference for [`super::TRACKING_LASTING`].
+        /// The vehicle has been too far from its reference for [`super::TRACKING_LASTING`], or was struck and thrown out of its place.
         TrackingLost,
         /// The rotors have not given what the law asked for during [`super::SATURATION_LASTING`].
         Saturated,

@@ -78,6 +78,24 @@ fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
 }
 
 #[test]
+fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is() {
+    let thrown = |mode, struck: f32, later: u64| {
+        let (mut chain, mut watch) = (chain(), Watch::default());
+        let hit = EstimatedState { acceleration: Vector3::new(0.0, 0.0, struck), ..at(0.0) };
+        let moved = EstimatedState { jumps: 1, ..at(0.0) };
+        let mut look = |estimated: &EstimatedState, now: u64| {
+            let _ = chain.fly(&estimated.state);
+            watch.tick(mode, Some(estimated), Some(&chain), FAR, &Inputs { now, ..Inputs::default() }).tracking_lost
+        };
+        assert!(!look(&at(0.0), PERIOD) && !look(&hit, 2 * PERIOD));
+        look(&moved, 2 * PERIOD + later)
+    };
+    assert!(thrown(Mode::Holding, 26.0, STRUCK_LASTING - 1) && !thrown(Mode::Holding, 26.0, STRUCK_LASTING));
+    assert!(thrown(Mode::Flying, -70.0, PERIOD) && !thrown(Mode::Holding, 24.0, PERIOD));
+    assert!(!thrown(Mode::Descending, 26.0, PERIOD));
+}
+
+#[test]
 fn a_vehicle_that_lies_still_has_crashed_and_one_that_turns_has_not() {
     let crashed = |mode, estimated: &EstimatedState| {
         let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_LASTING));
