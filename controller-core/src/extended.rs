@@ -44,6 +44,4 @@ pub mod torque_bias;
 pub mod turning;
 
 #[cfg(test)]
-pub(crate) mod example;
-#[cfg(test)]
 pub(crate) mod tests;

@@ -29,8 +29,6 @@ mod bench;
 mod calm;
 mod chain;
 mod estimate;
-#[cfg(test)]
-pub(crate) mod example;
 mod exchange;
 mod fall;
 mod fence;
@@ -47,6 +45,8 @@ pub mod rules;
 mod settings;
 mod sinking;
 mod spool;
+#[cfg(test)]
+pub(crate) mod tests;
 mod thrust_check;
 mod watch;
 

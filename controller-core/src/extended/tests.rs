@@ -9,6 +9,7 @@ mod budget;
 mod constants;
 mod defaults;
 mod estimates;
+pub(crate) mod example;
 mod heading;
 mod late;
 mod net;

@@ -1,6 +1,6 @@
 use super::judged::JudgedLoops;
 use super::*;
-use crate::flight::example::certified;
+use crate::flight::tests::example::certified;
 
 fn built() -> Configuration {
     certified().configuration().clone()

@@ -1,7 +1,7 @@
 use super::*;
 use crate::allocation::{QuadX, Rotor};
 use crate::certificate::tests::paper;
-use crate::extended::{actuators::ActuatorParameters, example, parameters::Extended};
+use crate::extended::{actuators::ActuatorParameters, parameters::Extended, tests::example};
 use nalgebra::Vector3;
 
 /// Rotors on arms of 0.17 m, for 0.5 kg or so; their least thrust and their greatest, all together, N.

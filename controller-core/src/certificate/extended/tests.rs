@@ -1,9 +1,9 @@
 use super::*;
 use crate::allocation::{QuadX, Rotors};
 use crate::extended::attitude::AttitudeLaw;
-use crate::extended::example::{self, Craft};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::Random;
+use crate::extended::tests::example::{self, Craft};
 use crate::extended::turning::TURNED;
 use crate::vehicle::LimitParameters;
 use crate::vehicle::Limits;

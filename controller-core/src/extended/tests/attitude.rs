@@ -2,8 +2,8 @@
 
 use super::Random;
 use crate::extended::attitude::AttitudeLaw;
-use crate::extended::example;
 use crate::extended::parameters::ExtendedParameters;
+use crate::extended::tests::example;
 use nalgebra::{Quaternion, Vector3};
 
 /// V less its kinetic part, in double precision, at a unit quaternion.

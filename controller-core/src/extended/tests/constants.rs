@@ -2,8 +2,8 @@
 
 use crate::error::{ParameterError, Reason};
 use crate::extended::actuators::ActuatorParameters;
-use crate::extended::example;
 use crate::extended::parameters::{Extended, ExtendedParameters};
+use crate::extended::tests::example;
 
 #[test]
 fn a_lag_longer_than_anything_is_held_for_as_long_as_can_be_counted() {

@@ -1,9 +1,9 @@
 //! What is estimated: force, torque bias, thrust scale.
 
 use super::Random;
-use crate::extended::example;
 use crate::extended::force::ForceObserver;
 use crate::extended::parameters::ExtendedParameters;
+use crate::extended::tests::example;
 use crate::extended::thrust_scale::{ScaleEstimate, ThrustScale};
 use crate::extended::torque_bias::TorqueBias;
 use nalgebra::Vector3;

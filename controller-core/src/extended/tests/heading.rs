@@ -3,9 +3,9 @@
 use crate::attitude_reference::AngularMotion;
 use crate::error::ParameterError;
 use crate::extended::controller::Controller;
-use crate::extended::example::{self, Craft};
 use crate::extended::heading::{self, HeadingLag, advanced, turning};
 use crate::extended::parameters::ExtendedParameters;
+use crate::extended::tests::example::{self, Craft};
 use nalgebra::{Vector2, Vector3};
 
 #[test]

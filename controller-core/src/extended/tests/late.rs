@@ -3,7 +3,7 @@
 use super::Random;
 use crate::extended::actuators::{ActuatorModel, ActuatorParameters, ActuatorState};
 use crate::extended::attitude::{AttitudeLaw, Late};
-use crate::extended::example;
+use crate::extended::tests::example;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 #[test]

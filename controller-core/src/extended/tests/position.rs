@@ -2,9 +2,9 @@
 
 use super::Random;
 use crate::extended::defaults::NOTHING_GIVEN;
-use crate::extended::example::{self, Craft, greatest_accelerations};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::{Filters, PositionFeedback, PositionLaw};
+use crate::extended::tests::example::{self, Craft, greatest_accelerations};
 use crate::heading::Heading;
 use crate::reference::hover::Hover;
 use crate::reference::{Reference, Trajectory};

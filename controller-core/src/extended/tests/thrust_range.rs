@@ -2,7 +2,7 @@
 
 use super::Random;
 use crate::allocation::{QuadX, Rotors};
-use crate::extended::example;
+use crate::extended::tests::example;
 use crate::extended::thrust_range::ThrustRange;
 use nalgebra::Vector3;
 

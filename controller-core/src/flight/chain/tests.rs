@@ -1,6 +1,6 @@
 extern crate std;
 use super::*;
-use crate::flight::example;
+use crate::flight::tests::example;
 use nalgebra::Quaternion;
 use std::boxed::Box;
 

@@ -1,9 +1,9 @@
 //! What only a defect could cause, caused on purpose: refusals that checked inputs rule out.
 
 extern crate std;
-use super::super::example;
 use super::super::refusal::field;
 use super::super::rules::REFUSALS_MAX;
+use super::super::tests::example;
 use super::super::{Pose, Reason, Request, Stamped, Velocity};
 use super::*;
 use crate::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};

@@ -1,6 +1,6 @@
 use super::*;
-use crate::flight::example;
 use crate::flight::reason::{Reason, TEXT_MAX};
+use crate::flight::tests::example;
 extern crate std;
 use std::format;
 use std::string::ToString;

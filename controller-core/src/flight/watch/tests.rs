@@ -3,8 +3,8 @@
 extern crate std;
 use super::*;
 use crate::flight::chain::Memory;
-use crate::flight::example;
 use crate::flight::exchange::PERIOD;
+use crate::flight::tests::example;
 use crate::governor::GovernorLimits;
 use crate::heading::Heading;
 use crate::state::State;

@@ -1,12 +1,12 @@
 //! Vehicles and constants to test with: the Hummingbird, and any plausible one.
 
-use super::actuators::ActuatorParameters;
-use super::budget::{THRUST_LEFT, TorqueBudget};
-use super::defaults::{self, Airframe, Given, NOTHING_GIVEN};
-use super::parameters::{Extended, ExtendedParameters};
-use super::tests::Random;
+use super::Random;
 use crate::allocation::{QuadX, Rotor, Rotors, Spin, greatest_torques};
 use crate::certificate::configuration::{Configuration, ExtendedLaw};
+use crate::extended::actuators::ActuatorParameters;
+use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::defaults::{self, Airframe, Given, NOTHING_GIVEN};
+use crate::extended::parameters::{Extended, ExtendedParameters};
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;

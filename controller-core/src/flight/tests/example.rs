@@ -9,7 +9,7 @@ use crate::vehicle::{LimitParameters, Limits};
 use nalgebra::Vector3;
 
 pub(crate) fn certified() -> Certified {
-    let vehicle = extended::example::vehicle();
+    let vehicle = extended::tests::example::vehicle();
     let torque_max = Vector3::new(1.0, 1.0, 0.2);
     let limits = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, &vehicle).unwrap();
     let gains = GainParameters {
@@ -25,8 +25,8 @@ pub(crate) fn certified() -> Certified {
         delta: 0.02,
         alpha: 0.25,
     };
-    let bounds = ReferenceBounds { horizontal_speed: 5.0, ..extended::example::REFERENCES };
+    let bounds = ReferenceBounds { horizontal_speed: 5.0, ..extended::tests::example::REFERENCES };
     let configuration = Configuration::new(vehicle, limits, Gains::new(gains, &vehicle).unwrap(), bounds);
-    let configuration = configuration.unwrap().with_rotors(extended::example::rotors()).unwrap();
+    let configuration = configuration.unwrap().with_rotors(extended::tests::example::rotors()).unwrap();
     Certified::new(configuration).unwrap()
 }

@@ -1,0 +1,3 @@
+//! What the tests of the parts of a flight share.
+
+pub(crate) mod example;
