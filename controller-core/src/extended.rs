@@ -18,6 +18,7 @@
 //! | [`actuators`] | what the rotors were commanded, through their lag and delay: what the estimates compare with | 10 |
 //! | [`net`] | proven gains, if a flight does not arrive with the own ones | 13 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
+//! | [`learning`] | what the three estimates learn of an interval | 2, 7, 9 |
 //! | [`memory`] | what it remembers from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`constants`], [`parameters`] | all of its constants, declared once, validated | |
@@ -33,6 +34,7 @@ pub mod controller;
 pub mod defaults;
 pub mod force;
 pub mod heading;
+pub mod learning;
 pub mod memory;
 pub mod net;
 pub mod parameters;

@@ -1,7 +1,7 @@
 //! One step of the extended law: state and reference in, wrench out.
 //!
 //! ```text
-//! what happened since the last tick -> force, thrust_scale, torque_bias
+//! what happened since the last tick -> learning (thrust_scale, force, torque_bias)
 //! State, Reference -> position -> attitude_reference -> path_lifting -> attitude (feedback) -> budget -> turning
 //!                  -> heading -> attitude (torque) -> thrust_range -> Wrench
 //! ```
@@ -13,50 +13,26 @@
 
 use super::actuators::ActuatorModel;
 use super::attitude::{AttitudeLaw, Late};
-use super::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
-use super::force::ForceObserver;
+use super::budget::TurningBudget;
 use super::heading::{self, HeadingLag};
+use super::learning::Learning;
 use super::memory::{Averages, Estimates, Last, Memory};
-use super::parameters::Extended;
 use super::position::{Filters, PositionLaw};
 use super::thrust_range::ThrustRange;
-use super::thrust_scale::ThrustScale;
-use super::torque_bias::TorqueBias;
 use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
 use crate::attitude::rotate_back;
 use crate::attitude_reference::DesiredAttitude;
-use crate::certificate::certified::Certified;
-use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters};
+use crate::certificate::configuration::ExtendedLaw;
 use crate::controller::{Command, Diagnostics};
-use crate::error::{InputError, ParameterError, Reason, require, require_positive};
+use crate::error::InputError;
 use crate::math;
 use crate::path_lifting;
-use crate::position::FilterTransition;
 use crate::reference::{DERIVATIVE_RANGE, Reference};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
-
-/// What the estimates learn of an interval with. That is the one since the last tick, and not the one to come, where a period
-/// has been changed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Learning {
-    force: ForceObserver,
-    torque: TorqueBias,
-    scale: ThrustScale,
-}
-
-impl Learning {
-    fn new(parameters: &Extended, vehicle: &Vehicle, period: f32) -> Self {
-        Self {
-            force: ForceObserver::new(parameters, vehicle.gravity, period),
-            torque: TorqueBias::new(parameters, &vehicle.inertia, period),
-            scale: ThrustScale::new(parameters, period),
-        }
-    }
-}
 
 /// The extended law for one vehicle, one set of constants and one period.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +42,6 @@ pub struct Controller {
     law: ExtendedLaw,
     rotors: Option<Rotors>,
     period: f32,
-    per_mass: f32,
     switching_scalar: f32,
     /// A_- - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
@@ -78,9 +53,9 @@ pub struct Controller {
     attitude: AttitudeLaw,
     budget: TurningBudget,
     turning: TurningLimit,
-    /// Of the interval since the last tick.
+    /// For the interval since the last tick.
     learning: Learning,
-    /// Of the one to come, if it is another.
+    /// For the one to come, where its length is another.
     changed: Option<Learning>,
     range: ThrustRange,
     actuators: ActuatorModel,
@@ -90,72 +65,6 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
-    /// (0, 0.1].
-    ///
-    /// # Errors
-    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if it is beyond what they allow, `control.law`
-    /// if the configuration's is another.
-    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
-        let configuration = certified.configuration();
-        let LawParameters::Extended(law) = configuration.law() else {
-            return Err(ParameterError { field: "control.law", reason: Reason::OtherLaw });
-        };
-        Self::of(configuration, law, period)
-    }
-
-    pub(crate) fn of(configuration: &Configuration, law: &ExtendedLaw, period: f32) -> Result<Self, ParameterError> {
-        Self::build(configuration.vehicle(), configuration.limits(), law, configuration.rotors(), period)
-    }
-
-    fn build(
-        vehicle: &Vehicle,
-        limits: &Limits,
-        law: &ExtendedLaw,
-        rotors: Option<&Rotors>,
-        period: f32,
-    ) -> Result<Self, ParameterError> {
-        let ExtendedLaw { parameters, actuators } = law;
-        require_positive(period, "control.period")?;
-        let longest = FilterTransition::LONGEST_PERIOD;
-        require(period <= longest, "control.period", Reason::Above(longest))?;
-        Self::check_period(parameters, period)?;
-        let budget = TorqueBudget::new(parameters, vehicle, limits, rotors);
-        let used = (1.0 - THRUST_LEFT) / f64::from(vehicle.mass);
-        let [each, taken] = budget.ceiling;
-        let greatest = [each, taken, f64::from(limits.thrust_max)].map(|thrust| (thrust * used) as f32);
-        Ok(Self {
-            vehicle: *vehicle,
-            limits: *limits,
-            law: *law,
-            rotors: rotors.cloned(),
-            period,
-            per_mass: 1.0 / vehicle.mass,
-            switching_scalar: path_lifting::switching_scalar(parameters.delta),
-            steepest_fall: parameters.a_down - vehicle.gravity,
-            greatest,
-            late: actuators.lag + actuators.delay,
-            position: PositionLaw::new(parameters, vehicle.gravity, period)?,
-            attitude: AttitudeLaw::new(parameters, &vehicle.inertia),
-            budget: TurningBudget::new(&budget, vehicle.mass, parameters.turn_acceleration),
-            turning: TurningLimit::new(parameters, period),
-            learning: Learning::new(parameters, vehicle, period),
-            changed: None,
-            range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
-            actuators: ActuatorModel::new(actuators, period)?,
-            settling: actuators.settling(period),
-            memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
-        })
-    }
-
-    /// Checks what is defined for ticks that are not too long only: the heading's generator, `period` in s.
-    ///
-    /// # Errors
-    /// Names `gains.c_1` or `gains.c_2`.
-    pub fn check_period(parameters: &Extended, period: f32) -> Result<(), ParameterError> {
-        heading::check(parameters, period)
-    }
-
     /// Filters to zero, path lifted anew, no lag in heading, nothing estimated: how a flight begins.
     pub fn reset(&mut self) {
         let averages = Averages::known(Vector3::zeros(), 1.0);
@@ -165,8 +74,8 @@ impl Controller {
     /// The same with what has been estimated of the vehicle itself kept: how a flight goes on without a pose. The force across is forgotten:
     /// it came from velocities that are no longer known. The one along the vertical is kept: it is what the thrust lacks, mostly.
     pub fn restart(&mut self) {
-        let Averages { torque, scale, force } = self.memory.averages;
-        let vertical = Vector3::new(0.0, 0.0, self.learning.force.believed(&force).z);
+        let vertical = Vector3::new(0.0, 0.0, self.estimates().force.z);
+        let Averages { torque, scale, .. } = self.memory.averages;
         let averages = Averages { force: vertical, ..Averages::known(torque, scale.scale) };
         self.memory = Memory { filters: Filters::at(-vertical), ..Memory::fresh(&self.vehicle, averages) };
     }
@@ -183,16 +92,6 @@ impl Controller {
         self.memory.averages.scale.scale
     }
 
-    /// Changes the time to the next step, s, and from there on.
-    ///
-    /// # Errors
-    /// As [`Self::new`]; the period then stays what it was.
-    pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
-        let rebuilt = Self::build(&self.vehicle, &self.limits, &self.law, self.rotors.as_ref(), period)?;
-        *self = Self { memory: self.memory, learning: self.learning, changed: Some(rebuilt.learning), ..rebuilt };
-        Ok(())
-    }
-
     /// What the law remembers.
     #[must_use]
     pub fn memory(&self) -> &Memory {
@@ -202,9 +101,7 @@ impl Controller {
     /// What has been estimated; force and torque bias as far as they are believed.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
-        let Averages { force, torque, scale } = &self.memory.averages;
-        let Learning { force: observer, torque: bias, .. } = &self.learning;
-        Estimates { force: observer.believed(force), torque: bias.estimate(torque), scale: scale.scale }
+        self.learning.believed(&self.memory.averages)
     }
 
     /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
@@ -227,10 +124,8 @@ impl Controller {
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
-        let learnt = self.learnt(state, &axis);
-        let scale = learnt.scale.scale;
-        let force = self.learning.force.believed(&learnt.force);
-        let bias = self.learning.torque.estimate(&learnt.torque);
+        let learnt = self.learning.learnt(&self.memory, state, &axis);
+        let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
 
         let mut net = self.memory.net;
         let filters = if net.catches() { Filters::at(-force) } else { self.memory.filters };
@@ -331,27 +226,6 @@ impl Controller {
         Ok((Wrench { thrust, torque }, diagnostics))
     }
 
-    /// The last tick, if there is something to be learnt from what happened since.
-    fn last(&self) -> Option<&Last> {
-        self.memory.last.as_ref().filter(|_| self.memory.held == 0)
-    }
-
-    /// The averages with what happened since the last tick.
-    fn learnt(&self, state: &State, axis: &Vector3<f32>) -> Averages {
-        let Memory { averages, acted, .. } = &self.memory;
-        let Some(last) = self.last() else {
-            return *averages;
-        };
-        let Learning { force: observer, torque: bias, scale: learner } = &self.learning;
-        let made = observer.observed([&last.velocity, &state.velocity]);
-        let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
-        let scale = learner.learnt(&averages.scale, &made, &commanded);
-        let force = observer.averaged(&averages.force, &(made - commanded * scale.scale));
-        let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
-        let torque = bias.observed([&last.angular_velocity, &state.angular_velocity], &torque);
-        Averages { force, scale, torque: bias.averaged(&averages.torque, &torque) }
-    }
-
     /// What is under way to the vehicle, for the thrust scale and torque bias at hand.
     fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
         let pending = self.actuators.pending(&self.memory.actuators);
@@ -405,5 +279,6 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
     )
 }
 
+mod building;
 #[cfg(test)]
 mod tests;

@@ -123,18 +123,15 @@ impl Extended {
         }
         let least = Self::FLOOR_MARGIN_LEAST * vehicle.mass * vehicle.gravity;
         require(parameters.floor_margin >= least, "gains.floor_margin", Reason::Below(least))?;
-        require(parameters.a_down < vehicle.gravity, "gains.a_down", Reason::NotBelow(vehicle.gravity))?;
-        require(parameters.force_up < parameters.a_down, "estimates.force_up", Reason::NotBelow(parameters.a_down))?;
-        require(
-            parameters.force_across < parameters.a_across,
-            "estimates.force_across",
-            Reason::NotBelow(parameters.a_across),
-        )?;
-        require(
-            parameters.turn_reserve <= parameters.turn_acceleration,
-            "gains.turn_reserve",
-            Reason::Above(parameters.turn_acceleration),
-        )?;
+        for (value, bound, field) in [
+            (parameters.a_down, vehicle.gravity, "gains.a_down"),
+            (parameters.force_up, parameters.a_down, "estimates.force_up"),
+            (parameters.force_across, parameters.a_across, "estimates.force_across"),
+        ] {
+            require(value < bound, field, Reason::NotBelow(bound))?;
+        }
+        let most = parameters.turn_acceleration;
+        require(parameters.turn_reserve <= most, "gains.turn_reserve", Reason::Above(most))?;
         Ok(Self(parameters))
     }
 }

@@ -1,0 +1,95 @@
+//! How a controller is built: every part's constants from the configuration and the period, and again where the period changes.
+
+use super::Controller;
+use crate::allocation::Rotors;
+use crate::certificate::certified::Certified;
+use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters};
+use crate::error::{ParameterError, Reason};
+use crate::extended::actuators::ActuatorModel;
+use crate::extended::attitude::AttitudeLaw;
+use crate::extended::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
+use crate::extended::heading;
+use crate::extended::learning::Learning;
+use crate::extended::memory::{Averages, Memory};
+use crate::extended::parameters::Extended;
+use crate::extended::position::PositionLaw;
+use crate::extended::thrust_range::ThrustRange;
+use crate::extended::turning::TurningLimit;
+use crate::path_lifting;
+use crate::vehicle::{Limits, Vehicle};
+use nalgebra::Vector3;
+
+impl Controller {
+    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
+    /// (0, 0.1].
+    ///
+    /// # Errors
+    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if the period does not allow
+    /// them, `control.law` if the configuration is for another law.
+    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
+        let configuration = certified.configuration();
+        let LawParameters::Extended(law) = configuration.law() else {
+            return Err(ParameterError { field: "control.law", reason: Reason::OtherLaw });
+        };
+        Self::of(configuration, law, period)
+    }
+
+    pub(crate) fn of(configuration: &Configuration, law: &ExtendedLaw, period: f32) -> Result<Self, ParameterError> {
+        Self::build(configuration.vehicle(), configuration.limits(), law, configuration.rotors(), period)
+    }
+
+    fn build(
+        vehicle: &Vehicle,
+        limits: &Limits,
+        law: &ExtendedLaw,
+        rotors: Option<&Rotors>,
+        period: f32,
+    ) -> Result<Self, ParameterError> {
+        let ExtendedLaw { parameters, actuators } = law;
+        let position = PositionLaw::new(parameters, vehicle.gravity, period)?;
+        Self::check_period(parameters, period)?;
+        let budget = TorqueBudget::new(parameters, vehicle, limits, rotors);
+        let used = (1.0 - THRUST_LEFT) / f64::from(vehicle.mass);
+        let [each, taken] = budget.ceiling;
+        let greatest = [each, taken, f64::from(limits.thrust_max)].map(|thrust| (thrust * used) as f32);
+        Ok(Self {
+            vehicle: *vehicle,
+            limits: *limits,
+            law: *law,
+            rotors: rotors.cloned(),
+            period,
+            switching_scalar: path_lifting::switching_scalar(parameters.delta),
+            steepest_fall: parameters.a_down - vehicle.gravity,
+            greatest,
+            late: actuators.lag + actuators.delay,
+            position,
+            attitude: AttitudeLaw::new(parameters, &vehicle.inertia),
+            budget: TurningBudget::new(&budget, vehicle.mass, parameters.turn_acceleration),
+            turning: TurningLimit::new(parameters, period),
+            learning: Learning::new(parameters, vehicle, period),
+            changed: None,
+            range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
+            actuators: ActuatorModel::new(actuators, period)?,
+            settling: actuators.settling(period),
+            memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
+        })
+    }
+
+    /// Checks that ticks of `period`, s, are short enough for the heading's generator.
+    ///
+    /// # Errors
+    /// Names `gains.c_1` or `gains.c_2`.
+    pub fn check_period(parameters: &Extended, period: f32) -> Result<(), ParameterError> {
+        heading::check(parameters, period)
+    }
+
+    /// Changes the time to the next step, s, and from there on.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the period then stays what it was.
+    pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
+        let rebuilt = Self::build(&self.vehicle, &self.limits, &self.law, self.rotors.as_ref(), period)?;
+        *self = Self { memory: self.memory, learning: self.learning, changed: Some(rebuilt.learning), ..rebuilt };
+        Ok(())
+    }
+}

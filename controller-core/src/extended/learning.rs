@@ -1,0 +1,60 @@
+//! What the estimates learn of an interval: how the vehicle moved, against the wrench that acted. Sections 2, 7 and 9 of
+//! `docs/extended-law.md`.
+//!
+//! The acceleration beside gravity's and the known drag's goes to the thrust scale; what thrust with that scale does not
+//! explain, to the force; and what the torque with that scale does not explain of the rotation, to the torque bias.
+
+use super::force::ForceObserver;
+use super::memory::{Averages, Estimates, Memory};
+use super::parameters::ExtendedParameters;
+use super::thrust_scale::ThrustScale;
+use super::torque_bias::TorqueBias;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+
+/// The constants of the three estimates, for intervals of one length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Learning {
+    pub(super) force: ForceObserver,
+    torque: TorqueBias,
+    scale: ThrustScale,
+    per_mass: f32,
+}
+
+impl Learning {
+    /// For intervals of `period`, s.
+    #[must_use]
+    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, period: f32) -> Self {
+        Self {
+            force: ForceObserver::new(parameters, vehicle.gravity, period),
+            torque: TorqueBias::new(parameters, &vehicle.inertia, period),
+            scale: ThrustScale::new(parameters, period),
+            per_mass: 1.0 / vehicle.mass,
+        }
+    }
+
+    /// The averages in `memory` with what happened since its last tick, if there is something to be learnt from that; `axis` is
+    /// R e3 now.
+    #[must_use]
+    pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
+        let Memory { averages, acted, .. } = memory;
+        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
+            return *averages;
+        };
+        let made = self.force.observed([&last.velocity, &state.velocity]);
+        let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
+        let scale = self.scale.learnt(&averages.scale, &made, &commanded);
+        let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));
+        let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
+        let torque = self.torque.observed([&last.angular_velocity, &state.angular_velocity], &torque);
+        Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque) }
+    }
+
+    /// The averages as far as they are believed.
+    #[must_use]
+    pub fn believed(&self, averages: &Averages) -> Estimates {
+        let Averages { force, torque, scale } = averages;
+        Estimates { force: self.force.believed(force), torque: self.torque.estimate(torque), scale: scale.scale }
+    }
+}
