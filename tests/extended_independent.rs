@@ -9,7 +9,11 @@
 //! rounding. Only the lift jumps, at its switch. Ticks within [`EITHER_SIDE`] of it are compared in what does not depend on it, and counted.
 
 use crate::support::body::Body;
-use crate::support::extended::oracle::{Acting, Answer, Averages, Last, Law, Net, Nudge, PATIENCE, Tick};
+use crate::support::extended::oracle::Law;
+use crate::support::extended::oracle::acting::Acting;
+use crate::support::extended::oracle::estimates::Averages;
+use crate::support::extended::oracle::net::{Net, PATIENCE};
+use crate::support::extended::oracle::tick::{Answer, Last, Nudge, Tick};
 use crate::support::extended::rounding::{ACCELERATION, NAMES, Scales, distances, tolerances};
 use crate::support::extended::{around_the_formulas, law, random_configuration};
 use crate::support::oracle::lifting;

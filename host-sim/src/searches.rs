@@ -72,15 +72,13 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     }
     let directory = arguments.directory(&scenario.name);
     not_a_campaigns(&directory)?;
-    let (known, search) = match wanted {
-        GainsWanted::Of(file) => (Some(Set::read(&scenario, Some(&file)).map_err(|error| error.to_string())?), None),
-        GainsWanted::Searched(effort) => (None, Some((effort, RIVALS))),
-        GainsWanted::BuiltInOr(effort) => match Set::built_in(&scenario) {
-            Some(set) => (Some(set), None),
-            None => (None, Some((effort, FOUND))),
-        },
+    // The gains, or how hard to search for them and in which file to keep them.
+    let known = match wanted {
+        GainsWanted::Of(file) => Ok(Set::read(&scenario, Some(&file)).map_err(|error| error.to_string())?),
+        GainsWanted::Searched(effort) => Err((effort, RIVALS)),
+        GainsWanted::BuiltInOr(effort) => Set::built_in(&scenario).ok_or((effort, FOUND)),
     };
-    none_but(arguments.gains.as_deref(), search.map(|(_, name)| name), &directory)?;
+    none_but(arguments.gains.as_deref(), known.as_ref().err().map(|(_, name)| *name), &directory)?;
     let interrupt = watch()?;
     let failed = |error: CompareError| match error {
         CompareError::NotCertified(_) | CompareError::Interrupted(_) => {
@@ -89,18 +87,17 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         }
         error => Err(error.to_string()),
     };
-    let (set, found) = match (known, search) {
-        (Some(set), _) => (set, None),
-        (None, None) => (Set::default(), None),
-        (None, Some((effort, name))) => {
+    let (set, found) = match known {
+        Ok(set) => (set, None),
+        Err((effort, name)) => {
             // A search takes minutes: whatever is wrong with the rest shows now.
             if let Err(error) = compare::certified(&scenario).map(drop).and_then(|()| compare::writable(&directory)) {
                 return failed(error);
             }
             if name == FOUND {
                 complain(format_args!(
-                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard \
-                     as `tune` searches ours, which may take {}",
+                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
+                     hard as `tune` searches ours, which may take {}",
                     scenario.name,
                     spoken(tuning::expected(&scenario, &effort).as_secs_f64())
                 ));

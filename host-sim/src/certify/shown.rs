@@ -1,6 +1,7 @@
 //! `certify --show`: every constant that is used, as sections of a scenario file.
 
 use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use scenario::vehicle::named;
 use scenario::{Scenario, bounds, extended};
 
 /// The sections that stand for what `scenario` flies with.
@@ -9,21 +10,8 @@ pub fn constants(scenario: &Scenario) -> String {
     let configuration = &scenario.configuration;
     let (law, constants) = match configuration.law() {
         LawParameters::Extended(law) => ("extended", extended::written(&law.parameters)),
-        LawParameters::Paper(PaperLaw { gains: g, thrust_floor }) => {
-            let values = [
-                ("k_p", g.k_p),
-                ("k_v", g.k_v),
-                ("k_f", g.k_f),
-                ("k_s", g.k_s),
-                ("k_theta", g.k_theta),
-                ("k_omega", g.k_omega),
-                ("m_p", g.m_p),
-                ("m_theta", g.m_theta),
-                ("m_omega", g.m_omega),
-                ("delta", g.delta),
-                ("alpha", g.alpha),
-            ];
-            let lines: String = values.iter().map(|(key, value)| format!("{key} = {value:?}\n")).collect();
+        LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
+            let lines: String = named(gains).iter().map(|(key, value)| format!("{key} = {value:?}\n")).collect();
             let floor =
                 thrust_floor.map_or(String::new(), |floor| format!("# with [control] thrust_floor = {floor:?}\n"));
             ("paper", format!("{floor}[gains]\n{lines}"))

@@ -120,20 +120,16 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
         assert!(certified && line(&report, "What limits it: ").ends_with(advice::of_inequality(tightest)), "{report}");
         assert_eq!(report.matches("What ").count(), 1, "{report}");
     }
+    let refused = |text: &str, start: &str, what: &str| {
+        let (text, certified) = report(text);
+        assert!(!certified && line(&text, start).contains(what), "{text}");
+        text
+    };
     let slow = EXTENDED[0].replace("yaw_acceleration = 6.0 ", "yaw_acceleration = 3.0 ");
-    let (text, certified) = report(&slow);
-    assert!(
-        !certified && line(&text, "What it fails in: ").contains("how quickly the heading begins to turn"),
-        "{text}"
-    );
+    let text = refused(&slow, "What it fails in: ", "how quickly the heading begins to turn");
     assert_eq!(text.matches("What ").count(), 1, "{text}");
-    // Too quick for its lag.
-    let late = EXTENDED[0].replace("[gains] ", "[gains]\nk_omega_t = 1.5\n# ");
-    let (text, certified) = report(&late);
-    assert!(
-        !certified && line(&text, "What it fails in: the sampled loop roll").contains("lower gains.k_omega_t"),
-        "{text}"
-    );
+    let too_quick_for_its_lag = EXTENDED[0].replace("[gains] ", "[gains]\nk_omega_t = 1.5\n# ");
+    refused(&too_quick_for_its_lag, "What it fails in: the sampled loop roll", "lower gains.k_omega_t");
 }
 
 #[test]

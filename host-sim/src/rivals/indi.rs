@@ -20,7 +20,7 @@ use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::low_pass::LowPass;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted, paired};
-use super::start::Pace;
+use super::start::{Pace, STIFFNESS_AND_DAMPING};
 use nalgebra::{Vector3, Vector4};
 use std::collections::VecDeque;
 
@@ -40,18 +40,10 @@ pub const NAMES: [&str; 10] = [
 /// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
 /// What each of them follows.
-pub const PACES: [Pace; 10] = [
-    Pace::Position(2),
-    Pace::Position(1),
-    Pace::Position(2),
-    Pace::Position(1),
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-    Pace::Kept,
-    Pace::Kept,
-];
+pub const PACES: [Pace; 10] = {
+    let [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
+    [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, Pace::Kept, Pace::Kept]
+};
 
 /// The law and what it remembers.
 #[derive(Debug, Clone)]

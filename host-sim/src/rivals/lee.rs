@@ -18,7 +18,7 @@
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted, gyroscopic, paired};
-use super::start::Pace;
+use super::start::{Pace, STIFFNESS_AND_DAMPING};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The gains' names.
@@ -27,16 +27,7 @@ pub const NAMES: [&str; 8] =
 /// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
 /// What each of them follows.
-pub const PACES: [Pace; 8] = [
-    Pace::Position(2),
-    Pace::Position(1),
-    Pace::Position(2),
-    Pace::Position(1),
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-];
+pub const PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
 
 /// The law.
 #[derive(Debug, Clone)]

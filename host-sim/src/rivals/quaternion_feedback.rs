@@ -12,7 +12,7 @@
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Seen, Wanted, gyroscopic, paired};
-use super::start::Pace;
+use super::start::{Pace, STIFFNESS_AND_DAMPING};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// The gains' names.
@@ -20,15 +20,10 @@ pub const NAMES: [&str; 7] = ["k_p", "k_v", "level", "k_q_tilt", "k_w_tilt", "k_
 /// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 7] = [5.0, 3.8, 5.0, 150.0, 20.0, 8.0, 5.0];
 /// What each of them follows.
-pub const PACES: [Pace; 7] = [
-    Pace::Position(2),
-    Pace::Position(1),
-    Pace::Kept,
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-    Pace::Attitude(2),
-    Pace::Attitude(1),
-];
+pub const PACES: [Pace; 7] = {
+    let [k_p, k_v, _, _, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
+    [k_p, k_v, Pace::Kept, q_t, w_t, q_y, w_y]
+};
 
 /// The shared part.
 #[derive(Debug, Clone)]

@@ -19,6 +19,18 @@ pub enum Pace {
     Kept,
 }
 
+/// Stiffness and damping of the position across and vertical and of the attitude in tilt and yaw, in 1/s^2 and 1/s.
+pub const STIFFNESS_AND_DAMPING: [Pace; 8] = [
+    Pace::Position(2),
+    Pace::Position(1),
+    Pace::Position(2),
+    Pace::Position(1),
+    Pace::Attitude(2),
+    Pace::Attitude(1),
+    Pace::Attitude(2),
+    Pace::Attitude(1),
+];
+
 /// What START is multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speed {

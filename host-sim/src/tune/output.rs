@@ -6,6 +6,7 @@ use super::chosen::chosen;
 use crate::table::short;
 use controller_core::certificate::configuration::{LawParameters, PaperLaw};
 use controller_core::extended::parameters::ExtendedParameters;
+use scenario::vehicle::named;
 use scenario::{Scenario, bounds};
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
@@ -64,19 +65,8 @@ fn constants(scenario: &Scenario) -> Vec<(&'static str, &'static str, Option<f32
             ExtendedParameters::TABLE.iter().zip(given).map(|(c, value)| (c.section, c.key, value)).collect()
         }
         (LawParameters::Extended(_), None) => Vec::new(),
-        (LawParameters::Paper(PaperLaw { gains: g, thrust_floor }), _) => {
-            let gains = [
-                ("k_p", g.k_p),
-                ("k_v", g.k_v),
-                ("k_f", g.k_f),
-                ("k_s", g.k_s),
-                ("k_theta", g.k_theta),
-                ("k_omega", g.k_omega),
-                ("m_p", g.m_p),
-                ("m_theta", g.m_theta),
-                ("m_omega", g.m_omega),
-            ];
-            let gains = gains.map(|(key, value)| ("gains", key, Some(value)));
+        (LawParameters::Paper(PaperLaw { gains, thrust_floor }), _) => {
+            let gains = named(gains).map(|(key, value)| ("gains", key, Some(value)));
             gains.into_iter().chain([("control", "thrust_floor", *thrust_floor)]).collect()
         }
     }

@@ -86,7 +86,10 @@ impl Space {
         let law = ExtendedLaw { parameters, ..*law };
         let bounds = *self.scenario.configuration.bounds();
         let tuned = Configuration::extended(*airframe.vehicle, *airframe.limits, law, bounds).ok()?;
-        airframe.rotors.map_or(Ok(tuned.clone()), |rotors| tuned.with_rotors(rotors.clone())).ok()
+        match airframe.rotors {
+            Some(rotors) => tuned.with_rotors(rotors.clone()).ok(),
+            None => Some(tuned),
+        }
     }
 
     fn papers(&self, law: &PaperLaw, point: &Point) -> Option<Configuration> {

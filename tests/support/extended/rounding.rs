@@ -4,7 +4,9 @@
 //! law reads or forms moves by one rounding of the magnitudes that were added up to form it, one at a time; the sum of these
 //! movements is what one rounding everywhere can do.
 
-use super::oracle::{Answer, Averages, Last, Law, Nudge, Tick};
+use super::oracle::Law;
+use super::oracle::estimates::Averages;
+use super::oracle::tick::{Answer, Last, Nudge, Tick};
 use crate::support::oracle::rounding::{ROUNDINGS, ULP};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector4};
 

@@ -1,0 +1,58 @@
+//! Section 10: what the actuators still do of what was commanded.
+
+use super::double;
+use nalgebra::Vector4;
+
+/// What was commanded, through delay and lag, in pieces between the moments at which the command that acts changes.
+pub struct Acting {
+    lag: f64,
+    /// In periods.
+    delay: f64,
+    period: f64,
+    wrench: Vector4<f64>,
+    /// The newest last.
+    commands: Vec<Vector4<f64>>,
+}
+
+impl Acting {
+    /// With `wrench` commanded for ever.
+    pub fn new(lag: f32, delay: f32, period: f32, wrench: Vector4<f64>) -> Self {
+        let period = double(period);
+        Self { lag: double(lag), delay: double(delay) / period, period, wrench, commands: vec![wrench; 8] }
+    }
+
+    /// How many whole periods a command is late, and for how long after a tick the one before it still acts, s.
+    fn late(&self) -> (usize, f64) {
+        let whole = self.delay.floor();
+        (whole as usize, (self.delay - whole) * self.period)
+    }
+
+    fn command(&self, age: usize) -> Vector4<f64> {
+        self.commands[self.commands.len() - 1 - age]
+    }
+
+    /// A period with `command` given at its start; the mean over it.
+    pub fn advance(&mut self, command: Vector4<f64>) -> Vector4<f64> {
+        self.commands.push(command);
+        let (whole, late) = self.late();
+        let mut sum = Vector4::zeros();
+        for (duration, command) in [(late, self.command(whole + 1)), (self.period - late, self.command(whole))] {
+            if self.lag > 0.0 {
+                let left = (-duration / self.lag).exp();
+                sum += command * duration + (self.wrench - command) * (self.lag * (1.0 - left));
+                self.wrench = command + (self.wrench - command) * left;
+            } else {
+                sum += command * duration;
+                self.wrench = command;
+            }
+        }
+        sum / self.period
+    }
+
+    /// What it would still deliver if nothing were commanded from now on.
+    pub fn pending(&self) -> Vector4<f64> {
+        let (whole, late) = self.late();
+        let waiting: Vector4<f64> = (0..whole).map(|age| self.command(age) * self.period).sum();
+        self.wrench * self.lag + waiting + self.command(whole) * late
+    }
+}
