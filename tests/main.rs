@@ -5,7 +5,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | the state it is told | [`estimator`], [`estimated_flights`] |
-//! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`] |
+//! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
@@ -46,6 +46,7 @@ mod lockstep;
 mod lyapunov;
 mod paper;
 mod pilots_table;
+mod published;
 mod reality;
 mod recovery;
 mod rotor_lag;
