@@ -1,7 +1,7 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
-//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. `BOOTLOADER=kept` leaves the first
-//! flash to a board's own bootloader.
+//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository.
+//! `BOOTLOADER=kept` leaves the first flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
 mod embed;
@@ -75,7 +75,8 @@ fn link(out: &Path) -> Result<(), String> {
         Ok(other) => return Err(format!("BOOTLOADER: found {other:?}, allowed is \"kept\", or nothing at all")),
     };
     fs::copy(memory, out.join("board-memory.x")).map_err(|error| format!("{memory}: {error}"))?;
-    // The runtime asks every board with interrupts of its own for this file; those of the emulated boards need no names.
+    // The runtime asks every board with interrupts of its own for this file; those of the emulated boards need no
+    // names.
     if env::var_os("CARGO_FEATURE_MPS2").is_some() {
         fs::write(out.join("device.x"), "").map_err(|error| format!("device.x: {error}"))?;
     }

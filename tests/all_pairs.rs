@@ -1,5 +1,6 @@
-//! Every two failures of the fault campaign, in either order, in every phase, at every distance: 27,301 flights, 98 hours of them. It
-//! takes seven minutes of two cores, so it is a program of its own that `cargo test` alone does not run:
+//! Every two failures of the fault campaign, in either order, in every phase, at every distance: 27,301 flights, 98
+//! hours of them. It takes seven minutes of two cores, so it is a program of its own that `cargo test` alone does not
+//! run:
 //!
 //! `cargo test --release -p host-sim --test all_pairs -- --nocapture`
 

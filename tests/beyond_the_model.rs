@@ -1,5 +1,6 @@
-//! The extended law where its vehicle is not what was certified: on the ground, with an emptying battery, with a rotor that
-//! fails in part. `cargo test -p host-sim beyond_the_model -- --nocapture` prints the table that stands in `docs/measured.md`.
+//! The extended law where its vehicle is not what was certified: on the ground, with an emptying battery, with a rotor
+//! that fails in part. `cargo test -p host-sim beyond_the_model -- --nocapture` prints the table that stands in
+//! `docs/measured.md`.
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;

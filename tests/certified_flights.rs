@@ -1,5 +1,5 @@
-//! Certified configurations flown: not one sample of thrust, torque or rotor command beyond its bound. And the other way round: configurations
-//! that the adversary beats do go beyond their limits, so this check can fail.
+//! Certified configurations flown: not one sample of thrust, torque or rotor command beyond its bound. And the other
+//! way round: configurations that the adversary beats do go beyond their limits, so this check can fail.
 
 use crate::support::adversary_search::Domain;
 use crate::support::adversary_search::configurations::{around_table_1, limited};
@@ -108,8 +108,8 @@ fn tightly_limited(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
     }
 }
 
-/// Four rotors whose ranges are what the certificate asks of them, and next to nothing more; none where the torque is too
-/// great for the weight.
+/// Four rotors whose ranges are what the certificate asks of them, and next to nothing more; none where the torque is
+/// too great for the weight.
 fn fitting_rotors(configuration: &Configuration, rng: &mut ChaCha8Rng) -> Option<Rotors> {
     // Where torque takes a rotor below zero, longer levers and more drag make the torque cheaper.
     let mut arm = random::log_uniform(rng, 0.05, 0.5);

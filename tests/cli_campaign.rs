@@ -1,5 +1,5 @@
-//! `campaign` and `merge` as a user meets them: statuses, messages, what a flight flown again shows, and that neither a signal nor a
-//! kill loses what was finished.
+//! `campaign` and `merge` as a user meets them: statuses, messages, what a flight flown again shows, and that neither a
+//! signal nor a kill loses what was finished.
 
 use crate::support::binary;
 use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};

@@ -1,4 +1,5 @@
-//! `compare`, and `campaign --law`, as a user meets them: scenes, files, statuses, gains, and that both fly the same random flights.
+//! `compare`, and `campaign --law`, as a user meets them: scenes, files, statuses, gains, and that both fly the same
+//! random flights.
 
 use crate::support::binary;
 use crate::support::binary::{files, host_sim, status, stderr, stdout, with};

@@ -1,4 +1,5 @@
-//! What cannot be written, what is interrupted, and what would fill the disk. `/dev/full` is a disk that is always full.
+//! What cannot be written, what is interrupted, and what would fill the disk. `/dev/full` is a disk that is always
+//! full.
 
 use crate::support::binary;
 use crate::support::binary::{PAPER, brief, files, host_sim, search, status, stderr, stdout, with};

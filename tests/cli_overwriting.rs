@@ -1,4 +1,5 @@
-//! What was in a directory before: commands write over their own files, remove those of theirs that no longer hold, and touch nothing else.
+//! What was in a directory before: commands write over their own files, remove those of theirs that no longer hold, and
+//! touch nothing else.
 
 use crate::support::binary;
 use crate::support::binary::{brief, files, host_sim, status, stderr, stdout, with};

@@ -1,6 +1,6 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
-//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, and the scenario examples.
-//! The front page stays short.
+//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, and the scenario
+//! examples. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::flight::rules::TABLE;

@@ -1,4 +1,5 @@
-//! Hours of flight, and any time of the clock: `cargo run --release -p host-sim --example endurance -- vehicles/study.toml 24` flies a day.
+//! Hours of flight, and any time of the clock:
+//! `cargo run --release -p host-sim --example endurance -- vehicles/study.toml 24` flies a day.
 
 use controller_core::certificate::certified::Certified;
 use controller_core::flight::Reason;

@@ -1,6 +1,6 @@
-//! The certified Hummingbird, drag and rotor lag on, flown on the estimate: an IMU like a BMI088, poses of 1 mm and 0.3 degrees,
-//! 100 a second, late. `cargo test -p host-sim estimated_flights -- --nocapture` prints the table that stands in
-//! `docs/measured.md`.
+//! The certified Hummingbird, drag and rotor lag on, flown on the estimate: an IMU like a BMI088, poses of 1 mm and 0.3
+//! degrees, 100 a second, late. `cargo test -p host-sim estimated_flights -- --nocapture` prints the table that stands
+//! in `docs/measured.md`.
 
 use crate::support::extended::vehicle;
 use host_sim::flight::{Cause, Flight};

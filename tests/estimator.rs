@@ -1,5 +1,5 @@
-//! The estimator on a BMI088's samples at 1 kHz and a camera system's poses, with noise, biases and their walk: how well it knows
-//! the state, whether it knows how well, and how long it does without poses.
+//! The estimator on a BMI088's samples at 1 kHz and a camera system's poses, with noise, biases and their walk: how
+//! well it knows the state, whether it knows how well, and how long it does without poses.
 //! `cargo test -p host-sim estimator -- --nocapture` prints the figures that stand in `docs/measured.md`.
 
 mod run;
@@ -16,7 +16,8 @@ use truth::{Moment, Truth};
 /// Flights of each kind.
 const RUNS: u64 = 100;
 
-/// Of chi-square with 15 degrees of freedom, the mean of 100: 95 % lie between these (the quantiles of 1500 degrees, over 100).
+/// Of chi-square with 15 degrees of freedom, the mean of 100: 95 % lie between these (the quantiles of 1500 degrees,
+/// over 100).
 const NEES_BAND: (f64, f64) = (13.946, 16.092);
 
 /// Root of the mean square.

@@ -1,9 +1,11 @@
-//! What the extended law commands against what the certificate says it can, driven by an adversary that may do anything but ask for a motion
-//! outside the bounds: it throws the vehicle about, spins it, pushes and turns it harder than any level, lets the rotors deliver what it likes.
+//! What the extended law commands against what the certificate says it can, driven by an adversary that may do anything
+//! but ask for a motion outside the bounds: it throws the vehicle about, spins it, pushes and turns it harder than any
+//! level, lets the rotors deliver what it likes.
 //!
-//! No rotor may be asked for more than it has, or less, not by one unit in the last place; no torque may be beyond its bound. And
-//! the adversary has to come near the ends, or it would be no test of them: in the middle of every flight it looks for the
-//! state that asks for the most. `cargo test -p host-sim extended_adversary -- --nocapture` prints found / bound of every row.
+//! No rotor may be asked for more than it has, or less, not by one unit in the last place; no torque may be beyond its
+//! bound. And the adversary has to come near the ends, or it would be no test of them: in the middle of every flight it
+//! looks for the state that asks for the most. `cargo test -p host-sim extended_adversary -- --nocapture` prints
+//! found / bound of every row.
 
 use crate::certified_flights::Motion;
 use crate::support::body::Body;

@@ -1,12 +1,15 @@
-//! The core's extended law against the independent transcription in `support::extended::oracle`, tick by tick on flights of random
-//! vehicles with random constants: thrown about, pushed by wind, with rotors that deliver what they like, through delay and lag.
+//! The core's extended law against the independent transcription in `support::extended::oracle`, tick by tick on
+//! flights of random vehicles with random constants: thrown about, pushed by wind, with rotors that deliver what they
+//! like, through delay and lag.
 //!
-//! At every tick the oracle starts from what the core remembers and has to come to the same wrench, the same desired motion and
-//! the same memory; what the core hides (what was commanded, the last state, for how long it learns nothing, the net's clock) it keeps
-//! for itself. The tolerances are derived from the rounding of single precision in `support::extended::rounding`.
+//! At every tick the oracle starts from what the core remembers and has to come to the same wrench, the same desired
+//! motion and the same memory; what the core hides (what was commanded, the last state, for how long it learns nothing,
+//! the net's clock) it keeps for itself. The tolerances are derived from the rounding of single precision in
+//! `support::extended::rounding`.
 //!
-//! Every branch of the limiter meets its neighbour continuously, so a tick at an edge is no tie: either side is right to within its
-//! rounding. Only the lift jumps, at its switch. Ticks within [`EITHER_SIDE`] of it are compared in what does not depend on it, and counted.
+//! Every branch of the limiter meets its neighbour continuously, so a tick at an edge is no tie: either side is right
+//! to within its rounding. Only the lift jumps, at its switch. Ticks within [`EITHER_SIDE`] of it are compared in what
+//! does not depend on it, and counted.
 
 use crate::support::body::Body;
 use crate::support::extended::oracle::Law;

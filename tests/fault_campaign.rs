@@ -1,5 +1,6 @@
-//! The fault campaign: every failure in every phase of a flight, alone and in pairs, flown in closed loop by the core's whole pilot on
-//! a simulated vehicle with rotors, air, ground, a noisy IMU and late poses; and each flight held to what must follow.
+//! The fault campaign: every failure in every phase of a flight, alone and in pairs, flown in closed loop by the core's
+//! whole pilot on a simulated vehicle with rotors, air, ground, a noisy IMU and late poses; and each flight held to
+//! what must follow.
 //!
 //! - `failure`: what fails, and how it shows;
 //! - `phase`: where in a flight, and what an operator says to get there;
@@ -35,8 +36,9 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
 
-/// What no failure here leads to: what an operator asks for; and what the certificate and the checks of every input rule out, however the
-/// vehicle fails. `flight/pilot/tests.rs` and `flight/rules/tests.rs` in the core cause that on purpose.
+/// What no failure here leads to: what an operator asks for; and what the certificate and the checks of every input
+/// rule out, however the vehicle fails. `flight/pilot/tests.rs` and `flight/rules/tests.rs` in the core cause that on
+/// purpose.
 const NOT_BY_FAILURES: [Condition; 9] = [
     Condition::Uncertified,
     Condition::MotorTestPermitted,
@@ -88,7 +90,8 @@ fn singles() -> Vec<Case> {
     Phase::ALL.into_iter().flat_map(single).collect()
 }
 
-/// When the second of two failures strikes, in ticks after the first: with it, some hundred milliseconds later, seconds later.
+/// When the second of two failures strikes, in ticks after the first: with it, some hundred milliseconds later, seconds
+/// later.
 const LATER: [Range<u64>; 3] = [0..1, 10..100, 100..500];
 
 /// Every ordered pair of failures in every phase, each as much later as `random` has it within one of [`LATER`].

@@ -1,9 +1,9 @@
 //! 100,000 random and adversarial setpoint streams against the reference governor.
 //!
-//! Each stream has its own bounds, limits, tick rate and start: at rest, or at any velocity, as a flight that regains its
-//! pose starts. Setpoints then come at 50 Hz or as the adversary likes, for a few seconds, and end in a constant one. About one in five
-//! is a path sent with position, velocity and acceleration, inside the bounds or not, over a good link or a bad one, for up to
-//! 40 s. Checked at every tick, in double precision and without allowance:
+//! Each stream has its own bounds, limits, tick rate and start: at rest, or at any velocity, as a flight that regains
+//! its pose starts. Setpoints then come at 50 Hz or as the adversary likes, for a few seconds, and end in a constant
+//! one. About one in five is a path sent with position, velocity and acceleration, inside the bounds or not, over a
+//! good link or a bad one, for up to 40 s. Checked at every tick, in double precision and without allowance:
 //!
 //! - every bound of Omega_r;
 //! - that position to snap and psi to psi'' are one motion: each derivative integrates to the one below. Between ticks
@@ -99,7 +99,8 @@ fn fly(seed: u64, tally: &mut Tally) {
     tally.longest = tally.longest.max(time);
     if ending > 1 {
         let there = governor.tick();
-        // A length unit is a 65,536th part or less of the acceleration bound times period squared: 4e-8 m at the coarsest.
+        // A length unit is a 65,536th part or less of the acceleration bound times period squared: 4e-8 m at the
+        // coarsest.
         let miss = (there.position - target).abs();
         assert!(miss.iter().zip(&target).all(|(miss, to)| *miss <= 4e-8 + f32::EPSILON * to.abs()), "off by {miss}");
         let (sin, cos) = angle.sin_cos();

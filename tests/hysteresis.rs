@@ -1,5 +1,5 @@
-//! The hysteresis of the path lifting does what it is for: attitude noise at a half turn makes the law choose a way round
-//! once, not again and again.
+//! The hysteresis of the path lifting does what it is for: attitude noise at a half turn makes the law choose a way
+//! round once, not again and again.
 
 use crate::support::body::Body;
 use crate::support::random;

@@ -1,5 +1,5 @@
-//! Kinematic facts the law stands on: modified Rodrigues parameters describe the rotation they came from and move as they
-//! should, and omega_d and omega_d' are what differentiating R_d along a flight gives.
+//! Kinematic facts the law stands on: modified Rodrigues parameters describe the rotation they came from and move as
+//! they should, and omega_d and omega_d' are what differentiating R_d along a flight gives.
 
 use crate::support::body::Body;
 use crate::support::oracle::lifting;
@@ -123,12 +123,12 @@ where
 
 /// Flies recoveries at 10 kHz and differentiates what the core says along them, over samples 2 ms apart.
 ///
-/// - R_d and u_f are rounded in single precision, in samples 2 ms apart and in steps 0.1 ms apart: 2^-24 / 2 ms times the
-///   stencil's weights is 2e-4 rad/s for omega_d, some more in the worst of 400,000; omega_d, known to 1e-6 rad/s, gives
-///   1e-3 rad/s^2.
-/// - omega_d' jumps at every tick, because the feedback is held between them, and the difference quotient sees the middle:
-///   half of k_f k_s |ubar'| 0.1 ms / u_z. Here |ubar'| <= sqrt(3) (k_p 8 m/s + k_v 7 m/s^2) = 200 m/s^3 and u_z >= 7 m/s^2,
-///   so 0.06 rad/s^2.
+/// - R_d and u_f are rounded in single precision, in samples 2 ms apart and in steps 0.1 ms apart: 2^-24 / 2 ms times
+///   the stencil's weights is 2e-4 rad/s for omega_d, some more in the worst of 400,000; omega_d, known to 1e-6 rad/s,
+///   gives 1e-3 rad/s^2.
+/// - omega_d' jumps at every tick, because the feedback is held between them, and the difference quotient sees the
+///   middle: half of k_f k_s |ubar'| 0.1 ms / u_z. Here |ubar'| <= sqrt(3) (k_p 8 m/s + k_v 7 m/s^2) = 200 m/s^3 and
+///   u_z >= 7 m/s^2, so 0.06 rad/s^2.
 ///
 /// A wrong or missing term would be of the size of omega_d and omega_d' themselves.
 #[test]

@@ -1,6 +1,7 @@
 //! The firmware's own tasks, minutes of flight in seconds: on a clock that moves only when every task waits.
 //!
-//! Nothing here but the peripherals is a stand-in: control, IMU and both halves of the link are the ones that boards run.
+//! Nothing here but the peripherals is a stand-in: control, IMU and both halves of the link are the ones that boards
+//! run.
 
 mod battery_and_fence;
 mod clock;

@@ -1,8 +1,9 @@
-//! The two Lyapunov functions of the paper's proofs, with derivatives worked out from their gradients and the equations of
-//! motion (nothing simplified by hand, so that a wrong sign or gain in the law shows).
+//! The two Lyapunov functions of the paper's proofs, with derivatives worked out from their gradients and the equations
+//! of motion (nothing simplified by hand, so that a wrong sign or gain in the law shows).
 //!
 //! Continuous time: V_1 falls at any z and filter states ([`position`]); V_2 falls for rate errors up to 20 rad/s, and
-//! across jumps ([`attitude`]). A force error moves z_1 as well as z_2 ([`force_error`]). With inputs held at 100 Hz neither is monotone: [`held_inputs`] prints how often each rises.
+//! across jumps ([`attitude`]). A force error moves z_1 as well as z_2 ([`force_error`]). With inputs held at 100 Hz
+//! neither is monotone: [`held_inputs`] prints how often each rises.
 
 mod attitude;
 mod force_error;

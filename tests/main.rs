@@ -1,5 +1,6 @@
-//! Whole-system tests: everything here runs the crates as they are put together, none of them from the inside. One binary,
-//! because linking it once is quicker than linking each suite; `cargo test -p host-sim hysteresis` runs one suite.
+//! Whole-system tests: everything here runs the crates as they are put together, none of them from the inside. One
+//! binary, because linking it once is quicker than linking each suite; `cargo test -p host-sim hysteresis` runs one
+//! suite.
 //!
 //! | what is tested | suites |
 //! |---|---|

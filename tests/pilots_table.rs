@@ -1,5 +1,5 @@
-//! What a pilot feels of the extended law on the vehicles of `vehicles/`, figure by figure, each with what is required of it.
-//! `cargo test -p host-sim pilots_table -- --nocapture` prints the table that stands in `docs/measured.md`.
+//! What a pilot feels of the extended law on the vehicles of `vehicles/`, figure by figure, each with what is required
+//! of it. `cargo test -p host-sim pilots_table -- --nocapture` prints the table that stands in `docs/measured.md`.
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
@@ -125,8 +125,9 @@ fn figures(subject: &Subject, required: &Required) -> Vec<Figure> {
     figures
 }
 
-/// What differs between the vehicles. The third filter keeps noise from the rotors (0.011 N instead of 0.06) and answers later: a gust moves either vehicle by
-/// 92 mm instead of 75, a circle in wind is off by 12 and 16 mm, and the study is back 0.1 s later.
+/// What differs between the vehicles. The third filter keeps noise from the rotors (0.011 N instead of 0.06) and
+/// answers later: a gust moves either vehicle by 92 mm instead of 75, a circle in wind is off by 12 and 16 mm, and the
+/// study is back 0.1 s later.
 struct Required {
     height: f64,
     recovered: f64,

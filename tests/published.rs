@@ -1,5 +1,5 @@
-//! Vehicles of other projects, from the numbers those publish: `vehicles/published/` gives mass, inertia, rotors and lag,
-//! and not one constant of a law. Each is certified and comes back from upside down.
+//! Vehicles of other projects, from the numbers those publish: `vehicles/published/` gives mass, inertia, rotors and
+//! lag, and not one constant of a law. Each is certified and comes back from upside down.
 //! `cargo test -p host-sim published -- --nocapture` prints the table that stands in `vehicles/README.md`.
 
 use host_sim::course::Course;
@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 /// How near is there, m.
 const NEAR: f64 = 0.1;
 
-/// Greatest height lost from upside down, m, and latest time of return, s: for a vehicle that lifts twice its weight, and
-/// for a weaker one, whose thrust brakes a fall hardly faster than gravity made it.
+/// Greatest height lost from upside down, m, and latest time of return, s: for a vehicle that lifts twice its weight,
+/// and for a weaker one, whose thrust brakes a fall hardly faster than gravity made it.
 const REQUIRED: (f64, f64) = (6.0, 4.0);
 const REQUIRED_WEAK: (f64, f64) = (15.0, 8.0);
 

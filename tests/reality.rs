@@ -72,7 +72,8 @@ fn drag_and_wind_cost_the_papers_law_what_they_should() {
     assert!(lost.settled.is_none() && lost.end_error > 20.0);
 }
 
-/// A velocity from positions alone is late. How slow its filter may be, the sampled loops say, and the vehicle flies so.
+/// A velocity from positions alone is late. How slow its filter may be, the sampled loops say, and the vehicle flies
+/// so.
 #[test]
 fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
     let (head, tail) = EXTENDED.split_once("[drag]").unwrap();

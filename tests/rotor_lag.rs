@@ -1,14 +1,15 @@
-//! The linearised sampled loop against the whole simulation, rotors and six degrees of freedom: what the one predicts, the
-//! other shows. `cargo test -p host-sim rotor_lag -- --nocapture` prints the table.
+//! The linearised sampled loop against the whole simulation, rotors and six degrees of freedom: what the one predicts,
+//! the other shows. `cargo test -p host-sim rotor_lag -- --nocapture` prints the table.
 //!
-//! The paper's vehicle and Table I at 100 Hz, hovering, with rotors so strong that none saturates: only their lag and the
-//! delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.
+//! The paper's vehicle and Table I at 100 Hz, hovering, with rotors so strong that none saturates: only their lag and
+//! the delay matter. Rotors lag in *speed*; their thrust, its square, has the same lag for small motions.
 
 use host_sim::flight::Flight;
 use scenario::sampled_loop::Axis;
 use scenario::{PAPER, Scenario};
 
-/// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3 rad.
+/// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3
+/// rad.
 const START_DEG: f64 = 0.01;
 /// Beyond what a decaying motion can have left of the start, and within the linear range, rad.
 const GROWN: f64 = 2e-3;
@@ -116,8 +117,8 @@ fn the_lag_at_which_the_simulation_turns_is_the_lag_at_which_the_spectral_radius
     let flown = boundary(&|lag| grows(&hovering(lag, 0.0)), 14);
     println!("crossing: predicted at {linear:.3} ms of lag, flown at {flown:.3} ms");
     assert!((linear - 8.5).abs() < 0.2, "{linear}");
-    // The plant applies each step's mid thrust: exact to (step / lag)^2 / 24 = 0.06 %. Half an oscillation more or less in
-    // a stretch moves the peaks' ratio over 10 s by a few per cent, hence the growth per tick by less than 1e-4.
+    // The plant applies each step's mid thrust: exact to (step / lag)^2 / 24 = 0.06 %. Half an oscillation more or less
+    // in a stretch moves the peaks' ratio over 10 s by a few per cent, hence the growth per tick by less than 1e-4.
     assert!((flown / linear - 1.0).abs() < 0.01, "{flown} ms flown, {linear} ms predicted");
 }
 

@@ -1,5 +1,5 @@
-//! A constant force and a wrong thrust scale, both within their levels: the circle is flown as if nothing were the matter.
-//! `cargo test -p host-sim steady_circle -- --nocapture` prints how far it was off.
+//! A constant force and a wrong thrust scale, both within their levels: the circle is flown as if nothing were the
+//! matter. `cargo test -p host-sim steady_circle -- --nocapture` prints how far it was off.
 
 use crate::support::extended::{law, vehicle, with_constants};
 use host_sim::flight::Flight;
@@ -13,11 +13,13 @@ use scenario::timing::Timing;
 const FLOWN: f64 = 60.0;
 const THERE: f64 = 40.0;
 
-/// Greatest distance from the reference from then on, m: in no force or a vertical one, 0.13 mm of which are the circle's own; and in one across, where thrust has to vary all the way round, and what
-/// is held for a tick and lags by 5 ms is late: 0.15 mm for each 5 ms, whatever the scale.
+/// Greatest distance from the reference from then on, m: in no force or a vertical one, 0.13 mm of which are the
+/// circle's own; and in one across, where thrust has to vary all the way round, and what is held for a tick and lags by
+/// 5 ms is late: 0.15 mm for each 5 ms, whatever the scale.
 const OFF: [f64; 2] = [2e-4, 4e-4];
 
-/// The Hummingbird's circle in air that does nothing, with a force per mass and rotors that deliver `thrust_scale` of what is commanded.
+/// The Hummingbird's circle in air that does nothing, with a force per mass and rotors that deliver `thrust_scale` of
+/// what is commanded.
 fn circle(acceleration: Vector3<f64>, thrust_scale: f64) -> Scenario {
     let mut scenario = vehicle("hummingbird");
     let timing = scenario.timing;

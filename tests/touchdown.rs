@@ -1,6 +1,7 @@
-//! Touchdowns on sensors as they are. Legs that are stiff stop a vehicle within a millisecond, at 0.5 m/s with 50 g, of which an accelerometer
-//! shows 24: the estimate is told of the rest by poses, 20 ms late. Here landings begin at two dozen moments, each with its own draw of noise
-//! and biases, because what is left out depends on where between two samples and two poses the ground comes.
+//! Touchdowns on sensors as they are. Legs that are stiff stop a vehicle within a millisecond, at 0.5 m/s with 50 g, of
+//! which an accelerometer shows 24: the estimate is told of the rest by poses, 20 ms late. Here landings begin at two
+//! dozen moments, each with its own draw of noise and biases, because what is left out depends on where between two
+//! samples and two poses the ground comes.
 //!
 //! `cargo test -p host-sim touchdown -- --nocapture` prints the figures that stand in `docs/measured.md`.
 
@@ -21,7 +22,8 @@ const AT_TOUCHDOWN: f64 = 25e-3;
 const OTHERWISE: f64 = 3e-3;
 const KNOWN_AFTER: u64 = 15;
 
-/// How far the estimate was off, m, while it flew, and after the touchdown; and the last tick after it at which that was beyond [`OTHERWISE`].
+/// How far the estimate was off, m, while it flew, and after the touchdown; and the last tick after it at which that
+/// was beyond [`OTHERWISE`].
 fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
     let mut scenario = vehicle(name);
     scenario.reality.estimator = Some(Estimator { seed: draw, ..Estimator::default() });

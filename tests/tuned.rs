@@ -1,5 +1,5 @@
-//! The paper's vehicle and limits with gains of our own: certified for the paper's references, and back from upside down in
-//! a sixth of the height that Table I takes. `-- --nocapture` prints the heights.
+//! The paper's vehicle and limits with gains of our own: certified for the paper's references, and back from upside
+//! down in a sixth of the height that Table I takes. `-- --nocapture` prints the heights.
 
 use controller_core::certificate::Certificate;
 use host_sim::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};

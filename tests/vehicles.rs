@@ -1,5 +1,5 @@
-//! The vehicles of `vehicles/` under the paper's law, with their rotors turning: certified to the last rotor, and flown without one that saturates.
-//! What the boards allocate with clips nothing of what their certificates allow.
+//! The vehicles of `vehicles/` under the paper's law, with their rotors turning: certified to the last rotor, and flown
+//! without one that saturates. What the boards allocate with clips nothing of what their certificates allow.
 //! `cargo test -p host-sim vehicles -- --nocapture` prints what each flight showed.
 
 use crate::support::extended::vehicle;
@@ -26,8 +26,8 @@ const MARGIN: f64 = 0.05;
 /// Greatest position error on the circle, m.
 const CIRCLE_ERROR: f64 = 0.01;
 
-/// Thrust (length of u, mass, share of a rotor, its speed, squared) and its direction (the measured attitude) carry some
-/// sixteen roundings of single precision, half an EPSILON of gravity each, m/s^2.
+/// Thrust (length of u, mass, share of a rotor, its speed, squared) and its direction (the measured attitude) carry
+/// some sixteen roundings of single precision, half an EPSILON of gravity each, m/s^2.
 const ROUNDED_ACCELERATION: f64 = 16.0 * 0.5 * f32::EPSILON as f64 * 9.81;
 
 /// How long a recovery from upside down is watched, s: the slowest is back after a minute.
@@ -98,8 +98,8 @@ fn flown(scenario: &Scenario) -> Shown {
     shown
 }
 
-/// How far a constant acceleration that the law does not know of takes the position, m per m/s^2, once z_1 and z_2 are at
-/// rest: 1 / k_p + 1 / (k_f k_s) + (k_v / k_p) (1 / k_f + 1 / k_s).
+/// How far a constant acceleration that the law does not know of takes the position, m per m/s^2, once z_1 and z_2 are
+/// at rest: 1 / k_p + 1 / (k_f k_s) + (k_v / k_p) (1 / k_f + 1 / k_s).
 fn compliance(scenario: &Scenario) -> f64 {
     let gains = scenario.configuration.gains().unwrap();
     let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
@@ -254,7 +254,8 @@ fn every_allowed_wrench_is_within_the_rotors_and_what_flies_agrees_with_the_mixe
     }
 }
 
-/// Rotors with exactly the range that is asked of them, in single precision: what is clipped is rounding, if anything is.
+/// Rotors with exactly the range that is asked of them, in single precision: what is clipped is rounding, if anything
+/// is.
 #[test]
 fn without_any_margin_clipping_takes_no_more_than_rounding() {
     let mut rng = random::generator(53);

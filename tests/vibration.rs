@@ -1,17 +1,18 @@
 //! Rotors out of balance: the whole pilot flies on an IMU that they shake.
 //!
-//! A rotor with the unbalance U (mass times distance from its axis, kg m) that turns at W pulls its axis with U W^2 around, and is pulled
-//! along it with U W'. So the body, of mass m and inertia J, to which the rotor is fixed at r, swings to and fro, and the IMU at its
-//! origin with it:
+//! A rotor with the unbalance U (mass times distance from its axis, kg m) that turns at W pulls its axis with U W^2
+//! around, and is pulled along it with U W'. So the body, of mass m and inertia J, to which the rotor is fixed at r,
+//! swings to and fro, and the IMU at its origin with it:
 //!
 //! ```text
 //! velocity   U W e(phi - 90 degrees) / m          e(phi): the direction in which the rotor's heavy side points
 //! attitude   -J^-1 r x U e(phi)                   rad, about the body's axes
 //! ```
 //!
-//! What the IMU feels is changed by their derivatives. The motion itself is left as it is: these are micrometres. A frame bends, and turns a
-//! part of every pull upwards. Like the rotors of a real vehicle these turn at slightly different speeds, and their pulls beat.
-//! `cargo test -p host-sim vibration -- --nocapture` prints the table that stands in `docs/measured.md`.
+//! What the IMU feels is changed by their derivatives. The motion itself is left as it is: these are micrometres. A
+//! frame bends, and turns a part of every pull upwards. Like the rotors of a real vehicle these turn at slightly
+//! different speeds, and their pulls beat. `cargo test -p host-sim vibration -- --nocapture` prints the table that
+//! stands in `docs/measured.md`.
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
@@ -154,7 +155,8 @@ struct Flown {
     reasons: Vec<(Reason, u64)>,
 }
 
-/// Takes off, hovers, and comes down: commanded to land, or without poses. Its rotors turn so many times as fast as its model's would.
+/// Takes off, hovers, and comes down: commanded to land, or without poses. Its rotors turn so many times as fast as its
+/// model's would.
 fn fly(name: &str, unbalance: f64, faster: f64, is_blinded: bool) -> Flown {
     let scenario = vehicle(name);
     let certified = Certified::new(scenario.configuration.clone()).unwrap();

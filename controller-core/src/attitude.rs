@@ -11,8 +11,8 @@
 //!
 //! The paper writes the gain inside the saturations *and* in their argument; it acts once. Body frame, N m.
 //!
-//! The tick takes its terms from the error's quaternion (Q_0, Q_v) itself, of length N and s = ±1 times along the lift. With
-//! D = N + s Q_0, theta~ = s Q_v / D and (1 + |theta~|^2) / 4 = N / (2 D), so
+//! The tick takes its terms from the error's quaternion (Q_0, Q_v) itself, of length N and s = ±1 times along the lift.
+//! With D = N + s Q_0, theta~ = s Q_v / D and (1 + |theta~|^2) / 4 = N / (2 D), so
 //!
 //! (1 + |theta~|^2)/4 s_theta = s (k_theta / 2) N / (D sqrt(D^2 + (k_theta / M_theta)^2 |Q_v|^2)) Q_v:
 //!
@@ -85,8 +85,8 @@ impl AttitudeLaw {
         }
     }
 
-    /// Evaluates the law. `error` is a quaternion of any length along R~, `sign` times along the lift; `angular_velocity` is omega in the body frame;
-    /// omega_d and omega_d' are in the axes of the desired body frame.
+    /// Evaluates the law. `error` is a quaternion of any length along R~, `sign` times along the lift;
+    /// `angular_velocity` is omega in the body frame; omega_d and omega_d' are in the axes of the desired body frame.
     #[inline(always)]
     #[must_use]
     pub fn command(

@@ -12,10 +12,10 @@
 //!
 //! R_d = R_z(psi) R_y(theta) R_x(phi),
 //!
-//! and needs no projector: turn u into the heading frame, h = R_z(psi)^T u, and read theta and phi as polar angles, theta of
-//! (h_z, h_x) with radius r, phi of (r, -h_y) with radius n = |u|. Everything is defined while u_z > 0, which
-//! M_p < g - K_a3 guarantees. The sine and cosine of theta and phi are ratios of h's components: no trigonometric function is
-//! called.
+//! and needs no projector: turn u into the heading frame, h = R_z(psi)^T u, and read theta and phi as polar angles,
+//! theta of (h_z, h_x) with radius r, phi of (r, -h_y) with radius n = |u|. Everything is defined while u_z > 0, which
+//! M_p < g - K_a3 guarantees. The sine and cosine of theta and phi are ratios of h's components: no trigonometric
+//! function is called.
 //!
 //! The motion follows from u = n R_d e3. Its derivatives, in the axes of the desired body frame, are
 //!
@@ -28,15 +28,15 @@
 //! omega_y = a / n,   omega_y' = (c - 2 n' omega_y) / n - omega_x omega_z.
 //!
 //! The third is the heading's. The three plane rotations turn by omega_d = (phi' - psi' sin theta, theta' cos phi +
-//! psi' cos theta sin phi, psi' cos theta cos phi - theta' sin phi), so omega_y sin phi + omega_z cos phi = psi' cos theta and
-//! its derivative say, with theta' = omega_y cos phi - omega_z sin phi and phi' = omega_x + psi' sin theta,
+//! psi' cos theta sin phi, psi' cos theta cos phi - theta' sin phi), so omega_y sin phi + omega_z cos phi = psi' cos
+//! theta and its derivative say, with theta' = omega_y cos phi - omega_z sin phi and phi' = omega_x + psi' sin theta,
 //!
 //! omega_z  = (psi' cos theta - omega_y sin phi) / cos phi,
 //! omega_z' = (psi'' cos theta - omega_y' sin phi - theta' (omega_x + 2 psi' sin theta)) / cos phi.
 //!
-//! The law needs R_d for R~ = R_d^T R only. That is three plane rotations of the vehicle's quaternion, each by half an angle
-//! a: along (1 + cos a, sin a) or (sin a, 1 - cos a), whichever does not cancel. The quaternion's length is left as it comes
-//! out: what follows divides by it once.
+//! The law needs R_d for R~ = R_d^T R only. That is three plane rotations of the vehicle's quaternion, each by half an
+//! angle a: along (1 + cos a, sin a) or (sin a, 1 - cos a), whichever does not cancel. The quaternion's length is left
+//! as it comes out: what follows divides by it once.
 
 use crate::heading::Heading;
 use crate::math;
@@ -163,8 +163,8 @@ impl DesiredAttitude {
 
     /// R~ = R_d^T R for the vehicle's `attitude`, as a quaternion of any length and either sign.
     ///
-    /// Turned back by yaw, pitch and roll: the quaternions (c, 0, 0, -s), (c, 0, -s, 0) and (c, -s, 0, 0) in front, where
-    /// (c, s) is along the cosine and sine of half the angle.
+    /// Turned back by yaw, pitch and roll: the quaternions (c, 0, 0, -s), (c, 0, -s, 0) and (c, -s, 0, 0) in front,
+    /// where (c, s) is along the cosine and sine of half the angle.
     #[inline(always)]
     #[must_use]
     pub fn error(&self, attitude: &Quaternion<f32>) -> Quaternion<f32> {

@@ -2,9 +2,9 @@
 //!
 //! From vehicle, limits, law and reference bounds the certificate works out, as required, available and margin:
 //!
-//! - for the paper's law ([`paper`]) the inequalities on thrust and torque of Assumption 1 and Theorems 1 and 2, in two forms,
-//!   always both: *as printed* ([`printed`]) and *sharp* ([`sharp`], derived in `docs/sharp-bound.md`), which decides; and every
-//!   rotor's least and greatest thrust ([`rotors`]);
+//! - for the paper's law ([`paper`]) the inequalities on thrust and torque of Assumption 1 and Theorems 1 and 2, in two
+//!   forms, always both: *as printed* ([`printed`]) and *sharp* ([`sharp`], derived in `docs/sharp-bound.md`), which
+//!   decides; and every rotor's least and greatest thrust ([`rotors`]);
 //! - for the extended law ([`extended`]) those of `docs/extended-law.md`.
 //!
 //! They bound everything reachable after a reset (filters at zero, path lifted anew), and nothing else.

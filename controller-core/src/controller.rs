@@ -4,9 +4,10 @@
 //! State, Reference -> position -> attitude_reference -> path_lifting -> attitude -> Wrench
 //! ```
 //!
-//! T = m |u| (or its [projection](crate::projection) where that is turned on) and tau as in Section V. The step uses the filters as they stand and then advances them by one period, so the
-//! wrench is the one for the instant the state was taken. The only way a step can fail is an input it cannot use; then the
-//! memory is what it was before, and the next good input is served as if the bad one had never come.
+//! T = m |u| (or its [projection](crate::projection) where that is turned on) and tau as in Section V. The step uses
+//! the filters as they stand and then advances them by one period, so the wrench is the one for the instant the state
+//! was taken. The only way a step can fail is an input it cannot use; then the memory is what it was before, and the
+//! next good input is served as if the bad one had never come.
 //!
 //! ```
 //! use controller_core::prelude::*;
@@ -129,8 +130,8 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
-    /// (0, 0.1].
+    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s,
+    /// in (0, 0.1].
     ///
     /// # Errors
     /// Names `control.period` if it is outside, `control.law` if the configuration's is another.
@@ -141,8 +142,8 @@ impl Controller {
         Self::build(*configuration.vehicle(), gains, thrust_floor, period)
     }
 
-    /// A controller for gains that nothing is proven about: for simulation, never for flight. `thrust_floor` in N turns the
-    /// [projection](crate::projection) on.
+    /// A controller for gains that nothing is proven about: for simulation, never for flight. `thrust_floor` in N turns
+    /// the [projection](crate::projection) on.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -218,8 +219,8 @@ impl Controller {
     /// One tick of the law.
     ///
     /// # Errors
-    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or (the
-    /// reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
+    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or
+    /// (the reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {

@@ -1,8 +1,9 @@
 //! The estimator: a state to fly on, from an IMU and from poses that come late, noisy, in gaps and sometimes wrong.
 //!
-//! An error-state Kalman filter on position, velocity, attitude, gyro bias and accelerometer bias. It stands at the *horizon*, the
-//! time of the last pose: a pose is compared with where the vehicle was at the pose's own time, not with where it is. From
-//! there the nominal state is carried on through the IMU's increments, which are kept in a ring, to the present.
+//! An error-state Kalman filter on position, velocity, attitude, gyro bias and accelerometer bias. It stands at the
+//! *horizon*, the time of the last pose: a pose is compared with where the vehicle was at the pose's own time, not with
+//! where it is. From there the nominal state is carried on through the IMU's increments, which are kept in a ring, to
+//! the present.
 //!
 //! ```text
 //!                       ring of IMU increments, 320 ms
@@ -23,8 +24,8 @@
 //!
 //! # How a tick uses it
 //!
-//! The IMU task hands over [`Increment`]s, made by [`crate::imu`] from the samples since the last one; whoever receives poses
-//! hands them over with the time at which they were true, on the vehicle's clock. Once a control tick:
+//! The IMU task hands over [`Increment`]s, made by [`crate::imu`] from the samples since the last one; whoever receives
+//! poses hands them over with the time at which they were true, on the vehicle's clock. Once a control tick:
 //!
 //! ```text
 //! for increment in new increments { estimator.imu(&increment) }
@@ -33,13 +34,13 @@
 //! if let Some(estimated) = estimator.state(now, &newest_rate) { law.step(&estimated.state, …) }
 //! ```
 //!
-//! Without poses the state goes on, by IMU alone, for as long as anybody asks; [`health`](Estimator::health) says for how long
-//! that has been so and how uncertain it has become. A pose stream that jumps, turns or drifts against the IMU is not followed.
-//! Its poses are refused, with the reason, until they are again where coasting may have led; [`Estimator::adopt`] follows it
-//! all the same: on the ground, say.
+//! Without poses the state goes on, by IMU alone, for as long as anybody asks; [`health`](Estimator::health) says for
+//! how long that has been so and how uncertain it has become. A pose stream that jumps, turns or drifts against the IMU
+//! is not followed. Its poses are refused, with the reason, until they are again where coasting may have led;
+//! [`Estimator::adopt`] follows it all the same: on the ground, say.
 //!
-//! Every step is bounded: an increment costs one step of the nominal state; a pose the increments since the last pose, with
-//! covariance, and those since its own time, without.
+//! Every step is bounded: an increment costs one step of the nominal state; a pose the increments since the last pose,
+//! with covariance, and those since its own time, without.
 
 pub mod covariance;
 pub mod filter;
@@ -76,12 +77,13 @@ use nalgebra::{Quaternion, Vector3};
 use present::Present;
 use stream::Stream;
 
-/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that moves. Longer than
-/// anybody flies without a pose that is believed, or a stream of lies would be flown from one move to the next.
+/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that
+/// moves. Longer than anybody flies without a pose that is believed, or a stream of lies would be flown from one move
+/// to the next.
 pub const REBASE_EVERY: u64 = 3_000_000;
 
-/// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it moved:
-/// 10 degrees.
+/// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it
+/// moved: 10 degrees.
 const TILT_COSINE: f32 = 0.984_807_8;
 
 /// Poses that may wait for the IMU.
@@ -90,12 +92,13 @@ const WAITING: usize = 4;
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatedState {
-    /// For the law. The body rate is the one handed over, less its bias; the velocity one that does not shake with the rotors.
+    /// For the law. The body rate is the one handed over, less its bias; the velocity one that does not shake with the
+    /// rotors.
     pub state: State,
     /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
-    /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and [`Estimator::adopt`]. Who
-    /// differentiates the state, begins anew when it changes.
+    /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
+    /// [`Estimator::adopt`]. Who differentiates the state, begins anew when it changes.
     pub jumps: u32,
 }
 
@@ -140,8 +143,9 @@ impl Estimator {
         }
     }
 
-    /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an increment with numbers that cannot be,
-    /// everything begins anew, with the biases as they were: nothing carries a state over what nobody measured.
+    /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an increment with numbers
+    /// that cannot be, everything begins anew, with the biases as they were: nothing carries a state over what nobody
+    /// measured.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
         if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {
@@ -181,8 +185,9 @@ impl Estimator {
         verdict
     }
 
-    /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included. None before the
-    /// first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it, and with a rate that nobody can have measured.
+    /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included.
+    /// None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it, and with a rate that
+    /// nobody can have measured.
     #[must_use]
     pub fn state(&self, now: u64, rate: &Vector3<f32>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
@@ -220,8 +225,8 @@ impl Estimator {
         self.filter.as_ref()
     }
 
-    /// Follows the poses to where they have jumped, turned or drifted, if they have proven to agree among themselves and with the
-    /// IMU; whether there was such a place. The estimate jumps.
+    /// Follows the poses to where they have jumped, turned or drifted, if they have proven to agree among themselves
+    /// and with the IMU; whether there was such a place. The estimate jumps.
     pub fn adopt(&mut self) -> bool {
         match self.candidate.take_if(|candidate| candidate.is_proven()) {
             Some(candidate) if candidate.check_gravity(&self.settings).is_ok() => {

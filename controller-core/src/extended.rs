@@ -1,8 +1,8 @@
 //! The extended law: the paper's structure for vehicles with weak yaw, lagging rotors, a sagging battery and wind.
 //!
-//! What it keeps: a saturated position feedback behind two filters makes a bounded thrust vector; a desired attitude follows
-//! from it in closed form; a saturated attitude law tracks it through the path lifting; every limit is proven before take-off.
-//! What it changes, and where:
+//! What it keeps: a saturated position feedback behind two filters makes a bounded thrust vector; a desired attitude
+//! follows from it in closed form; a saturated attitude law tracks it through the path lifting; every limit is proven
+//! before take-off. What it changes, and where:
 //!
 //! | module | what | derived in `docs/extended-law.md` |
 //! |---|---|---|

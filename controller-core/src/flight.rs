@@ -6,24 +6,26 @@
 //! - `permission`: what arming and turning a motor need; `motor`, `bench`: what is asked of one
 //!   motor while nothing else turns, and done with it;
 //! - [`crate::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
-//! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is well;
+//! - `estimate`: what the [estimator](crate::estimator) makes of a tick's increments and poses, and since when all is
+//!   well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `watch`: whether it follows, has landed, or lies on its back;
 //! - `fall`: whether a vehicle that was stopped in the air lies still again;
 //! - `fence`: how far it may go;
 //! - [`FlightSettings`]: what an operator may choose about failures;
 //! - `thrust_check`: whether the rotors give what they should;
-//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors are brought up, and
-//!   how a vehicle without a pose goes down.
+//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
+//!   are brought up, and how a vehicle without a pose goes down.
 //!
-//! An armed vehicle idles until it is told to take off or to fly setpoints; then its rotors are brought up to the law's thrusts within a
-//! second. A landing ends with the ground found and the motors stopped. A vehicle set down by its setpoint keeps turning its
-//! rotors until it is told to land.
+//! An armed vehicle idles until it is told to take off or to fly setpoints; then its rotors are brought up to the law's
+//! thrusts within a second. A landing ends with the ground found and the motors stopped. A vehicle set down by its
+//! setpoint keeps turning its rotors until it is told to land.
 //!
-//! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator refuses it, says why,
-//! and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for [`rules::LEVELLING_MAX`], then goes down.
-//! Poses that are believed again are flown at once. Where the estimate jumps, because the sender says that its frame has moved or
-//! because a lost body was found again, the reference jumps with it, and brakes from there: the vehicle does not lurch.
+//! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator
+//! refuses it, says why, and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for
+//! [`rules::LEVELLING_MAX`], then goes down. Poses that are believed again are flown at once. Where the estimate jumps,
+//! because the sender says that its frame has moved or because a lost body was found again, the reference jumps with
+//! it, and brakes from there: the vehicle does not lurch.
 
 mod bench;
 mod calm;

@@ -11,9 +11,10 @@
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `averages`: the first two, of the command, in integers: a head that keeps the bounds whatever is asked;
-//! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the bounds;
-//! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time, and where the
-//!   averages begin;
+//! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the
+//!   bounds;
+//! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time,
+//!   and where the averages begin;
 //! - `turning`: the same for the heading;
 //!
 //! What holds by construction: every bound, at every instant, whatever is sent (NaN is refused);
@@ -23,8 +24,9 @@
 //! averages. Arrival from states in motion, and catching up with a stream, are shown by campaign.
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
-//! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and accelerating
-//! as it does; once near, a stream inside the bounds is flown as it is sent. One outside comes out smoothed and smaller.
+//! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and
+//! accelerating as it does; once near, a stream inside the bounds is flown as it is sent. One outside comes out
+//! smoothed and smaller.
 
 mod averages;
 mod braking;
@@ -63,7 +65,8 @@ use stream::Stream;
 use turning::{TurnGoal, Turning};
 use windows::Windows;
 
-/// Where a governor lies: 9 KB, most of them the commands that its averages remember. Its user makes it, where it stays.
+/// Where a governor lies: 9 KB, most of them the commands that its averages remember. Its user makes it, where it
+/// stays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory(Governor);
 
@@ -117,8 +120,8 @@ pub struct Governor {
 }
 
 impl Governor {
-    /// A governor in `memory` for `bounds` that ticks every `period` seconds, at rest at the origin along world x. What was there
-    /// before is lost.
+    /// A governor in `memory` for `bounds` that ticks every `period` seconds, at rest at the origin along world x. What
+    /// was there before is lost.
     ///
     /// # Errors
     /// For a period outside (0, 0.1] s, a limit or bound that is not positive, or bounds too unlike each other for the
@@ -164,8 +167,8 @@ impl Governor {
         Ok(governor)
     }
 
-    /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its rates are
-    /// dropped). Without setpoints it is brought to a smooth stop.
+    /// Starts anew at a steady motion: `position` and `velocity`, pointing along `heading`, which does not turn (its
+    /// rates are dropped). Without setpoints it is brought to a smooth stop.
     ///
     /// # Errors
     /// For numbers not finite or out of range; the governor goes on as before then.

@@ -1,8 +1,8 @@
 //! A heading: a point on the circle with its two derivatives, never a wrapped angle.
 //!
-//! nu = (cos psi, sin psi) in the horizontal world plane; psi' = nu x nu', psi'' = nu x nu'', and conversely
-//! nu' = psi' S nu, nu'' = psi'' S nu - psi'^2 nu with S the quarter turn. The pair (psi', psi'') holds the same facts as
-//! (nu', nu'') with the constraint |nu| = 1 built in, so that is what is stored. No angle is.
+//! nu = (cos psi, sin psi) in the horizontal world plane; psi' = nu x nu', psi'' = nu x nu'', and conversely nu' = psi'
+//! S nu, nu'' = psi'' S nu - psi'^2 nu with S the quarter turn. The pair (psi', psi'') holds the same facts as (nu',
+//! nu'') with the constraint |nu| = 1 built in, so that is what is stored. No angle is.
 
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
@@ -35,10 +35,12 @@ impl Heading {
         Ok(Self { direction: direction / length, rate, acceleration })
     }
 
-    /// From a direction that another heading gave, taken bit for bit: whoever stores headings as numbers gets the same one back.
+    /// From a direction that another heading gave, taken bit for bit: whoever stores headings as numbers gets the same
+    /// one back.
     ///
     /// # Errors
-    /// As [`Self::new`]'s, and [`Reason::NotOnCircle`] already if |direction| differs from one by more than its own rounding.
+    /// As [`Self::new`]'s, and [`Reason::NotOnCircle`] already if |direction| differs from one by more than its own
+    /// rounding.
     pub fn restored(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Result<Self, ParameterError> {
         let heading = Self::new(direction, rate, acceleration)?;
         let apart = direction - heading.direction;

@@ -2,11 +2,12 @@
 //!
 //! Two ways lead out of a sample, because two things are asked of it:
 //!
-//! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered: an integral
-//!   needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz stays what it is, a
-//!   motion to and fro.
-//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant rate. So the
-//!   gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether, and the newest of its values is the law's.
+//! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered:
+//!   an integral needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz
+//!   stays what it is, a motion to and fro.
+//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant
+//!   rate. So the gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether, and the newest
+//!   of its values is the law's.
 //!
 //! | sample at | low-pass | mean over 5 ms | a BMI088's own filter |
 //! |---|---|---|---|
@@ -16,15 +17,16 @@
 //! | 200 Hz | 0.28 | 0 | 0.32 |
 //! | delay | 3.7 ms | none: integrals | 1.9 ms |
 //!
-//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops that.
-//! What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample counts as of that much earlier, and the estimator
-//! carries the state on to the present. The law's body rates stay late, by both filters and up to a sample more: [`ImuParameters::rates_late`] must be
-//! counted in the margins of the sampled loops.
+//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops
+//! that. What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample counts as of that much
+//! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
+//! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
-//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is over sooner than full scale
-//! is a fault, and the sensor's own filter hides its peak, but its increment says so, for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`]
-//! without samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so
-//! does the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is
+//! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment says so, for
+//! the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
+//! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
+//! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
@@ -49,7 +51,8 @@ use watch::{Ranges, Watch};
 /// How long an increment lasts, us, where no sample is missing.
 pub const INCREMENT: u64 = 5_000;
 
-/// The longest time without samples that is bridged, us: an increment then stays below [`crate::estimator::EXTRAPOLATION_MAX`].
+/// The longest time without samples that is bridged, us: an increment then stays below
+/// [`crate::estimator::EXTRAPOLATION_MAX`].
 pub const BRIDGED_MAX: u64 = 15_000;
 
 /// A sensor and how it is to be read.
@@ -65,8 +68,8 @@ pub struct ImuParameters {
     pub gyro_range: f32,
     /// The accelerometer's full scale, m/s^2.
     pub accelerometer_range: f32,
-    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its full scale: its own filter
-    /// flattens a shock.
+    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its full
+    /// scale: its own filter flattens a shock.
     pub leap: f32,
     /// How late a sample is when it can be read, by the sensor's own filters, us.
     pub late: u64,
@@ -75,9 +78,10 @@ pub struct ImuParameters {
 impl ImuParameters {
     /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz that stops the rate of the ticks.
     ///
-    /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order Butterworth
-    /// filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is not told apart. From
-    /// rest to full scale within a millisecond it rises by 0.22 of that from one sample to the next, 52 m/s^2; some is left for shaking.
+    /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order
+    /// Butterworth filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is
+    /// not told apart. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
+    /// next, 52 m/s^2; some is left for shaking.
     pub const BMI088: Self = Self {
         rate: 1000.0,
         cutoff: 60.0,
@@ -91,7 +95,8 @@ impl ImuParameters {
     /// The same as simulators have it, without filters of its own.
     pub const PROMPT: Self = Self { leap: f32::MAX, late: 0, ..Self::BMI088 };
 
-    /// How late the law's body rates are at most, s, as long as they change slowly: by both filters, and by the time to the next sample.
+    /// How late the law's body rates are at most, s, as long as they change slowly: by both filters, and by the time to
+    /// the next sample.
     #[must_use]
     pub fn rates_late(&self) -> f32 {
         self.low_pass().delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
@@ -159,7 +164,8 @@ impl Conditioner {
         })
     }
 
-    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the last.
+    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the
+    /// last.
     ///
     /// # Errors
     /// As [`Self::new`]; nothing has changed then.
@@ -172,8 +178,8 @@ impl Conditioner {
         Ok(())
     }
 
-    /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it shows, but for
-    /// the low-pass.
+    /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it
+    /// shows, but for the low-pass.
     #[must_use]
     pub fn newest(&self) -> Option<Stamped<ImuSample>> {
         self.newest
@@ -184,8 +190,9 @@ impl Conditioner {
         self.calibration = *calibration;
     }
 
-    /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that one answered; the last
-    /// specific force counts on where it did not. A sample that is no number, or not later than the last, is left out.
+    /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that
+    /// one answered; the last specific force counts on where it did not. A sample that is no number, or not later than
+    /// the last, is left out.
     pub fn sample(
         &mut self,
         time: u64,

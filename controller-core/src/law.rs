@@ -65,7 +65,8 @@ impl Law {
         }
     }
 
-    /// For every tick in which nothing can be learnt from the motion: see [`extended::controller::Controller::hold_estimates`].
+    /// For every tick in which nothing can be learnt from the motion: see
+    /// [`extended::controller::Controller::hold_estimates`].
     pub fn hold_estimates(&mut self) {
         match self {
             Self::Paper(_) => {}
@@ -73,7 +74,8 @@ impl Law {
         }
     }
 
-    /// What the rotors deliver of what is commanded, as far as the law knows: they are to be asked for a wrench divided by it.
+    /// What the rotors deliver of what is commanded, as far as the law knows: they are to be asked for a wrench divided
+    /// by it.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {

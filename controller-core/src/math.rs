@@ -1,7 +1,8 @@
 //! The only door to elementary functions: the same bits on every machine.
 //!
 //! Operators stay separate multiplications and additions (no fused operations), so a desktop, a Cortex-M4F and a
-//! Cortex-M7 agree to the last bit. Stated errors are the worst ones found by this module's tests over the ranges given.
+//! Cortex-M7 agree to the last bit. Stated errors are the worst ones found by this module's tests over the ranges
+//! given.
 //!
 //! | function | range | worst absolute error |
 //! |---|---|---|
@@ -70,7 +71,8 @@ pub fn lesser(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
-/// The greater of two numbers; none if one of them is none. For proofs, where what is no number must not pass for the lesser one.
+/// The greater of two numbers; none if one of them is none. For proofs, where what is no number must not pass for the
+/// lesser one.
 #[must_use]
 pub fn greater_f64(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
@@ -88,8 +90,8 @@ pub fn sqrt_of_rounded(x: f64) -> f64 {
     sqrt_f64(greater_f64(x, 0.0))
 }
 
-/// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those in one
-/// instruction each, where the conversion of 64 bits is a call.
+/// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those
+/// in one instruction each, where the conversion of 64 bits is a call.
 #[must_use]
 pub fn single(x: i64) -> f32 {
     let low = x as i32;
@@ -97,7 +99,8 @@ pub fn single(x: i64) -> f32 {
     high as f32 * 4_294_967_296.0 + low as f32
 }
 
-/// The whole part of a number, exactly; beyond 2^61 it saturates, and of what is no number it is zero. In two halves, as [`single`].
+/// The whole part of a number, exactly; beyond 2^61 it saturates, and of what is no number it is zero. In two halves,
+/// as [`single`].
 #[must_use]
 pub fn whole(x: f32) -> i64 {
     const HALF: f32 = 2_147_483_648.0;
@@ -108,8 +111,9 @@ pub fn whole(x: f32) -> i64 {
 
 /// C's `sqrtf` for machines that have no C library, in one instruction.
 ///
-/// Under this name the code generator knows it, and where a call is optimised it puts the instruction itself in the call's
-/// place. Inline assembly could not do that: it takes its operands through core registers, four moves for every root.
+/// Under this name the code generator knows it, and where a call is optimised it puts the instruction itself in the
+/// call's place. Inline assembly could not do that: it takes its operands through core registers, four moves for every
+/// root.
 #[cfg(all(target_arch = "arm", target_abi = "eabihf", target_os = "none"))]
 #[unsafe(no_mangle)]
 #[inline(never)]
@@ -154,10 +158,10 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 /// tanh x for z = x [`TANH_SCALE`], odd, never beyond ±1.
 ///
 /// tanh x = 2 t / (1 + t^2) with t = tanh(x / 2) = A / Q, so that one division serves: 2 A Q / (A^2 + Q^2). A and Q are
-/// polynomials, of degrees 5 and 6, whose quotient leaves that formula 8e-9 from tanh on the whole range (a minimax fit); the
-/// rest of the stated error is rounding. A common factor of A and Q cancels, and the scale of z is the one at which both
-/// leading coefficients are one: two multiplications less. In exact arithmetic 2 A Q <= A^2 + Q^2, and the rounded quotient
-/// was found at most one for every single-precision number, so nothing is clipped.
+/// polynomials, of degrees 5 and 6, whose quotient leaves that formula 8e-9 from tanh on the whole range (a minimax
+/// fit); the rest of the stated error is rounding. A common factor of A and Q cancels, and the scale of z is the one at
+/// which both leading coefficients are one: two multiplications less. In exact arithmetic 2 A Q <= A^2 + Q^2, and the
+/// rounded quotient was found at most one for every single-precision number, so nothing is clipped.
 #[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
     let z2 = z * z;
@@ -172,7 +176,8 @@ pub fn tanh_of_scaled(z: f32) -> f32 {
     }
 }
 
-/// [`tanh_of_scaled`] of three numbers, to the same bits. Mostly none of them is large: one comparison instead of three.
+/// [`tanh_of_scaled`] of three numbers, to the same bits. Mostly none of them is large: one comparison instead of
+/// three.
 #[inline(always)]
 #[must_use]
 pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
@@ -189,7 +194,8 @@ pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
 /// Up to this z^2 the leading coefficients are all that is left of A and Q after rounding, and Q^2 of the denominator.
 const LINEAR: f32 = 5e-11;
 
-/// Where z^2 is beyond this, |x| > 8.69, tanh is within a rounding of one: so it is one, before a quotient rounds beyond.
+/// Where z^2 is beyond this, |x| > 8.69, tanh is within a rounding of one: so it is one, before a quotient rounds
+/// beyond.
 const SATURATION: f32 = 0.034_9;
 
 #[inline(always)]
@@ -201,8 +207,8 @@ fn unsaturated(z: f32) -> f32 {
     2.0 * a * q / (a * a + q * q)
 }
 
-/// [`unsaturated`] to the bit, up to [`LINEAR`]: without the powers of z that fall below the normal numbers, which cost a desktop
-/// a quarter of its time where a vehicle has settled.
+/// [`unsaturated`] to the bit, up to [`LINEAR`]: without the powers of z that fall below the normal numbers, which cost
+/// a desktop a quarter of its time where a vehicle has settled.
 #[inline(always)]
 fn linear(z: f32) -> f32 {
     2.0 * (z * A_0) * Q_0 / (Q_0 * Q_0)

@@ -1,8 +1,8 @@
 //! What is measured, with the time at which it was true.
 //!
-//! A pose is checked once, where it is made: [`Pose::new`] is the only way to one, and its attitude is a unit quaternion from
-//! there on. Increments of the IMU are checked by the estimator, which begins anew where one cannot be. So the law never sees a
-//! number that it could refuse.
+//! A pose is checked once, where it is made: [`Pose::new`] is the only way to one, and its attitude is a unit
+//! quaternion from there on. Increments of the IMU are checked by the estimator, which begins anew where one cannot be.
+//! So the law never sees a number that it could refuse.
 
 use crate::governor::SPEED_RANGE;
 use crate::math;
@@ -89,8 +89,8 @@ impl fmt::Display for PoseError {
 }
 
 impl Pose {
-    /// The pose at `position` (m, world) with this velocity and `attitude` (body to world, scalar first, either sign), which
-    /// is normalised.
+    /// The pose at `position` (m, world) with this velocity and `attitude` (body to world, scalar first, either sign),
+    /// which is normalised.
     ///
     /// # Errors
     /// Says which field is not finite, further than [`DISTANCE_MAX`], faster than [`SPEED_RANGE`], or no rotation.

@@ -9,13 +9,14 @@
 //! | theta~ = phi(m* Phi) | [`Lifted::mrp`] | output of H_l |
 //!
 //! The memory follows the error along its path, so that the lift never flips at a half turn; m* chooses between the
-//! parameters and their shadow with hysteresis delta, so that noise cannot make it chatter. Where both jumps are due the
-//! paper allows either order; the memory goes first, then the sign.
+//! parameters and their shadow with hysteresis delta, so that noise cannot make it chatter. Where both jumps are due
+//! the paper allows either order; the memory goes first, then the sign.
 //!
 //! |phi(q)| = sqrt((1 - q_0) / (1 + q_0)), so |phi(q)| >= 1 + delta is q_0 <= (1 - (1 + delta)^2) / (1 + (1 + delta)^2): a
 //! comparison, and no division comes near the singularity of phi.
 //!
-//! A fresh lift takes q_0 >= 0 and m* = +1; at q_0 = 0 exactly, the lift whose first non-zero vector component is positive.
+//! A fresh lift takes q_0 >= 0 and m* = +1; at q_0 = 0 exactly, the lift whose first non-zero vector component is
+//! positive.
 
 use crate::math;
 use crate::mrp;
@@ -54,10 +55,10 @@ pub fn switching_scalar(delta: f32) -> f32 {
 
 /// Lifts the attitude error `error`, continuing from `lift` or starting afresh.
 ///
-/// `error` is a quaternion along R~, of either sign and any length N: both sides of each comparison are multiplied by N. A
-/// memory that does not jump is at least 1 - alpha along one lift, so that one comparison says both that nothing jumps and
-/// which lift is the nearest. `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the
-/// memory's distance, 1 - q_hat . p.
+/// `error` is a quaternion along R~, of either sign and any length N: both sides of each comparison are multiplied by
+/// N. A memory that does not jump is at least 1 - alpha along one lift, so that one comparison says both that nothing
+/// jumps and which lift is the nearest. `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the memory's
+/// distance, 1 - q_hat . p.
 #[inline(always)]
 #[must_use]
 pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {

@@ -11,15 +11,17 @@
 //! | u' = u_f' + p_d''' | [`CommandRates::jerk_command`] | from the two above |
 //! | u'' = -k_f (u_f' - u_s') + p_d'''' | [`CommandRates::snap_command`] | from the two above |
 //!
-//! All vectors are in the world frame; u in m/s^2. The filters are linear and their input is held between ticks, so they
-//! are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the period.
+//! All vectors are in the world frame; u in m/s^2. The filters are linear and their input is held between ticks, so
+//! they are advanced exactly: each new state is a convex combination of the old ones and the input, whatever the
+//! period.
 //!
-//! The tick does not form z: the argument of tanh, (k_p z_1 + k_v z_2) / M_p, is linear in p~, v~, u_f and u_s, with weights
+//! The tick does not form z: the argument of tanh, (k_p z_1 + k_v z_2) / M_p, is linear in p~, v~, u_f and u_s, with
+//! weights
 //!
 //! k_p / M_p,  (k_p (1/k_f + 1/k_s) + k_v) / M_p,  (k_p / (k_s k_f) + k_v / k_f) / M_p,  k_v / (k_s M_p),
 //!
-//! all multiplied by the scale at which [`math::tanh_of_scaled`] takes its argument. u' and u'' are made of the differences
-//! u_s - u_f and ubar_p - u_s, which the filters' step needs too:
+//! all multiplied by the scale at which [`math::tanh_of_scaled`] takes its argument. u' and u'' are made of the
+//! differences u_s - u_f and ubar_p - u_s, which the filters' step needs too:
 //!
 //! u' = k_f (u_s - u_f) + p_d''',  u'' = k_f k_s (ubar_p - u_s) - k_f^2 (u_s - u_f) + p_d''''.
 
@@ -84,8 +86,8 @@ impl FilterTransition {
         })
     }
 
-    /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all of
-    /// them now, to the last bit.
+    /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all
+    /// of them now, to the last bit.
     #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
         let FilterState { filtered: f, intermediate: s } = state;
@@ -98,10 +100,10 @@ impl FilterTransition {
     /// One axis' u_f and u_s one period later, with its ubar held.
     #[must_use]
     pub fn advance_axis(&self, u_f: f32, u_s: f32, ubar: f32) -> (f32, f32) {
-        // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them would
-        // move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three roundings make
-        // each product at most its weight times (M - x) (1 + 2^-24)^3, and the weights add up to less than that leaves.
-        // So x plus the step is at most M before it is rounded, and hence after.
+        // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them
+        // would move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three
+        // roundings make each product at most its weight times (M - x) (1 + 2^-24)^3, and the weights add up to less
+        // than that leaves. So x plus the step is at most M before it is rounded, and hence after.
         (
             u_f + (self.towards_intermediate * (u_s - u_f) + self.towards_input * (ubar - u_f)),
             u_s + self.intermediate_towards_input * (ubar - u_s),

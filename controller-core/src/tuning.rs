@@ -5,8 +5,9 @@
 //! | [`Figures`] | mass, limits, reference bounds, rotors' thrusts | the same: no loop about hover depends on one of them |
 //! | [`Factors`] | gains, each by one of [`Percent`]'s few factors | others: a build [judges](judged) every choice of factors beforehand |
 //!
-//! A changed configuration is made by the constructors that made the built one, and may fly as any other does: once it is
-//! [`Certified`](crate::certificate::certified::Certified). Moments of inertia, filters and estimates are the build's alone.
+//! A changed configuration is made by the constructors that made the built one, and may fly as any other does: once it
+//! is [`Certified`](crate::certificate::certified::Certified). Moments of inertia, filters and estimates are the
+//! build's alone.
 
 pub mod judged;
 
@@ -132,8 +133,8 @@ impl Factors {
     }
 }
 
-/// Multiplies the tilt's stiffness, w/4 + k_t / (2 sqrt(1 + eta_t^2)), by `factor`. A softer one takes its part of both; a
-/// stiffer one is k_t's alone: |P| < M_all and the rows of yaw have no room for a greater w.
+/// Multiplies the tilt's stiffness, w/4 + k_t / (2 sqrt(1 + eta_t^2)), by `factor`. A softer one takes its part of
+/// both; a stiffer one is k_t's alone: |P| < M_all and the rows of yaw have no room for a greater w.
 fn stiffened(constants: &mut ExtendedParameters, factor: Percent) {
     let ExtendedParameters { w, k_t, eta_t, .. } = constants;
     let scaled = factor.of(*w);

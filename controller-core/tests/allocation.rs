@@ -165,7 +165,8 @@ fn a_wrench_inside_the_polytope_is_delivered_exactly() {
         let (most, on_faces) = (inside.max(), on_faces.data.0[0]);
         println!("{name}: inside {most:.1e}, on faces {on_faces:?}; beyond B+ {beyond_pseudo_inverse} of 50000");
         assert!(most < ROUNDING, "{name}: {inside}");
-        // On a face, roll and pitch stay exact; thrust and yaw pay for rounding, magnified by up to 30 (see `attainable`).
+        // On a face, roll and pitch stay exact; thrust and yaw pay for rounding, magnified by up to 30 (see
+        // `attainable`).
         assert!(on_faces[1] < ROUNDING && on_faces[2] < ROUNDING, "{name}: {on_faces:?}");
         assert!(on_faces[0] < FACE_ROUNDING && on_faces[3] < FACE_ROUNDING, "{name}: {on_faces:?}");
         assert_eq!(beyond_pseudo_inverse > 1000, rotors.len() > 4, "{name}: {beyond_pseudo_inverse}");
@@ -222,7 +223,8 @@ fn choices(from: usize, count: usize) -> impl Iterator<Item = u32> {
     (0..1_u32 << from).filter(move |mask| mask.count_ones() as usize == count)
 }
 
-/// The least and greatest component `objective` of the wrench when its components `rows` are `fixed`: a linear program, solved by visiting every vertex.
+/// The least and greatest component `objective` of the wrench when its components `rows` are `fixed`: a linear program,
+/// solved by visiting every vertex.
 fn extremes<const K: usize>(rotors: &Rotors, rows: [usize; K], fixed: [f64; K], objective: usize) -> (f64, f64) {
     let n = rotors.len();
     let limits: Vec<(f64, f64)> = rotors.iter().map(|r| (f64::from(r.thrust_min), f64::from(r.thrust_max))).collect();

@@ -1,4 +1,5 @@
-//! What arming needs: every reason for refusing it, brought about from outside, and a vehicle that can be armed afterwards.
+//! What arming needs: every reason for refusing it, brought about from outside, and a vehicle that can be armed
+//! afterwards.
 
 mod flight;
 

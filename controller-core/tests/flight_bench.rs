@@ -1,4 +1,5 @@
-//! One motor on the bench: turned slowly, or its controller told something, while nothing else turns; and what is refused there.
+//! One motor on the bench: turned slowly, or its controller told something, while nothing else turns; and what is
+//! refused there.
 
 mod flight;
 
@@ -32,7 +33,8 @@ fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
     }
 }
 
-/// What the motors are told, tick by tick, when a controller's setting is changed; the stop command where it is left out.
+/// What the motors are told, tick by tick, when a controller's setting is changed; the stop command where it is left
+/// out.
 fn words(setting: Setting) -> Vec<(usize, Word)> {
     let mut flight = Flight::settled();
     flight.inputs.request = Some(Request::MotorSetting(MotorSetting { rotor: 2, setting }));

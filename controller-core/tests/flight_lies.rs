@@ -1,6 +1,6 @@
-//! Poses that lie in flight. Whatever the lie, the vehicle does what it does in silence: it goes on by IMU for a second, levels for
-//! another, and stops, and says why the poses are not believed. Where the sender says that its frame has moved, or where a lost
-//! body is found again, it flies on and does not lurch.
+//! Poses that lie in flight. Whatever the lie, the vehicle does what it does in silence: it goes on by IMU for a
+//! second, levels for another, and stops, and says why the poses are not believed. Where the sender says that its frame
+//! has moved, or where a lost body is found again, it flies on and does not lurch.
 
 mod flight;
 
@@ -31,8 +31,9 @@ fn hovering() -> Flight {
     flight
 }
 
-/// A flight from the tick on in which poses begin to be what `told` says: it ends as in silence, up to `late` ticks later, and
-/// the poses are refused for one of `reasons` when it levels. Returns how far by then the law's state was from the truth, m.
+/// A flight from the tick on in which poses begin to be what `told` says: it ends as in silence, up to `late` ticks
+/// later, and the poses are refused for one of `reasons` when it levels. Returns how far by then the law's state was
+/// from the truth, m.
 fn ends_as_in_silence(mut flight: Flight, told: Told, late: u64, reasons: &[Rejected]) -> f64 {
     flight.told = told;
     let silence = COASTING_MAX / PERIOD + 1;
@@ -126,8 +127,8 @@ fn poses_of_another_time_are_none() {
     lie(old, 0, &[Rejected::TooOld, Rejected::Repeated]);
 }
 
-/// How long it takes to hold once the truth is told again, after three seconds of which in the first `lied` ticks the poses are
-/// what `told` says, and none come afterwards; none where it does not hold within ten seconds.
+/// How long it takes to hold once the truth is told again, after three seconds of which in the first `lied` ticks the
+/// poses are what `told` says, and none come afterwards; none where it does not hold within ten seconds.
 fn held_again(told: Told, lied: u64) -> Option<u64> {
     let mut flight = hovering();
     flight.told = told;
@@ -177,7 +178,8 @@ fn poses_whose_sender_had_lost_track_or_time_are_believed_again() {
     }
 }
 
-/// The truth in a frame that has moved by `offset` and turned by `turn` (rad, about the vertical), which its counter says.
+/// The truth in a frame that has moved by `offset` and turned by `turn` (rad, about the vertical), which its counter
+/// says.
 fn moved(offset: Vector3<f64>, turn: f64, resets: u8) -> Told {
     Box::new(move |body, time| {
         let turn = Vector3::new(0.0, 0.0, turn);
@@ -250,7 +252,8 @@ fn a_frame_that_moves_under_way_makes_the_vehicle_brake_and_hold() {
         assert!(flight.tilt() < 0.02);
         fastest - fast
     });
-    // It was gathering speed, at 2 m/s^2: what it leans takes a moment to go, and as long whichever way the frame turns.
+    // It was gathering speed, at 2 m/s^2: what it leans takes a moment to go, and as long whichever way the frame
+    // turns.
     assert!(straight < 0.6 && (turned - straight).abs() < 0.02, "{straight} m/s, {turned} m/s");
 }
 

@@ -1,4 +1,5 @@
-//! Requests and setpoints that are refused, and configurations that never arm. What arming needs is in `flight_arming.rs`.
+//! Requests and setpoints that are refused, and configurations that never arm. What arming needs is in
+//! `flight_arming.rs`.
 
 mod flight;
 

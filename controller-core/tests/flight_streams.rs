@@ -101,8 +101,8 @@ fn arrival() -> impl Strategy<Value = Arrival> {
         })
 }
 
-/// A stretch of arrivals, of the truth or of anything, with or without poses, IMU or a ground station. Half of them begin
-/// with as much rest as arming takes.
+/// A stretch of arrivals, of the truth or of anything, with or without poses, IMU or a ground station. Half of them
+/// begin with as much rest as arming takes.
 fn stretch() -> impl Strategy<Value = Vec<Arrival>> {
     (prop::collection::vec(arrival(), 1..350), 0..8_u8, any::<bool>()).prop_map(|(mut arrivals, kind, rested)| {
         for arrival in &mut arrivals {

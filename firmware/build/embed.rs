@@ -1,10 +1,10 @@
 //! From a scenario to Rust source: the vehicle, gains, rotors and reference bounds that the firmware flies.
 //!
-//! With it goes which factors on its gains have sampled loops with margin, judged here because no board can, and a number by which parameters
-//! that were tuned on one configuration know that they are on another.
+//! With it goes which factors on its gains have sampled loops with margin, judged here because no board can, and a
+//! number by which parameters that were tuned on one configuration know that they are on another.
 //!
-//! The numbers are written with all their digits and read back bit for bit. Nothing that is worked out from them is carried over:
-//! the board works out the rotors' inverse and the certificate again at boot.
+//! The numbers are written with all their digits and read back bit for bit. Nothing that is worked out from them is
+//! carried over: the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::certificate::configuration::{ExtendedLaw, LawParameters, PaperLaw};
@@ -22,8 +22,8 @@ pub struct Embedded {
 
 /// What the scenario in `text`, of the file `name`, becomes.
 ///
-/// What the firmware cannot fly is refused ([`board`]). One that is not certified is built all the same, with a warning. The board itself refuses to arm with it: it boots,
-/// answers, tests its motors, and names the inequality.
+/// What the firmware cannot fly is refused ([`board`]). One that is not certified is built all the same, with a
+/// warning. The board itself refuses to arm with it: it boots, answers, tests its motors, and names the inequality.
 ///
 /// # Errors
 /// One line: the file, the field or the loop, and what is wrong.

@@ -1,9 +1,9 @@
 //! The BMI088 inertial measurement unit over SPI: power-up, data-ready, one sample at a time.
 //!
 //! The package holds two devices that share a bus and little else: a gyroscope and an accelerometer, each with a chip
-//! select of its own. The gyroscope sets the pace: its data-ready pin INT3 rises 1000 times a second, and each rise is one
-//! sample of both; `crate::pace` reads by the clock where it does not. Registers, waits and scales are those of the BMI088
-//! data sheet.
+//! select of its own. The gyroscope sets the pace: its data-ready pin INT3 rises 1000 times a second, and each rise is
+//! one sample of both; `crate::pace` reads by the clock where it does not. Registers, waits and scales are those of the
+//! BMI088 data sheet.
 //!
 //! | what | setting |
 //! |---|---|
@@ -11,10 +11,11 @@
 //! | accelerometer | 1600 Hz, 145 Hz bandwidth (fourfold oversampling), +-24 g in 16 bits |
 //! | bus | SPI mode 0 or 3, at most 10 MHz |
 //!
-//! Every sample asks both devices who they are before it believes their numbers: a bus stuck high or low would otherwise
-//! read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a [`Fault`]; an
-//! accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a device is powered up anew. The
-//! gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a step between two samples, they do not.
+//! Every sample asks both devices who they are before it believes their numbers: a bus stuck high or low would
+//! otherwise read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
+//! [`Fault`]; an accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a
+//! device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a
+//! step between two samples, they do not.
 
 use crate::hardware::{Clock, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
@@ -48,7 +49,8 @@ const ACCESS_WITHIN: u64 = 500;
 /// The longest a power-up may take, us: 75 ms if every setting sticks at once.
 const POWER_UP_WITHIN: u64 = 150_000;
 
-/// How long an accelerometer that did not power up is left alone, us: on a bus that hangs, asking costs the gyroscope time.
+/// How long an accelerometer that did not power up is left alone, us: on a bus that hangs, asking costs the gyroscope
+/// time.
 const LEFT_ALONE: u64 = 100_000;
 
 /// Both devices hold their identity here.
@@ -71,9 +73,9 @@ const SOFT_RESET: u8 = 0xB6;
 const ACCELEROMETER_RESET: u8 = 0x7E;
 const GYROSCOPE_RESET: u8 = 0x14;
 
-/// The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A
-/// reset takes it 1 ms and is given 2. Settings: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it measures), ACC_CONF,
-/// ACC_RANGE.
+/// The accelerometer wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it
+/// to SPI. A reset takes it 1 ms and is given 2. Settings: ACC_PWR_CONF active, ACC_PWR_CTRL on (50 ms until it
+/// measures), ACC_CONF, ACC_RANGE.
 const ACCELEROMETER: Device = Device {
     id: 0x1E,
     data: 0x12,
@@ -90,9 +92,9 @@ const ACCELEROMETER: Device = Device {
     ],
 };
 
-/// A reset takes the gyroscope 30 ms, and is given 35. Settings: GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and active high (INT4
-/// left as it was), data-ready to INT3, data-ready on. The top bit of GYRO_BANDWIDTH always reads as one, so it is written
-/// as one.
+/// A reset takes the gyroscope 30 ms, and is given 35. Settings: GYRO_RANGE, GYRO_BANDWIDTH, INT3 as push-pull and
+/// active high (INT4 left as it was), data-ready to INT3, data-ready on. The top bit of GYRO_BANDWIDTH always reads as
+/// one, so it is written as one.
 const GYROSCOPE: Device = Device {
     id: 0x0F,
     data: 0x02,
@@ -184,15 +186,16 @@ pub struct Bmi088<B, S, P, C> {
 }
 
 impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
-    /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope, high.
+    /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope,
+    /// high.
     pub fn new(bus: B, selects: [S; 2], data_ready: P, clock: C, mounting: Mounting) -> Self {
         let time = clock.now() + POWER_TAKES;
         let (accelerometer, gyroscope) = (Part::new(&ACCELEROMETER, time), Part::new(&GYROSCOPE, time));
         Self { bus, selects, pace: Pace::new(data_ready, PERIOD), clock, mounting, accelerometer, gyroscope }
     }
 
-    /// Both devices at once, because most of it is waiting; the gyroscope's faults end it, and the accelerometer's only its own.
-    /// An accelerometer that is being left alone is not waited for.
+    /// Both devices at once, because most of it is waiting; the gyroscope's faults end it, and the accelerometer's only
+    /// its own. An accelerometer that is being left alone is not waited for.
     async fn power_up(&mut self) -> Result<(), Fault> {
         let now = self.clock.now();
         let end = now + POWER_UP_WITHIN;
@@ -242,7 +245,8 @@ impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
         gyroscope.judge(measured, clock.now() + POWER_TAKES)
     }
 
-    /// The accelerations, in counts; none from an accelerometer that does not answer, which is powered up by a step instead.
+    /// The accelerations, in counts; none from an accelerometer that does not answer, which is powered up by a step
+    /// instead.
     async fn accelerations(&mut self) -> Option<Vector3<f32>> {
         if !self.accelerometer.power_up.is_done(self.clock.now()) {
             // It says by itself when to go on.

@@ -1,7 +1,9 @@
-//! The BMI270 inertial measurement unit over SPI: power-up with its configuration file, data-ready, one sample at a time.
+//! The BMI270 inertial measurement unit over SPI: power-up with its configuration file, data-ready, one sample at a
+//! time.
 //!
-//! One device with gyroscope and accelerometer, which measures only after a file was written into it ([`CONFIGURATION`]). Its
-//! data-ready pin INT1 rises 800 times a second: it has no 1000 Hz. Registers, waits and scales are those of the BMI270 data sheet.
+//! One device with gyroscope and accelerometer, which measures only after a file was written into it
+//! ([`CONFIGURATION`]). Its data-ready pin INT1 rises 800 times a second: it has no 1000 Hz. Registers, waits and
+//! scales are those of the BMI270 data sheet.
 //!
 //! | what | setting |
 //! |---|---|
@@ -9,11 +11,11 @@
 //! | accelerometer | 1600 Hz, fourfold oversampling (188 Hz), +-16 g in 16 bits |
 //! | bus | SPI mode 0 or 3, at most 10 MHz; a byte that means nothing comes before each answer |
 //!
-//! The gyroscope's x feels its z a little; the device knows how much, and the data sheet leaves the correction to the reader:
-//! omega_x = x - zx z / 512, zx being a signed number of 7 bits.
+//! The gyroscope's x feels its z a little; the device knows how much, and the data sheet leaves the correction to the
+//! reader: omega_x = x - zx z / 512, zx being a signed number of 7 bits.
 //!
-//! Every sample asks the device who it is. Every wait is bounded. What does not come in time is a [`Fault`]; after [`RESTART_AFTER`]
-//! in a row the next call powers the sensor up anew, which takes about 90 ms.
+//! Every sample asks the device who it is. Every wait is bounded. What does not come in time is a [`Fault`]; after
+//! [`RESTART_AFTER`] in a row the next call powers the sensor up anew, which takes about 90 ms.
 
 use crate::hardware::{Clock, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
@@ -28,8 +30,9 @@ use embedded_hal_async::spi::SpiBus;
 #[cfg(test)]
 mod tests;
 
-/// What the device runs: Bosch Sensortec's own, its smallest ("maximum FIFO"), which measures and recognises no gestures. Under
-/// the BSD-3-Clause licence, copyright (c) 2023 Bosch Sensortec GmbH: `firmware/licences/BMI270_SensorAPI.txt`.
+/// What the device runs: Bosch Sensortec's own, its smallest ("maximum FIFO"), which measures and recognises no
+/// gestures. Under the BSD-3-Clause licence, copyright (c) 2023 Bosch Sensortec GmbH:
+/// `firmware/licences/BMI270_SensorAPI.txt`.
 pub const CONFIGURATION: &[u8; 328] = include_bytes!("bmi270/configuration.bin");
 
 /// rad/s in one count: 2000 deg/s in 2^15 counts.
@@ -38,8 +41,8 @@ pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0
 /// m/s^2 in one count: 16 standard gravities in 2^15 counts.
 pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
 
-/// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth filter of 190 Hz, which rises
-/// by 0.27 of the full scale from one sample to the next.
+/// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
+/// filter of 190 Hz, which rises by 0.27 of the full scale from one sample to the next.
 pub const PARAMETERS: ImuParameters = ImuParameters {
     rate: 800.0,
     cutoff: 60.0,
@@ -74,10 +77,11 @@ const DATA: u8 = 0x0C;
 /// Where the file leaves how much of z the gyroscope's x feels.
 const CROSS_SENSITIVITY: u8 = 0x1E;
 
-/// It wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A reset takes 2 ms.
-/// Then: PWR_CONF without power save, which the file needs; INIT_CTRL 0, INIT_ADDR 0, INIT_DATA the file, INIT_CTRL 1;
-/// INTERNAL_STATUS says within 20 ms that the file runs. Settings: ACC_CONF, ACC_RANGE, GYR_CONF, GYR_RANGE, INT1 as push-pull
-/// and active high, not latched, data-ready to INT1; PWR_CTRL on, after which the gyroscope takes 45 ms.
+/// It wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A reset
+/// takes 2 ms. Then: PWR_CONF without power save, which the file needs; INIT_CTRL 0, INIT_ADDR 0, INIT_DATA the file,
+/// INIT_CTRL 1; INTERNAL_STATUS says within 20 ms that the file runs. Settings: ACC_CONF, ACC_RANGE, GYR_CONF,
+/// GYR_RANGE, INT1 as push-pull and active high, not latched, data-ready to INT1; PWR_CTRL on, after which the
+/// gyroscope takes 45 ms.
 const POWER_UP: [Step; 19] = [
     (CHIP_ID, 0, Wake),
     (0x7E, 0xB6, Write(2_000)),

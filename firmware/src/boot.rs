@@ -1,11 +1,11 @@
 //! From the embedded scenario to a pilot: the certificate worked out again on the machine that will fly, and logged.
 //!
-//! What was stored of parameters that the certificate depends on is part of it: see [`crate::parameters::tuned`]. If the vehicle cannot fly with
-//! them, each that was set is named.
+//! What was stored of parameters that the certificate depends on is part of it: see [`crate::parameters::tuned`]. If
+//! the vehicle cannot fly with them, each that was set is named.
 //!
-//! It takes two to six seconds on a Cortex-M4F (350 to 930 million instructions: double precision is software there), and more of the
-//! stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration boots as well: it answers,
-//! tests motors, and never arms, and says which inequality fails.
+//! It takes two to six seconds on a Cortex-M4F (350 to 930 million instructions: double precision is software there),
+//! and more of the stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration
+//! boots as well: it answers, tests motors, and never arms, and says which inequality fails.
 
 use crate::configuration;
 use crate::outputs::Outputs;
@@ -45,8 +45,8 @@ impl Place {
     }
 }
 
-/// Certifies the embedded configuration with the stored parameters, logs its numbers, and makes a pilot of it, certified or grounded, in the
-/// place that is meant for it; with it comes what turns its thrusts into motor commands.
+/// Certifies the embedded configuration with the stored parameters, logs its numbers, and makes a pilot of it,
+/// certified or grounded, in the place that is meant for it; with it comes what turns its thrusts into motor commands.
 ///
 /// # Errors
 /// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
@@ -91,7 +91,8 @@ pub fn start_with<M: RawMutex>(
     Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
 }
 
-// Configuration, estimator, certificate and pilot need most of the stack, one after the other: none may become part of another's frame.
+// Configuration, estimator, certificate and pilot need most of the stack, one after the other: none may become part of
+// another's frame.
 
 #[allow(clippy::result_large_err)] // the core's own error, once, on the ground
 #[inline(never)]

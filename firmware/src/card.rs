@@ -15,13 +15,14 @@
 //! | [`volume`] | numbered files in a FAT file system |
 //! | [`geometry`] | whether a card's file system can be used |
 //!
-//! - Control writes to the recorder's ring, as without a card, and never waits. This task follows along; it may fall behind by as much
-//!   as the ring holds. What is overwritten before it was read is counted, noted in the file and told.
-//! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority of all.
-//!   A card that is missing, full, removed, worn out or formatted for something else is told in words, tried again every
-//!   [`RETRY`], and keeps nobody from arming.
-//! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file that was
-//!   there before: [`log`] and [`volume`] say why.
+//! - Control writes to the recorder's ring, as without a card, and never waits. This task follows along; it may fall
+//!   behind by as much as the ring holds. What is overwritten before it was read is counted, noted in the file and
+//!   told.
+//! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority
+//!   of all. A card that is missing, full, removed, worn out or formatted for something else is told in words, tried
+//!   again every [`RETRY`], and keeps nobody from arming.
+//! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
+//!   that was there before: [`log`] and [`volume`] say why.
 
 pub mod copy;
 pub mod geometry;
@@ -55,7 +56,8 @@ const AT_ONCE: usize = 200;
 /// Events that are kept for the beginning of the next flight.
 const KEPT: usize = 16;
 
-/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED`], if there is nothing against it.
+/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED`], if there is nothing
+/// against it.
 pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: &Shared<M>) -> ! {
     let mut logger = Logger {
         prepared,
@@ -134,8 +136,8 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
     }
 
-    /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, somebody may read other files; while
-    /// nobody does, this one is made longer.
+    /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, somebody may read other
+    /// files; while nobody does, this one is made longer.
     async fn fill<C: Card>(
         &mut self,
         volume: &Volume<'_, C>,

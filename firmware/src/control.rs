@@ -5,10 +5,10 @@
 //!                                                          '-> watchdog fed, if all of it was in time
 //! ```
 //!
-//! The task decides nothing about flight: [`controller_core::flight`] does. It keeps time: ticks are due a period apart,
-//! counted from the first one. A tick that has not written its command when the next is due has been missed; the ticks it
-//! overran are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided in time, the
-//! stop command included: a vehicle whose motors do not hear it, or that has no time left, is reset.
+//! The task decides nothing about flight: [`controller_core::flight`] does. It keeps time: ticks are due a period
+//! apart, counted from the first one. A tick that has not written its command when the next is due has been missed; the
+//! ticks it overran are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided
+//! in time, the stop command included: a vehicle whose motors do not hear it, or that has no time left, is reset.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
@@ -124,7 +124,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         command
     }
 
-    /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in between.
+    /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in
+    /// between.
     fn integrate(&mut self, increment: &Increment) {
         let follows = self.integrated.is_none_or(|end| end == increment.start);
         self.timing.gaps = self.timing.gaps.saturating_add(u32::from(!follows));
@@ -133,7 +134,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
 
     /// What is not measured.
     fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs<'static> {
-        // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once more.
+        // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once
+        // more.
         let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
@@ -153,8 +155,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// What the battery has left, by its voltage. Without a recent reading nobody knows, which matters where somebody has set a voltage
-    /// to act on.
+    /// What the battery has left, by its voltage. Without a recent reading nobody knows, which matters where somebody
+    /// has set a voltage to act on.
     fn battery(&self, now: u64) -> Battery {
         let parameters = &self.shared.parameters;
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
@@ -261,7 +263,8 @@ fn waiting<M: RawMutex, T, const ROOM: usize>(queue: &Queue<M, T, ROOM>) -> Vec<
     core::iter::from_fn(|| queue.take()).take(ROOM).collect()
 }
 
-/// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it overran.
+/// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it
+/// overran.
 fn next_due(due: u64, end: u64) -> u64 {
     let overrun = end.saturating_sub(due);
     due + overrun - overrun % PERIOD + PERIOD

@@ -16,8 +16,8 @@ pub async fn within<T>(clock: &impl Clock, limit: u64, work: impl Future<Output 
     }
 }
 
-/// Writes `frame` within `limit` microseconds or gives it up: what is out of it by then, its receiver takes for noise. A line
-/// that fails, or takes no bytes (`Write::write_all` would panic), loses the frame at once.
+/// Writes `frame` within `limit` microseconds or gives it up: what is out of it by then, its receiver takes for noise.
+/// A line that fails, or takes no bytes (`Write::write_all` would panic), loses the frame at once.
 pub async fn send(line: &mut impl Write, clock: &impl Clock, limit: u64, frame: &[u8]) {
     let all = async {
         let mut rest = frame;

@@ -1,9 +1,10 @@
 //! DShot300: from motor commands to the pulse widths that a timer's four channels put out.
 //!
-//! A frame is 16 bits, most significant first: 11 of value, one that asks for telemetry (set in words alone: they are not believed without), four of checksum.
-//! Value 0 is the stop command, 1 to 47 are words to a controller whose motor stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a
-//! second, high for 3/8 of it if zero and for 6/8 if one. [`Waveform`] holds one frame for each of the four channels, one
-//! row a bit, in the order in which the timer's burst transfer wants them.
+//! A frame is 16 bits, most significant first: 11 of value, one that asks for telemetry (set in words alone: they are
+//! not believed without), four of checksum. Value 0 is the stop command, 1 to 47 are words to a controller whose motor
+//! stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a second, high for 3/8 of it if zero and for 6/8
+//! if one. [`Waveform`] holds one frame for each of the four channels, one row a bit, in the order in which the timer's
+//! burst transfer wants them.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
 use controller_core::flight::Word;
@@ -15,8 +16,8 @@ pub const BIT_RATE: u32 = 300_000;
 /// Bits in a frame.
 pub const BITS: usize = 16;
 
-/// Rows of a waveform: the bits, and two rows of silence. With them a waveform fills whole 16-byte blocks for 2-byte and for
-/// 4-byte words, which the transfer's bursts of four need.
+/// Rows of a waveform: the bits, and two rows of silence. With them a waveform fills whole 16-byte blocks for 2-byte
+/// and for 4-byte words, which the transfer's bursts of four need.
 pub const ROWS: usize = BITS + 2;
 
 /// Values that turn a motor, less one: from the slowest (48 on the wire) to the fastest (2047).
@@ -25,8 +26,8 @@ const STEPS: f32 = 1999.0;
 /// One frame for each motor, in the motors' order.
 ///
 /// # Errors
-/// [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing but stop is
-/// right for all of them.
+/// [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing but stop
+/// is right for all of them.
 pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
     let mut frames = stop();
     match command {

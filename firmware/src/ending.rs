@@ -1,7 +1,8 @@
-//! The order of a board's last acts, whatever went wrong: stop the motors, say why, keep them stopped while that is fetched.
+//! The order of a board's last acts, whatever went wrong: stop the motors, say why, keep them stopped while that is
+//! fetched.
 //!
-//! Saying why comes second because it may fail: a panic in the middle of logging makes the logger panic again. Whatever goes
-//! wrong in these acts begins them anew, finds them begun, and leads to the restart that follows them.
+//! Saying why comes second because it may fail: a panic in the middle of logging makes the logger panic again. Whatever
+//! goes wrong in these acts begins them anew, finds them begun, and leads to the restart that follows them.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 

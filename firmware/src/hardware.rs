@@ -74,7 +74,8 @@ pub trait Imu {
         Unit::First
     }
 
-    /// The next sample of the sensor that stands by, if there is one. For a vehicle on the ground: it delays the other's.
+    /// The next sample of the sensor that stands by, if there is one. For a vehicle on the ground: it delays the
+    /// other's.
     fn standby(&mut self) -> impl Future<Output = Option<Result<RawImu, Fault>>> {
         ready(None)
     }
@@ -163,8 +164,8 @@ pub trait Light {
 /// What flash is read and written by: 256 bytes, whole words of any flash there is.
 pub type Record = [u32; 64];
 
-/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done, and
-/// never without end: while it programs or erases itself, the code in it may not run anyway.
+/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done,
+/// and never without end: while it programs or erases itself, the code in it may not run anyway.
 pub trait Flash {
     /// Places in a sector.
     const RECORDS: usize;
@@ -191,8 +192,8 @@ pub trait Flash {
 /// Bytes of a sector of a memory card.
 pub const SECTOR: usize = 512;
 
-/// A slot for a memory card. Each call blocks until the card is done, for seconds where a card is at odds with itself: only a task that
-/// nothing waits for may hold it.
+/// A slot for a memory card. Each call blocks until the card is done, for seconds where a card is at odds with itself:
+/// only a task that nothing waits for may hold it.
 pub trait Card {
     /// Powers up the card that is in the slot now, and learns its size.
     ///

@@ -1,7 +1,7 @@
 //! Hardware in the loop: a simulator takes the motors' commands and answers with what the sensors would say.
 //!
-//! It can be turned on while the motors are stopped ([`SelectedMotors`]) and stays on until reboot: the motors' own outputs
-//! carry stop, and their commands go to the simulator.
+//! It can be turned on while the motors are stopped ([`SelectedMotors`]) and stays on until reboot: the motors' own
+//! outputs carry stop, and their commands go to the simulator.
 //!
 //! | message | way | what |
 //! |---|---|---|
@@ -9,14 +9,15 @@
 //! | ODOMETRY | in | a pose, as from any source of poses; may come late, may be left out |
 //! | HIL_SENSOR | in | gyro and accelerometer; as many of them as the simulator likes, in order; taken as a sensor's: [`Flow`] |
 //!
-//! The time of either answer is when what it says is true, by the vehicle's clock: the simulator adds to the time of a command. The
-//! HIL_SENSOR that is true a period after the last command ends the exchange; the simulator then stands still until the next one.
-//! Ten of them a tick are a sensor at 1 kHz, and one a tick will do. So the two run in lock-step, and what a tick sees
-//! does not depend on how long the simulator took. [`Hil::awaiting`] is true in between: an emulated processor stays
-//! awake for it, a real one need not ask.
+//! The time of either answer is when what it says is true, by the vehicle's clock: the simulator adds to the time of a
+//! command. The HIL_SENSOR that is true a period after the last command ends the exchange; the simulator then stands
+//! still until the next one. Ten of them a tick are a sensor at 1 kHz, and one a tick will do. So the two run in
+//! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in
+//! between: an emulated processor stays awake for it, a real one need not ask.
 //!
 //! A time later than a period after the last command is refused, so no clock but the vehicle's makes anything fresh. A
-//! repeated or overtaken sample is not integrated, nor is a repeated pose taken: the conditioner and the estimator see to that.
+//! repeated or overtaken sample is not integrated, nor is a repeated pose taken: the conditioner and the estimator see
+//! to that.
 
 use crate::deadline::{send, within};
 use crate::frames;

@@ -1,4 +1,5 @@
-//! The IMU task: each sample as it comes, at 1 kHz, through the conditioner to control; calibration while the vehicle stands.
+//! The IMU task: each sample as it comes, at 1 kHz, through the conditioner to control; calibration while the vehicle
+//! stands.
 //!
 //! ```text
 //! sensor -> RawImu -> Conditioner -> Shared::increments (each of them)
@@ -7,9 +8,9 @@
 //! ```
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! While a simulator stands in for the sensors, what these say counts for nothing. The first fault after good samples, and the
-//! first good sample after faults, are events; so is a second sensor that takes over, and one that does not answer on
-//! the ground.
+//! While a simulator stands in for the sensors, what these say counts for nothing. The first fault after good samples,
+//! and the first good sample after faults, are events; so is a second sensor that takes over, and one that does not
+//! answer on the ground.
 
 mod calibrator;
 mod flow;
@@ -24,8 +25,8 @@ use calibrator::Calibrator;
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it, and is
-/// dropped half-way by less. How old a sample may be is none of this task's business.
+/// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it,
+/// and is dropped half-way by less. How old a sample may be is none of this task's business.
 pub const PATIENCE: u64 = 200_000;
 
 /// How long to leave a faulty sensor alone, us.
@@ -96,7 +97,8 @@ fn finite(sample: RawImu) -> Result<RawImu, Fault> {
     if numbers { Ok(sample) } else { Err(Fault) }
 }
 
-/// What a task does whose sensor's parameters make no sense: it says so, and delivers nothing. Nothing arms without samples.
+/// What a task does whose sensor's parameters make no sense: it says so, and delivers nothing. Nothing arms without
+/// samples.
 pub async fn refuse<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, error: &ParameterError) -> ! {
     shared.announce(Event::new(Severity::Critical, error));
     loop {

@@ -1,8 +1,9 @@
 //! From what a tick decided to what the motors are told.
 //!
-//! A rotor's thrust follows the square of its speed. A speed controller that holds its command's speed makes it a square of the
-//! command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and `docs/thrust-stand.md` says how
-//! a is measured. A full command is the thrust that the scenario calls greatest, at the voltage where it was measured.
+//! A rotor's thrust follows the square of its speed. A speed controller that holds its command's speed makes it a
+//! square of the command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and
+//! `docs/thrust-stand.md` says how a is measured. A full command is the thrust that the scenario calls greatest, at the
+//! voltage where it was measured.
 
 use crate::hardware::{MOTORS, MotorCommand};
 use controller_core::allocation::curve::Battery;
@@ -15,7 +16,8 @@ use controller_core::flight::{Output, Stamped};
 pub struct Outputs([ThrustCurve; MOTORS]);
 
 impl Outputs {
-    /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command itself.
+    /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command
+    /// itself.
     ///
     /// # Errors
     /// Names `rotors` if there are not [`MOTORS`] of them, `rotors.curve` if there is no such curve.
@@ -28,7 +30,8 @@ impl Outputs {
         }
     }
 
-    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they idle at.
+    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they
+    /// idle at.
     #[must_use]
     pub fn command(&self, output: &Output, ratio: f32, idle: f32) -> MotorCommand {
         match output {
@@ -47,7 +50,8 @@ impl Outputs {
     }
 }
 
-/// V_0 / V for the curves, at `now`, us: one where no `nominal` voltage is set (0), and without a recent, plausible reading.
+/// V_0 / V for the curves, at `now`, us: one where no `nominal` voltage is set (0), and without a recent, plausible
+/// reading.
 #[must_use]
 pub fn voltage_ratio(nominal: f32, voltage: Option<Stamped<f32>>, now: u64) -> f32 {
     match (Battery::new(nominal), voltage) {

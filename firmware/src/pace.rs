@@ -1,7 +1,7 @@
 //! When a sensor has a new sample: at the edges of its data-ready pin, or by the clock where they stay away.
 //!
-//! An edge is waited for no longer than two and a half periods. From then on samples are due a period after the last one, edge or
-//! not, until an edge comes again: a broken line costs a little of a sample's age, and not the vehicle.
+//! An edge is waited for no longer than two and a half periods. From then on samples are due a period after the last
+//! one, edge or not, until an edge comes again: a broken line costs a little of a sample's age, and not the vehicle.
 
 use crate::deadline::within;
 use crate::hardware::Clock;

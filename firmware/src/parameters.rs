@@ -1,10 +1,11 @@
 //! Parameters: the numbers that may be set from the ground, and where they are kept.
 //!
-//! They change only while disarmed. What the certificate depends on is certified when it is set, and refused if that fails; it
-//! counts from the next boot, which certifies it again.
+//! They change only while disarmed. What the certificate depends on is certified when it is set, and refused if that
+//! fails; it counts from the next boot, which certifies it again.
 //!
-//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], [`flight`] and [`tuned`] are what
-//! rows mean together: the inertial sensors', those of the flight rules, and those of the configuration.
+//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], [`flight`] and
+//! [`tuned`] are what rows mean together: the inertial sensors', those of the flight rules, and those of the
+//! configuration.
 
 pub mod calibration;
 pub mod flight;
@@ -87,8 +88,8 @@ impl<M: RawMutex> Parameters<M> {
         Self { values, changed: Signal::new(), built: Mutex::new(Cell::new(None)) }
     }
 
-    /// Boots: the rows of the configuration change what was `built`. Values that were tuned on another one are dropped; whether
-    /// there were any.
+    /// Boots: the rows of the configuration change what was `built`. Values that were tuned on another one are dropped;
+    /// whether there were any.
     pub fn boot(&self, built: &'static Built) -> bool {
         self.built.lock(|cell| cell.set(Some(built)));
         let dropped = self.raw(Name::TunedOn) != built.identity as f32 && self.set_by_hand().next().is_some();
@@ -127,11 +128,12 @@ impl<M: RawMutex> Parameters<M> {
         f32::from_bits(self.values[name as usize].load(Ordering::Relaxed))
     }
 
-    /// Changes a value, to be saved when that is possible. One of the configuration is certified first, which takes long, with all
-    /// others as they are; it counts from the next boot.
+    /// Changes a value, to be saved when that is possible. One of the configuration is certified first, which takes
+    /// long, with all others as they are; it counts from the next boot.
     ///
     /// # Errors
-    /// [`NotTaken`] for a value outside the table's range, not finite, between its steps, or with which the vehicle could not fly.
+    /// [`NotTaken`] for a value outside the table's range, not finite, between its steps, or with which the vehicle
+    /// could not fly.
     pub fn set(&self, name: Name, value: f32) -> Result<(), NotTaken> {
         if name == Name::TunedOn {
             return Err(NotTaken::OnlyTold(name));

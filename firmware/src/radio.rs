@@ -1,4 +1,5 @@
-//! A radio transmitter in somebody's hands: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000 baud).
+//! A radio transmitter in somebody's hands: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000
+//! baud).
 //!
 //! | channel | what | low | middle | high |
 //! |---|---|---|---|---|
@@ -8,13 +9,14 @@
 //! | 6 | who flies | whoever is on the link | hold | the sticks |
 //! | 7 | kill switch | | | every motor stops |
 //!
-//! - A switch acts when it is moved, not where it is found: a transmitter that is turned on arms nothing. The kill switch alone acts as
-//!   it stands, and stays as it was last heard when the receiver falls silent.
-//! - The sticks ask for velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as anybody's setpoints;
-//!   what comes from the link is then refused. On the ground they begin a flight when the stick is pushed up.
-//! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`] no longer
-//!   is. If its sticks flew, the vehicle holds, and nobody takes over unasked: setpoints of the link go on being refused until somebody
-//!   on it asks to fly them, or the radio is heard again and its switch says so.
+//! - A switch acts when it is moved, not where it is found: a transmitter that is turned on arms nothing. The kill
+//!   switch alone acts as it stands, and stays as it was last heard when the receiver falls silent.
+//! - The sticks ask for velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
+//!   anybody's setpoints; what comes from the link is then refused. On the ground they begin a flight when the stick is
+//!   pushed up.
+//! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`]
+//!   no longer is. If its sticks flew, the vehicle holds, and nobody takes over unasked: setpoints of the link go on
+//!   being refused until somebody on it asks to fly them, or the radio is heard again and its switch says so.
 
 pub mod sticks;
 
@@ -28,7 +30,8 @@ use sticks::Sticks;
 use uf_crsf::CrsfParser;
 use uf_crsf::packets::{CrsfPacket, RcChannelsPacked};
 
-/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not hear its transmitter.
+/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not hear its
+/// transmitter.
 pub const SILENCE: u64 = 500_000;
 
 /// The longest wait for bytes, us, and the wait after a line that failed.

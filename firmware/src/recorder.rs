@@ -4,13 +4,15 @@
 //! control -> Tick -> Ring (memory that no start clears) -> ULog over the link (LOG_REQUEST_LIST, LOG_REQUEST_DATA)
 //! ```
 //!
-//! - A recording begins when the vehicle is armed and ends [`AFTERWARDS`] after it is disarmed or stopped. The one before it is lost then,
-//!   and not sooner: after a crash that reset the board, what led to it is there to be fetched.
-//! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was never written.
-//! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is served
-//!   while one is made.
+//! - A recording begins when the vehicle is armed and ends [`AFTERWARDS`] after it is disarmed or stopped. The one
+//!   before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be fetched.
+//! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was
+//!   never written.
+//! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is
+//!   served while one is made.
 //!
-//! A loss of power loses it. Where a board has a memory card, [`crate::card`] follows along ([`follow`]) and writes every record to it.
+//! A loss of power loses it. Where a board has a memory card, [`crate::card`] follows along ([`follow`]) and writes
+//! every record to it.
 
 pub mod follow;
 pub mod ring;

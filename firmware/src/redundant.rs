@@ -1,4 +1,5 @@
-//! Two inertial sensors as one: the second takes over when the first fails, and keeps the vehicle until it is switched off.
+//! Two inertial sensors as one: the second takes over when the first fails, and keeps the vehicle until it is switched
+//! off.
 //!
 //! ```text
 //! first ── answers with [`TAKE_OVER_AFTER`] faults in a row ──────────────┐
@@ -6,11 +7,13 @@
 //!       ── its accelerometer does not answer for [`SILENT_AFTER`] samples ┘
 //! ```
 //!
-//! There is no way back: a sensor that failed once under way is not trusted with the rest of it. Nor is there a way to a second
-//! that has never answered; powering it up takes longer than the flight rules wait. [`Imu::standby`] finds that out, on the ground.
+//! There is no way back: a sensor that failed once under way is not trusted with the rest of it. Nor is there a way to
+//! a second that has never answered; powering it up takes longer than the flight rules wait. [`Imu::standby`] finds
+//! that out, on the ground.
 //!
 //! A takeover by silence lasts at most 15 ms from the first's last sample to the second's first, which is bridged
-//! ([`controller_core::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up anew.
+//! ([`controller_core::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up
+//! anew.
 
 use crate::hardware::{Fault, Imu, RawImu, Unit};
 use controller_core::imu::watch::Watch;

@@ -1,10 +1,10 @@
 //! Registers of a sensor behind SPI, and the way from power to measuring through them.
 //!
-//! An [`exchange`] is bounded in time, and its chip select is high afterwards however it ends. A power-up is a table of [`Step`]s.
-//! [`PowerUp`] does one of them at a time, when its time has come, so that whoever has something else to do meanwhile does it. A
-//! setting is written, read back a millisecond later, and written again if it did not stick, up to [`TRIES`] times: the
-//! BMI088's accelerometer is known to need that. Everything before a setting that failed for good is done again by the next
-//! attempt.
+//! An [`exchange`] is bounded in time, and its chip select is high afterwards however it ends. A power-up is a table of
+//! [`Step`]s. [`PowerUp`] does one of them at a time, when its time has come, so that whoever has something else to do
+//! meanwhile does it. A setting is written, read back a millisecond later, and written again if it did not stick, up to
+//! [`TRIES`] times: the BMI088's accelerometer is known to need that. Everything before a setting that failed for good
+//! is done again by the next attempt.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault};
@@ -131,7 +131,8 @@ impl PowerUp {
     /// Does what is due.
     ///
     /// # Errors
-    /// [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than [`POWER_TAKES`] from now.
+    /// [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than [`POWER_TAKES`] from
+    /// now.
     pub async fn advance(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
         let Some(step) = self.steps.get(self.next).filter(|_| clock.now() >= self.not_before) else { return Ok(()) };
         let done = self.act(step, device, clock).await;

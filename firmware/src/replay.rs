@@ -1,12 +1,13 @@
 //! The paper's 40 s flight as one number: the same on every machine that computes the law to the same bits.
 //!
-//! The vehicle's states are given, recorded from host-sim's plant as single-precision bits. That is as good as flying the
-//! plant live, by induction: the first state is the same for all machines; as long as a machine's wrenches have had the same
-//! bits as those the plant was flown with, its next state would have had the same bits as the recorded one; and the first
-//! wrench that differs changes the number. The reference is not given: it is computed here, from integer time.
+//! The vehicle's states are given, recorded from host-sim's plant as single-precision bits. That is as good as flying
+//! the plant live, by induction: the first state is the same for all machines; as long as a machine's wrenches have had
+//! the same bits as those the plant was flown with, its next state would have had the same bits as the recorded one;
+//! and the first wrench that differs changes the number. The reference is not given: it is computed here, from integer
+//! time.
 //!
-//! What goes into the number, per tick, as little-endian single precision: thrust, torque, u_f, u_s, q_hat (scalar first)
-//! and m* as the controller keeps them after the tick, theta~, omega_d, omega_d'. The number is their SHA-256.
+//! What goes into the number, per tick, as little-endian single precision: thrust, torque, u_f, u_s, q_hat (scalar
+//! first) and m* as the controller keeps them after the tick, theta~, omega_d, omega_d'. The number is their SHA-256.
 //!
 //! Table I flies here and nowhere else in this crate: it does not survive a late sample.
 

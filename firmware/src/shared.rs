@@ -1,4 +1,5 @@
-//! What the tasks tell each other. Every value comes with the time it was taken, and every reader says how old is too old.
+//! What the tasks tell each other. Every value comes with the time it was taken, and every reader says how old is too
+//! old.
 //!
 //! | from | what | to | at most this old |
 //! |---|---|---|---|
@@ -34,8 +35,8 @@
 //! | link, and back | [`Shared::library`]: what is on the card | card, and back | until the next question |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
 //!
-//! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against the
-//! control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
+//! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against
+//! the control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
 
 mod card;
 mod event;
@@ -95,7 +96,8 @@ pub struct Shared<M: RawMutex> {
     pub increments: Queue<M, Increment, INCREMENTS>,
     /// Calibrations that somebody asked for.
     pub calibrations: Queue<M, Calibration, CALIBRATIONS>,
-    /// Poses in the order in which they came, with the times at which they were true. Without room a pose is dropped: the next will do.
+    /// Poses in the order in which they came, with the times at which they were true. Without room a pose is dropped:
+    /// the next will do.
     pub poses: Queue<M, Stamped<PoseMeasurement>, POSES>,
     /// Its time says when a ground station was last heard.
     pub ground_station: Latest<M, ()>,
@@ -121,10 +123,11 @@ pub struct Shared<M: RawMutex> {
     pub clock_doubtful: Flag,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
     pub killed: Latest<M, bool>,
-    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link asks to fly
-    /// setpoints.
+    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link
+    /// asks to fly setpoints.
     pub sticks: Latest<M, bool>,
-    /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with [`Self::request_disarm`].
+    /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with
+    /// [`Self::request_disarm`].
     pub disarm: Flag,
     /// The station on the link that armed the vehicle, by its system, and when; none if somebody else did.
     pub commander: Latest<M, Option<u8>>,
@@ -205,8 +208,8 @@ impl<M: RawMutex> Shared<M> {
         }
     }
 
-    /// Hands control what the IMU did. Without room it is dropped and counted: the next one does not begin where the last one in
-    /// the queue ended, which is how control knows.
+    /// Hands control what the IMU did. Without room it is dropped and counted: the next one does not begin where the
+    /// last one in the queue ended, which is how control knows.
     pub fn increment(&self, increment: Increment) {
         if self.increments.put(increment).is_err() {
             self.lost_increments.fetch_add(1, Ordering::Relaxed);
@@ -227,7 +230,8 @@ impl<M: RawMutex> Shared<M> {
         self.requests.put(asked)
     }
 
-    /// Disarms within one tick, in the air as well. Requests that wait came earlier, so none of them may arm afterwards: they are refused here.
+    /// Disarms within one tick, in the air as well. Requests that wait came earlier, so none of them may arm
+    /// afterwards: they are refused here.
     pub fn request_disarm(&self) {
         while let Some(asked) = self.requests.take() {
             self.answer(&asked, Err(Refusal::DisarmCommanded));
@@ -235,8 +239,8 @@ impl<M: RawMutex> Shared<M> {
         self.disarm.raise();
     }
 
-    /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its sender asks again for want of
-    /// one.
+    /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its
+    /// sender asks again for want of one.
     pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
         if let Err(refusal) = result {
             self.announce(Event::Refused(refusal));
@@ -253,8 +257,8 @@ impl<M: RawMutex> Shared<M> {
         self.outgoing.signal(());
     }
 
-    /// Tells people: the ground station, the log and the card. Where a queue is full the event is dropped and counted: what came first is
-    /// the cause, what follows is mostly its consequence.
+    /// Tells people: the ground station, the log and the card. Where a queue is full the event is dropped and counted:
+    /// what came first is the cause, what follows is mostly its consequence.
     pub fn announce(&self, event: Event) {
         let is_logged = self.card.state() != CardState::Ready || self.card.events.put(event.clone()).is_ok();
         if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged {

@@ -1,5 +1,5 @@
-//! Samples and poses of any numbers, at any times, to the conditioner and the estimator. Whatever comes, the state is made of
-//! numbers, its attitude of unit length, and what was fused is where the state is.
+//! Samples and poses of any numbers, at any times, to the conditioner and the estimator. Whatever comes, the state is
+//! made of numbers, its attitude of unit length, and what was fused is where the state is.
 
 #![no_main]
 

@@ -1,6 +1,6 @@
-//! Bytes on the link, and frames whose checksums are right but whose numbers are anything. Whatever comes, a pose that is handed
-//! on is made of numbers and never twice of one time, and so is a setpoint made of them as far as the governor is concerned. And whatever
-//! parameters were set, a vehicle could fly with what was taken.
+//! Bytes on the link, and frames whose checksums are right but whose numbers are anything. Whatever comes, a pose that
+//! is handed on is made of numbers and never twice of one time, and so is a setpoint made of them as far as the
+//! governor is concerned. And whatever parameters were set, a vehicle could fly with what was taken.
 
 #![no_main]
 
@@ -17,10 +17,10 @@ use mavlink::dialects::common::{MavMessage, MavParamType, PARAM_SET_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 use std::sync::OnceLock;
 
-/// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET, COMMAND_LONG,
-/// SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN, MISSION_REQUEST_LIST,
-/// MISSION_COUNT, MISSION_CLEAR_ALL, LOG_REQUEST_LIST, LOG_REQUEST_DATA, LOG_ERASE, LOG_REQUEST_END,
-/// FILE_TRANSFER_PROTOCOL.
+/// The messages that the vehicle listens to: HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET,
+/// COMMAND_LONG, SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN,
+/// MISSION_REQUEST_LIST, MISSION_COUNT, MISSION_CLEAR_ALL, LOG_REQUEST_LIST, LOG_REQUEST_DATA, LOG_ERASE,
+/// LOG_REQUEST_END, FILE_TRANSFER_PROTOCOL.
 const LISTENED: [u32; 20] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45, 117, 119, 121, 122, 110];
 
 #[derive(Debug, Arbitrary)]

@@ -1,5 +1,6 @@
-//! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch is where the last
-//! frame has it, nothing is armed but by a switch that was seen moving, and what the sticks ask for is made of numbers.
+//! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch is
+//! where the last frame has it, nothing is armed but by a switch that was seen moving, and what the sticks ask for is
+//! made of numbers.
 
 #![no_main]
 

@@ -1,9 +1,10 @@
 //! Simulated seconds per second: `cargo bench -p host-sim --bench throughput`.
 //!
-//! The paper's scenario (law at 100 Hz) with every check on and nothing logged: alone, through the same tick in brief that campaigns fly,
-//! with the plant step of its file (RK4 at 1 ms) and with that of a campaign (5 ms), whose positions are held against steps of half a
-//! millisecond; as a batch on one core, flights from different starts side by side; and a batch on each of two cores at once. The
-//! machine's best repetition counts: the others measure its neighbours.
+//! The paper's scenario (law at 100 Hz) with every check on and nothing logged: alone, through the same tick in brief
+//! that campaigns fly, with the plant step of its file (RK4 at 1 ms) and with that of a campaign (5 ms), whose
+//! positions are held against steps of half a millisecond; as a batch on one core, flights from different starts side
+//! by side; and a batch on each of two cores at once. The machine's best repetition counts: the others measure its
+//! neighbours.
 
 use host_sim::batch::Batch;
 use host_sim::campaign::draw::circumstances;

@@ -1,7 +1,8 @@
 //! Flies missions for hours, on one pilot: `cargo run --release -p host-sim --example endurance -- FILE HOURS`.
 //!
-//! The vehicle's clock starts half the hours before its milliseconds overflow 32 bits; its microseconds do so every 72 minutes. Fails if a mission
-//! does not go as it should, a delay has changed, or the last hour is not as good as the first.
+//! The vehicle's clock starts half the hours before its milliseconds overflow 32 bits; its microseconds do so every 72
+//! minutes. Fails if a mission does not go as it should, a delay has changed, or the last hour is not as good as the
+//! first.
 
 use controller_core::certificate::certified::Certified;
 use controller_core::estimator::Estimator;

@@ -1,10 +1,11 @@
 //! How often `identify` is right: `cargo run --release -p host-sim --example identify_coverage -- [RUNS]`.
 //!
-//! For each of two vehicles, for one whose commands act without delay, and for one with the air's forces at its rotors' hubs, RUNS (100) vehicles drawn like it fly the manoeuvre of
-//! `scenarios/identify.toml`, each identified from its log and a weighing. Printed: how many had every true value within its stated interval and how many were refused, with the quantity; and, for each
-//! quantity, the standard uncertainty, the error that really occurred, errors over uncertainties (root mean square, 1 if uncertainties are
-//! honest), and how many intervals missed. Fails if of any but the last fewer than 95 of 100 were told, and
-//! rightly.
+//! For each of two vehicles, for one whose commands act without delay, and for one with the air's forces at its rotors'
+//! hubs, RUNS (100) vehicles drawn like it fly the manoeuvre of `scenarios/identify.toml`, each identified from its log
+//! and a weighing. Printed: how many had every true value within its stated interval and how many were refused, with
+//! the quantity; and, for each quantity, the standard uncertainty, the error that really occurred, errors over
+//! uncertainties (root mean square, 1 if uncertainties are honest), and how many intervals missed. Fails if of any but
+//! the last fewer than 95 of 100 were told, and rightly.
 
 use host_sim::identify::flight_log::FlightLog;
 use host_sim::identify::identify;

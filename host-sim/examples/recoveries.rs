@@ -1,4 +1,5 @@
-//! Flies a campaign of recoveries and prints what it showed: `cargo run --release -p host-sim --example recoveries -- FILE COUNT`.
+//! Flies a campaign of recoveries and prints what it showed:
+//! `cargo run --release -p host-sim --example recoveries -- FILE COUNT`.
 
 use controller_core::certificate::certified::Certified;
 use host_sim::campaign::outcome::Outcome;

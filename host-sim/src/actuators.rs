@@ -6,7 +6,8 @@
 //! wrench -> (delay) -> allocation -> rotor speeds, first-order lag, limits -> thrusts f_i = k_eta speed_i^2 -> B f
 //! ```
 //!
-//! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it acts;
+//! - *delay*: the wrench of a tick takes effect a whole number of plant steps after it; until then the one before it
+//!   acts;
 //! - *allocation*: the core's [`Mixer`], as on the boards;
 //! - *lag*: of the rotors' speeds ([`rotors`]).
 //!
@@ -61,8 +62,8 @@ pub struct Actuators {
 }
 
 impl Actuators {
-    /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its tick.
-    /// Without rotors wrenches act on the body directly.
+    /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its
+    /// tick. Without rotors wrenches act on the body directly.
     #[must_use]
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
         let acting = Wrench { thrust: hover, torque: Vector3::zeros() };

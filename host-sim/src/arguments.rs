@@ -93,7 +93,8 @@ pub enum Command {
         #[arg(long)]
         show: bool,
     },
-    /// Refine a vehicle's constants by trial flights: everything certifies; then the least of what a pilot feels. About a minute.
+    /// Refine a vehicle's constants by trial flights: everything certifies; then the least of what a pilot feels. About
+    /// a minute.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
@@ -124,7 +125,8 @@ pub enum Command {
 /// What a search is asked for.
 #[derive(Args)]
 pub struct TuneArguments {
-    /// Scenario file: vehicle, limits, rotors, delay, reference; its constants, or the formulas', are where the search starts
+    /// Scenario file: vehicle, limits, rotors, delay, reference; its constants, or the formulas', are where the search
+    /// starts
     pub file: PathBuf,
     /// Scenario file to write [default: <name>-tuned.toml]
     #[arg(long, value_name = "FILE")]

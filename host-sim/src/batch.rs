@@ -1,4 +1,5 @@
-//! Flights side by side, one tick of all of them at a time: their bodies move together in the processor's vector registers.
+//! Flights side by side, one tick of all of them at a time: their bodies move together in the processor's vector
+//! registers.
 //!
 //! ```text
 //! each flight   state -> sensors                                one after the other
@@ -6,10 +7,11 @@
 //! all at once   plant steps until the next tick                 plant::rows
 //! ```
 //!
-//! Every flight has the bits that it has alone ([`Flight::brief_tick`]), whatever flies beside it and whatever registers there are.
+//! Every flight has the bits that it has alone ([`Flight::brief_tick`]), whatever flies beside it and whatever
+//! registers there are.
 //!
-//! What flies so: vehicles of one model on one reference, without rotors, delay, estimator, or anything else that stands between the wrench
-//! and the body. Everything else flies alone.
+//! What flies so: vehicles of one model on one reference, without rotors, delay, estimator, or anything else that
+//! stands between the wrench and the body. Everything else flies alone.
 
 use crate::flight::{Brief, Flight, FlightError};
 use crate::plant::body::Body;
@@ -66,14 +68,16 @@ impl Batch {
         Ok(Self { members, rows, body, steps_per_tick })
     }
 
-    /// One control tick of every flight that goes on, and their motion until the next. `observe` sees each by its number, as
-    /// [`Flight::brief_tick`] would give it; of a flight that could not go on it sees nothing after the error.
+    /// One control tick of every flight that goes on, and their motion until the next. `observe` sees each by its
+    /// number, as [`Flight::brief_tick`] would give it; of a flight that could not go on it sees nothing after the
+    /// error.
     pub fn tick(&mut self, mut observe: impl FnMut(usize, Result<&Brief, FlightError>)) {
         let going_on = |member: &&Member| !matches!(member.stage, Stage::Ended);
         let Some(reference) = self.members.iter().find(going_on).map(|member| member.flight.reference()) else {
             return;
         };
-        // By themselves: a processor waits for numbers that it has written one by one, if it is to read two at once right away.
+        // By themselves: a processor waits for numbers that it has written one by one, if it is to read two at once
+        // right away.
         for (number, Member { flight, stage }) in self.members.iter_mut().enumerate() {
             if matches!(stage, Stage::Waiting) {
                 *stage = flight.measured().map_or_else(|error| Stage::ended(error, number, &mut observe), Stage::Told);

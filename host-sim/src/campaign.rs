@@ -1,8 +1,9 @@
 //! Many flights at once, on all cores.
 //!
-//! A campaign is a number of flights in circumstances that differ: where they start, what the vehicle really is, how the air
-//! moves, how noisy the sensors are, what is asked for. Each flight's circumstances come from its number alone, so a campaign gives
-//! the same again whatever the number of cores, and any of its flights can be flown again by itself.
+//! A campaign is a number of flights in circumstances that differ: where they start, what the vehicle really is, how
+//! the air moves, how noisy the sensors are, what is asked for. Each flight's circumstances come from its number alone,
+//! so a campaign gives the same again whatever the number of cores, and any of its flights can be flown again by
+//! itself.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -67,9 +68,9 @@ impl fmt::Display for CampaignError {
 
 impl std::error::Error for CampaignError {}
 
-/// Flies the flights 0 to `count` - 1 on all cores: each in its `circumstances`, and of each what `gather` makes of it, in the
-/// order of their numbers. With `certified` the law and the allocation are those that boards fly, certified once for all
-/// flights; without it each is flown as the uncertified configuration that its scenario has.
+/// Flies the flights 0 to `count` - 1 on all cores: each in its `circumstances`, and of each what `gather` makes of it,
+/// in the order of their numbers. With `certified` the law and the allocation are those that boards fly, certified once
+/// for all flights; without it each is flown as the uncertified configuration that its scenario has.
 ///
 /// # Errors
 /// [`ParameterError`] if the law refuses a scenario's period; a [`Scenario`] that was read from a file has a good one.
@@ -90,7 +91,8 @@ pub fn fly_all<T: Send>(
     (0..count).into_par_iter().map(fly).collect()
 }
 
-/// The value below which `part`, 0 to 1, of `values` lie; none of no values. Values that are no numbers count as the greatest.
+/// The value below which `part`, 0 to 1, of `values` lie; none of no values. Values that are no numbers count as the
+/// greatest.
 #[must_use]
 pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
     let mut sorted = values.to_vec();

@@ -1,8 +1,9 @@
-//! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp, side by
-//! side.
+//! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
+//! side by side.
 //!
-//! The sharp form and the rotors decide about the paper law's commands, all inequalities about the extended law's, the sampled loops below them about small motions: a scenario is
-//! certified if both hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
+//! The sharp form and the rotors decide about the paper law's commands, all inequalities about the extended law's, the
+//! sampled loops below them about small motions: a scenario is certified if both hold ([`scenario::verdict`]). The
+//! certificate itself is about limits, not about how well a vehicle flies.
 
 mod advice;
 mod blame;

@@ -1,15 +1,16 @@
 //! What a flight claims, what it showed, and whether the two agree.
 //!
-//! Every flight claims Theorem 1's thrust interval, the file's limits, the box of the filters, and the sharp bounds of its
-//! certificate on thrust, torques and rotors, which hold whether or not they fit the limits:
+//! Every flight claims Theorem 1's thrust interval, the file's limits, the box of the filters, and the sharp bounds of
+//! its certificate on thrust, torques and rotors, which hold whether or not they fit the limits:
 //!
 //! ```text
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
 //! ```
 //!
-//! It claims besides that its sampled loops are stable with [`LoopMargin::LEAST`], and that it reached its reference, position and
-//! attitude, within the first 90 % of its duration and stayed near it ([`crate::flown`] says how near). The paper's own
-//! scenario claims the figures of Section VI as well; for any other, how closely it tracked is reported without a verdict.
+//! It claims besides that its sampled loops are stable with [`LoopMargin::LEAST`], and that it reached its reference,
+//! position and attitude, within the first 90 % of its duration and stayed near it ([`crate::flown`] says how near).
+//! The paper's own scenario claims the figures of Section VI as well; for any other, how closely it tracked is reported
+//! without a verdict.
 
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
@@ -82,8 +83,8 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
     claims
 }
 
-/// The claims about a flight of `scenario` under another law: that it reached its position. What is proven of ours, and what ours must
-/// not ask for, stand beside what was flown, without a verdict.
+/// The claims about a flight of `scenario` under another law: that it reached its position. What is proven of ours, and
+/// what ours must not ask for, stand beside what was flown, without a verdict.
 #[must_use]
 pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let duration = scenario.timing.duration();

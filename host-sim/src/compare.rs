@@ -1,9 +1,9 @@
 //! The `compare` command: our law and its rivals on one set of scenes.
 //!
-//! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle, allocation, sensors and
-//! clock. The table has every figure, less is better, and marks the rows that ours loses; `compare.csv` has them in full, two
-//! pictures the courses, `report.html` all of it. What is claimed of ours, and decides the exit status: every random flight settles, and no command of it is cut or
-//! leaves its certified bounds.
+//! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle,
+//! allocation, sensors and clock. The table has every figure, less is better, and marks the rows that ours loses;
+//! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. What is claimed of ours, and
+//! decides the exit status: every random flight settles, and no command of it is cut or leaves its certified bounds.
 
 pub mod page;
 pub mod pictures;
@@ -96,7 +96,8 @@ pub fn certified(file: &Scenario) -> Result<Certified, CompareError> {
     })
 }
 
-/// Flies all laws of `set`, and ours, in all scenes of `file`, which was read from `text`, and in `flights` random flights.
+/// Flies all laws of `set`, and ours, in all scenes of `file`, which was read from `text`, and in `flights` random
+/// flights.
 ///
 /// # Errors
 /// [`CompareError`].

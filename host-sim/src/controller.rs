@@ -52,7 +52,8 @@ impl Controller {
         }
     }
 
-    /// For every tick in which nothing can be learnt from the motion. A rival knows by itself what its rotors cannot deliver.
+    /// For every tick in which nothing can be learnt from the motion. A rival knows by itself what its rotors cannot
+    /// deliver.
     pub fn hold_estimates(&mut self) {
         match self {
             Self::Ours(law) => law.hold_estimates(),

@@ -1,6 +1,8 @@
-//! What a pilot would say of a flight: how far it fell, how far it overshot, when it was there for good, how restless it was.
+//! What a pilot would say of a flight: how far it fell, how far it overshot, when it was there for good, how restless
+//! it was.
 //!
-//! Of the true motion, whatever the law was told of it. With x the position, x_d the reference's, at the ticks k = 0 … n - 1:
+//! Of the true motion, whatever the law was told of it. With x the position, x_d the reference's, at the ticks k = 0 …
+//! n - 1:
 //!
 //! | figure | |
 //! |---|---|
@@ -64,7 +66,8 @@ impl Course {
         Self::until_settled(scenario, flight, near, f64::INFINITY)
     }
 
-    /// Likewise, to the end or until position and yaw have been settled for `rest`, s. What has long settled stays so where nothing acts on it.
+    /// Likewise, to the end or until position and yaw have been settled for `rest`, s. What has long settled stays so
+    /// where nothing acts on it.
     ///
     /// # Errors
     /// As [`Self::over`].

@@ -6,8 +6,8 @@
 //! every tick          Estimator::state -> law
 //! ```
 //!
-//! Before a flight begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates, by a hand that nobody sees: the
-//! estimator begins to work in motion, too.
+//! Before a flight begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates,
+//! by a hand that nobody sees: the estimator begins to work in motion, too.
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;

@@ -1,7 +1,8 @@
 //! Who flies: our law, or a rival with its gains.
 //!
-//! [`LawChoice`] says which law is wanted and can be written down and read again; a [`Flier`] is that law on one vehicle, ready for any
-//! number of flights. Ours is flown as boards fly it, certified once for all flights; where nothing certifies it, as its scenario has it.
+//! [`LawChoice`] says which law is wanted and can be written down and read again; a [`Flier`] is that law on one
+//! vehicle, ready for any number of flights. Ours is flown as boards fly it, certified once for all flights; where
+//! nothing certifies it, as its scenario has it.
 
 use crate::flight::Flight;
 use crate::rivals::kind::Kind;
@@ -52,8 +53,8 @@ pub enum Flier {
 }
 
 impl Flier {
-    /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what certifies ours. None if
-    /// the rival is undefined for its gains.
+    /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what
+    /// certifies ours. None if the rival is undefined for its gains.
     #[must_use]
     pub fn new(choice: &LawChoice, scenario: &Scenario, certified: Option<&Certified>) -> Option<Self> {
         Some(match choice {

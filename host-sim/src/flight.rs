@@ -1,7 +1,7 @@
 //! A closed-loop flight: plant, reference and controller, one control tick at a time.
 //!
-//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors or its estimator make of it, and the
-//! reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
+//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors or its estimator make
+//! of it, and the reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
 
 use crate::actuators::ActuationError;
 use crate::controller::Controller;
@@ -53,7 +53,8 @@ pub struct Tick {
     pub surroundings: Surroundings,
     /// What was asked for.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust scale.
+    /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust
+    /// scale.
     pub wrench: Wrench,
     /// What the law went through.
     pub diagnostics: Diagnostics,
@@ -125,8 +126,8 @@ impl fmt::Display for FlightError {
 
 impl std::error::Error for FlightError {}
 
-/// The law of the scenario, reset: through the door that boards use where the scenario is certified. What no certificate
-/// covers may be simulated.
+/// The law of the scenario, reset: through the door that boards use where the scenario is certified. What no
+/// certificate covers may be simulated.
 ///
 /// # Errors
 /// If the law refuses the scenario's period or delay.
@@ -140,8 +141,8 @@ pub fn law(scenario: &Scenario) -> Result<Law, ParameterError> {
 }
 
 impl Flight {
-    /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a millisecond;
-    /// whoever flies one scenario many times clones the start.
+    /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a
+    /// millisecond; whoever flies one scenario many times clones the start.
     ///
     /// # Errors
     /// As [`law`]'s.
@@ -152,8 +153,8 @@ impl Flight {
         }
     }
 
-    /// A flight of what is certified, with the law and the allocation that boards fly, in the circumstances of `scenario`:
-    /// its timing, delay, lag, start and reference.
+    /// A flight of what is certified, with the law and the allocation that boards fly, in the circumstances of
+    /// `scenario`: its timing, delay, lag, start and reference.
     ///
     /// # Errors
     /// As [`law`]'s.
@@ -233,7 +234,8 @@ impl Flight {
         Ok(brief)
     }
 
-    /// A control tick with the law asked by `step`: what it was told where that is not the state, the tick, and what `step` says of it.
+    /// A control tick with the law asked by `step`: what it was told where that is not the state, the tick, and what
+    /// `step` says of it.
     #[inline(always)]
     fn advance<D>(
         &mut self,
@@ -332,7 +334,8 @@ impl Flight {
 
 /// A flight among others that are flown side by side ([`crate::batch`]).
 impl Flight {
-    /// The body that moves and the plant steps of a tick, if the wrench acts on it at once and no estimator watches the motion.
+    /// The body that moves and the plant steps of a tick, if the wrench acts on it at once and no estimator watches the
+    /// motion.
     pub(crate) fn bare(&self) -> Option<(&Body, u32)> {
         let plant = self.vehicle.bare().filter(|_| self.estimation.is_none())?;
         Some((plant.body(), self.steps_per_tick))

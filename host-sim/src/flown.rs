@@ -1,8 +1,9 @@
 //! What a flight showed, gathered tick by tick: the extremes that claims and searches judge.
 //!
-//! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight has *reached* its reference once
-//! it is near it and stays near it until the end: in position within [`NEAR_POSITION`], in attitude, heading included,
-//! within [`NEAR_MRP`]. A vehicle that stands on the ground does not fly: it is away from its reference wherever that is.
+//! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight
+//! has *reached* its reference once it is near it and stays near it until the end: in position within
+//! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. A vehicle that stands on the ground does not
+//! fly: it is away from its reference wherever that is.
 
 use crate::flight::{Flight, FlightError, Tick};
 use scenario::Scenario;

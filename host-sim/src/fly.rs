@@ -88,11 +88,11 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
 }
 
-/// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and report.md into `directory`; and
-/// flight.mcap if it is asked for; if not, that of an older flight goes.
+/// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and
+/// report.md into `directory`; and flight.mcap if it is asked for; if not, that of an older flight goes.
 ///
-/// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing of an
-/// older flight in the same directory is touched.
+/// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing
+/// of an older flight in the same directory is touched.
 ///
 /// # Errors
 /// [`FlyError`]; then no file is left behind.

@@ -1,15 +1,17 @@
 //! Something to stand on.
 //!
-//! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, friction and the legs' spread
-//! hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for ever without
-//! drifting. In the air the ground does nothing.
+//! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, friction and the legs'
+//! spread hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for
+//! ever without drifting. In the air the ground does nothing.
 //!
-//! A vehicle that comes down stops where it touches: the impact is perfectly plastic, without a bounce. One that leans is then on its
-//! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that leaned further lies as it
-//! fell. No energy comes from any of this: a body is not lifted back to the ground's height, which it passes by at most what it falls in one
-//! plant step, or, after a hop that leaned, by what its foot did.
+//! A vehicle that comes down stops where it touches: the impact is perfectly plastic, without a bounce. One that leans
+//! is then on its lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its
+//! `rocking`); one that leaned further lies as it fell. No energy comes from any of this: a body is not lifted back to
+//! the ground's height, which it passes by at most what it falls in one plant step, or, after a hop that leaned, by
+//! what its foot did.
 //!
-//! There is no sliding, no tipping over an edge by a torque from standing, and no ground effect, and a fall breaks nothing.
+//! There is no sliding, no tipping over an edge by a torque from standing, and no ground effect, and a fall breaks
+//! nothing.
 
 mod rocking;
 
@@ -55,8 +57,8 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Ground on which `vehicle` stands with its origin at `height`, m; and there it stands, where `start` says, level. `step` is the
-    /// plant's, s.
+    /// Ground on which `vehicle` stands with its origin at `height`, m; and there it stands, where `start` says, level.
+    /// `step` is the plant's, s.
     #[must_use]
     pub fn under(vehicle: &Vehicle, height: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
         let (mass, inertia) = (f64::from(vehicle.mass), vehicle.inertia.map(f64::from));
@@ -65,8 +67,8 @@ impl Ground {
         (Self { height, weight, step, stance: Stance::Still }, standing(position, upright(start)))
     }
 
-    /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it was at `start`: at
-    /// rest on it if that is down there.
+    /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it
+    /// was at `start`: at rest on it if that is down there.
     #[must_use]
     pub fn at(height: f64, truth: &Truth, gravity: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
         let weight = Weight { mass: truth.mass, inertia: truth.inertia, gravity };
@@ -88,8 +90,8 @@ impl Ground {
         }
     }
 
-    /// Where a vehicle at `state`, on which `force`, N, world, acts besides its weight, and `torque`, N m, body, is after a step on the
-    /// ground; none if that does not hold it.
+    /// Where a vehicle at `state`, on which `force`, N, world, acts besides its weight, and `torque`, N m, body, is
+    /// after a step on the ground; none if that does not hold it.
     pub fn hold(&mut self, state: &BodyState, force: &Vector3<f64>, torque: &Vector3<f64>) -> Option<BodyState> {
         let rocked = match &mut self.stance {
             Stance::Air => Rocked::Off,

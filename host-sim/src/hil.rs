@@ -5,11 +5,12 @@
 //!                   <-- ODOMETRY, HIL_SENSOR --
 //! ```
 //!
-//! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs, the
-//! flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far the vehicle has moved since.
-//! The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is [`senses`]' to say. Time is the
-//! other side's own: how regular its commands are by its clock is watched and reported ([`pace`]). A session may be held to a speed, for
-//! MAVLink clients that live in this desk's time and come by [`relay`].
+//! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs,
+//! the flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far
+//! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is
+//! [`senses`]' to say. Time is the other side's own: how regular its commands are by its clock is watched and reported
+//! ([`pace`]). A session may be held to a speed, for MAVLink clients that live in this desk's time and come by
+//! [`relay`].
 
 pub mod answer;
 pub mod messages;
@@ -124,8 +125,8 @@ pub struct Clients<'a> {
 /// Time between lines of status, by the desk's clock.
 const STATUS: Duration = Duration::from_secs(1);
 
-/// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or somebody
-/// interrupts.
+/// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
+/// somebody interrupts.
 ///
 /// # Errors
 /// [`HilError`].

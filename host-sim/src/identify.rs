@@ -53,8 +53,8 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
     Quantities::combined(&fit, bench, configuration.vehicle(), late(log, scenario))
 }
 
-/// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a sample of the IMU, besides the
-/// [`low_passes`].
+/// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a sample of the
+/// IMU, besides the [`low_passes`].
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
         Source::Estimator => 1.0 / IMU_RATE,

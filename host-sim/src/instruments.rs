@@ -5,12 +5,13 @@
 //! every pose_every    p + n,  exp(n) q  -> pose_delay later
 //! ```
 //!
-//! G and A are the sensor's own filters: a BMI088's, of 116 and 145 Hz by its data sheet, taken as second-order Butterworth filters. They make it
-//! 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
+//! G and A are the sensor's own filters: a BMI088's, of 116 and 145 Hz by its data sheet, taken as second-order
+//! Butterworth filters. They make it 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
 //!
-//! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed decides
-//! everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor feels or shows more than a BMI088's range: a hard
-//! touchdown's 50 g are 24 g to its filter, which makes 9 g of the millisecond that they last.
+//! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed
+//! decides everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor feels or
+//! shows more than a BMI088's range: a hard touchdown's 50 g are 24 g to its filter, which makes 9 g of the millisecond
+//! that they last.
 
 use crate::sensors::{noise, single};
 use controller_core::estimator::EstimatorParameters;
@@ -95,8 +96,8 @@ pub struct Instruments {
 }
 
 impl Instruments {
-    /// Sensors as `what` describes them, under `gravity`, m/s^2, of a vehicle that has this velocity, m/s, a millisecond before
-    /// the first sample. Outages count from `beginning`, us after that.
+    /// Sensors as `what` describes them, under `gravity`, m/s^2, of a vehicle that has this velocity, m/s, a
+    /// millisecond before the first sample. Outages count from `beginning`, us after that.
     #[must_use]
     pub fn new(what: &Estimator, gravity: f64, velocity: Vector3<f64>, beginning: u64) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(what.seed);
@@ -123,8 +124,8 @@ impl Instruments {
         Self { filters: None, ..self }
     }
 
-    /// The IMU's sample of a vehicle at `state`, a millisecond after the last. A pose of this moment, if one is due, will
-    /// carry `time`, us.
+    /// The IMU's sample of a vehicle at `state`, a millisecond after the last. A pose of this moment, if one is due,
+    /// will carry `time`, us.
     pub fn sample(&mut self, state: &BodyState, time: u64) -> ImuSample {
         self.sample_of(state, time, |felt| felt)
     }

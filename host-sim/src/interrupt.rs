@@ -1,5 +1,5 @@
-//! Being asked to stop: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so that nothing half-written
-//! stays behind.
+//! Being asked to stop: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so
+//! that nothing half-written stays behind.
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::io;
@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
-    /// Takes note of these signals from now on, instead of being ended by them. A SIGHUP that is ignored, as under `nohup`, stays ignored.
+    /// Takes note of these signals from now on, instead of being ended by them. A SIGHUP that is ignored, as under
+    /// `nohup`, stays ignored.
     ///
     /// # Errors
     /// If the system refuses.

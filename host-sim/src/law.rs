@@ -103,7 +103,8 @@ impl LawServer {
         let (fall, gravity) = (f64::from(configuration.greatest_fall()), f64::from(configuration.vehicle().gravity));
         Ok(Self {
             law: flight::law(scenario)?,
-            // A step of single precision above the limit, so that rounding never turns a refused number into a served one.
+            // A step of single precision above the limit, so that rounding never turns a refused number into a served
+            // one.
             least_vertical_acceleration: fall - gravity * (1.0 - f64::from(f32::EPSILON)),
         })
     }

@@ -1,5 +1,5 @@
-//! The desktop side: a vehicle to fly, and reports of what was flown. Scenario files and the verdict on them are a crate of
-//! their own, [`scenario`], which the firmware's build uses too.
+//! The desktop side: a vehicle to fly, and reports of what was flown. Scenario files and the verdict on them are a
+//! crate of their own, [`scenario`], which the firmware's build uses too.
 //!
 //! | module | what it holds |
 //! |---|---|

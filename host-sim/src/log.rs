@@ -1,11 +1,12 @@
 //! log.csv: one row per control tick.
 //!
-//! The first 40 columns are a contract with other tools; what stands to their right may grow: by what the law
-//! estimates (m/s^2, N m), by the rotors' thrusts (N, after lag, in still air, numbered from 1), by the wind (m/s, world), by the battery's voltage (V) and current (A), by what
-//! the law was told of the state. Angles in rad, the rest in SI units; each number has the digits that give its bits back.
+//! The first 40 columns are a contract with other tools; what stands to their right may grow: by what the law estimates
+//! (m/s^2, N m), by the rotors' thrusts (N, after lag, in still air, numbered from 1), by the wind (m/s, world), by the
+//! battery's voltage (V) and current (A), by what the law was told of the state. Angles in rad, the rest in SI units;
+//! each number has the digits that give its bits back.
 //!
-//! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of the
-//! state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
+//! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of
+//! the state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
 
 use crate::flight::Tick;
 use scenario::reality::Reality;
@@ -46,7 +47,8 @@ measured_qw,measured_qx,measured_qy,measured_qz,measured_wx,measured_wy,measured
 
 const ESTIMATED: &str = ",est_px,est_py,est_pz,est_vx,est_vy,est_vz,est_qw,est_qx,est_qy,est_qz,est_wx,est_wy,est_wz";
 
-/// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further column.
+/// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further
+/// column.
 #[must_use]
 pub fn bytes_per_row(reality: &Reality) -> u64 {
     const MODEL: u64 = 740;

@@ -161,7 +161,8 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
     }
 }
 
-/// Refuses a flight whose log takes a lot, unless that is `allowed`, and says so; `duration` is the key that makes it so long.
+/// Refuses a flight whose log takes a lot, unless that is `allowed`, and says so; `duration` is the key that makes it
+/// so long.
 fn permit(scenario: &Scenario, named: &str, duration: &str, allowed: bool) -> Result<(), String> {
     let rows = scenario.timing.ticks;
     let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));

@@ -1,4 +1,5 @@
-//! A vehicle under the core's whole pilot: supervisor, estimator, conditioner, governor, law and allocation, in closed loop.
+//! A vehicle under the core's whole pilot: supervisor, estimator, conditioner, governor, law and allocation, in closed
+//! loop.
 //!
 //! ```text
 //! Pilot::tick -> motor command -> (delay) -> rotors, air, ground -> IMU, each millisecond -> Meddler -> conditioner
@@ -6,9 +7,9 @@
 //!      '------------------------------- increments, poses <-------------------------------------'
 //! ```
 //!
-//! It does in one call a tick what the firmware's tasks do, without their link and their clock: so hours pass in seconds. What
-//! an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or changes in what they say.
-//! SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
+//! It does in one call a tick what the firmware's tasks do, without their link and their clock: so hours pass in
+//! seconds. What an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or
+//! changes in what they say. SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
 
 use crate::instruments::{Felt, Instruments, SAMPLE};
 use crate::reality::RealVehicle;
@@ -127,8 +128,8 @@ pub struct PilotedVehicle<'m> {
 }
 
 impl<'m> PilotedVehicle<'m> {
-    /// The scenario's vehicle, standing on level ground at the origin with its rotors still, at `now`, us, of its clock. The pilot has
-    /// just booted, with what the certificate said about the scenario's configuration.
+    /// The scenario's vehicle, standing on level ground at the origin with its rotors still, at `now`, us, of its
+    /// clock. The pilot has just booted, with what the certificate said about the scenario's configuration.
     ///
     /// # Errors
     /// [`PilotedError::Parameter`]: without four rotors there is nothing to command.
@@ -167,8 +168,9 @@ impl<'m> PilotedVehicle<'m> {
         })
     }
 
-    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments, body rate and poses of that are
-    /// replaced by the vehicle's own. With what it decided comes what the motors are told from now on.
+    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments,
+    /// body rate and poses of that are replaced by the vehicle's own. With what it decided comes what the motors are
+    /// told from now on.
     ///
     /// # Errors
     /// [`PilotedError::Diverged`].

@@ -15,8 +15,8 @@
 //! | [`lanes`] | numbers of several vehicles in one register |
 //! | [`rows`] | many vehicles that move at the same time |
 //!
-//! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall. Where a flight needs
-//! them, [`crate::actuators`] and [`crate::ground`] stand around it.
+//! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall. Where a flight
+//! needs them, [`crate::actuators`] and [`crate::ground`] stand around it.
 
 pub mod body;
 pub mod lanes;

@@ -1,5 +1,5 @@
-//! The figures of a flight, as SVG text: the eight panels of the paper's Figures 1 and 2, four of them again for the first
-//! seconds, and a picture of the path.
+//! The figures of a flight, as SVG text: the eight panels of the paper's Figures 1 and 2, four of them again for the
+//! first seconds, and a picture of the path.
 
 pub mod canvas;
 pub mod panel;
@@ -43,7 +43,8 @@ pub fn figure_2(scenario: &Scenario, samples: &[Sample]) -> Result<String, PlotE
     ])
 }
 
-/// The first seconds of yaw, attitude error, moments and attitude feedback, which a whole flight squeezes into a few pixels.
+/// The first seconds of yaw, attitude error, moments and attitude feedback, which a whole flight squeezes into a few
+/// pixels.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses.

@@ -1,5 +1,5 @@
-//! Progress for whoever is watching, on anything longer than a few seconds: a bar on a terminal, elsewhere a plain line now
-//! and then.
+//! Progress for whoever is watching, on anything longer than a few seconds: a bar on a terminal, elsewhere a plain line
+//! now and then.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write, stderr, stdout};

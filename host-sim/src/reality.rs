@@ -1,5 +1,5 @@
-//! A vehicle as it really is, in air that moves: what flies in place of [`crate::plant`] and [`crate::actuators`] where the
-//! scenario says more than its model ([`scenario::reality`]).
+//! A vehicle as it really is, in air that moves: what flies in place of [`crate::plant`] and [`crate::actuators`] where
+//! the scenario says more than its model ([`scenario::reality`]).
 //!
 //! ```text
 //! wrench -> (delay) -> allocation -> motors (battery, failure) -> rotor speeds -> thrusts, drag -> body -> ground
@@ -15,10 +15,11 @@
 //!
 //! A disturbance adds a constant force at the centre of mass, world frame, and a constant torque, body frame.
 //!
-//! Forces are evaluated at every stage of the method: the rotors' speeds and gusts at the stage's time, drag at its velocity
-//! and attitude. So where these are smooth, the whole has the method's order. The exceptions: a command that arrives, a
-//! step gust, a disturbance, a rotor that fails and the ground act from the beginning of a plant step on; voltage and turbulence are held
-//! over it. Each costs an error of the order of the step at that instant and leaves the order of the rest alone.
+//! Forces are evaluated at every stage of the method: the rotors' speeds and gusts at the stage's time, drag at its
+//! velocity and attitude. So where these are smooth, the whole has the method's order. The exceptions: a command that
+//! arrives, a step gust, a disturbance, a rotor that fails and the ground act from the beginning of a plant step on;
+//! voltage and turbulence are held over it. Each costs an error of the order of the step at that instant and leaves the
+//! order of the rest alone.
 //!
 //! A vehicle on the ground stands while the forces on it do not lift it; the ground is [`crate::ground`]'s.
 
@@ -127,8 +128,8 @@ impl RealVehicle {
         self
     }
 
-    /// Asks each rotor for a thrust, N, and moves the vehicle for one plant step. For a flight controller that allocates by itself:
-    /// without the scenario's delay.
+    /// Asks each rotor for a thrust, N, and moves the vehicle for one plant step. For a flight controller that
+    /// allocates by itself: without the scenario's delay.
     ///
     /// # Errors
     /// [`Diverged`].
@@ -190,8 +191,8 @@ impl RealVehicle {
         self.touchdown.take()
     }
 
-    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
-    /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
+    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
+    /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].

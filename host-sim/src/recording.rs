@@ -10,8 +10,9 @@
 //! | /estimates | host_sim.Estimates | force, torque and thrust scale, where the law estimates |
 //! | /state, /log | host_sim.State, foxglove.Log | what the firmware is doing, and says: sessions of `sitl` only |
 //!
-//! A [flight] is recorded with all but the last two, a [session] with all but /estimates. Frames are the law's: world z up, body x ahead, y left, z up; SI units. Messages are JSON, one of each for every control tick,
-//! at the vehicle's own time. The scenario is attached as it was read.
+//! A [flight] is recorded with all but the last two, a [session] with all but /estimates. Frames are the law's: world z
+//! up, body x ahead, y left, z up; SI units. Messages are JSON, one of each for every control tick, at the vehicle's
+//! own time. The scenario is attached as it was read.
 
 mod drawing;
 pub mod flight;
@@ -52,7 +53,8 @@ pub struct Recording<W: Write> {
 }
 
 impl<W: Write> Recording<W> {
-    /// Begins one of `scenario` with these topics beside those that every one has: its `text` attached, the vehicle's arms drawn.
+    /// Begins one of `scenario` with these topics beside those that every one has: its `text` attached, the vehicle's
+    /// arms drawn.
     ///
     /// # Errors
     /// As the writer's.

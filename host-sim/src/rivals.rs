@@ -1,8 +1,9 @@
-//! Other laws, to compare ours with: in the same simulator, through the same allocation, limits, sensors, estimator and clock.
+//! Other laws, to compare ours with: in the same simulator, through the same allocation, limits, sensors, estimator and
+//! clock.
 //!
-//! They are references for comparison, written from what their papers say, in double precision; nothing about them is proven or meant to
-//! fly. What the papers leave to the reader, or lack where ours has it (feed-forward, gains of their own for tilt and yaw), each
-//! module says. Their gains are found by the cost that ours are tuned by ([`tuning`]).
+//! They are references for comparison, written from what their papers say, in double precision; nothing about them is
+//! proven or meant to fly. What the papers leave to the reader, or lack where ours has it (feed-forward, gains of their
+//! own for tilt and yaw), each module says. Their gains are found by the cost that ours are tuned by ([`tuning`]).
 //!
 //! | module | law |
 //! |---|---|

@@ -142,8 +142,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     Ok(status(comparison.holds, None))
 }
 
-/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`: they
-/// would pass for those that flew. They are not removed, because a search for them takes long.
+/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`:
+/// they would pass for those that flew. They are not removed, because a search for them takes long.
 fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Result<(), String> {
     for name in [RIVALS, FOUND] {
         let there = directory.join(name);

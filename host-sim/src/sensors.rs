@@ -9,8 +9,9 @@
 //! ```
 //!
 //! - Attitude: the last pose's, carried on with the gyro (`propagation`).
-//! - Velocity, position: where a pose comes at every tick and the velocity is exact (plus noise), the pose and that velocity.
-//!   From an alpha-beta filter otherwise, with a double pole rho = exp(-bandwidth T_p), T_p the time between poses:
+//! - Velocity, position: where a pose comes at every tick and the velocity is exact (plus noise), the pose and that
+//!   velocity. From an alpha-beta filter otherwise, with a double pole rho = exp(-bandwidth T_p), T_p the time between
+//!   poses:
 //!
 //! ```text
 //! each tick   x+ = x + T v + T^2/2 a,   v+ = v + T a,     a = 0, or with an accelerometer R_m f_m - g e3
@@ -18,13 +19,13 @@
 //! ```
 //!
 //!   and the position that the controller is told is the pose's at a pose and carried on from it with v between poses.
-//! - A pose drops out with a given probability. Everything arrives a number of ticks late; until the first sample does, it
-//!   is all there is.
+//! - A pose drops out with a given probability. Everything arrives a number of ticks late; until the first sample does,
+//!   it is all there is.
 //! - The start of a flight is known: where a vehicle takes off from, it has been standing.
 //!
-//! The gyro's and accelerometer's noise is that of samples at the control rate. Sources: O. J. Woodman, *An introduction to
-//! inertial navigation*, 2007, section 3 (noise and bias of a gyro); P. R. Kalata, *The Tracking Index*, IEEE TAES 20(2), 1984
-//! (the filter).
+//! The gyro's and accelerometer's noise is that of samples at the control rate. Sources: O. J. Woodman, *An
+//! introduction to inertial navigation*, 2007, section 3 (noise and bias of a gyro); P. R. Kalata, *The Tracking
+//! Index*, IEEE TAES 20(2), 1984 (the filter).
 
 mod propagation;
 

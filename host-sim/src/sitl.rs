@@ -15,9 +15,9 @@
 //! | [`flash`] | where parameters are kept |
 //! | `record` | the session as MCAP |
 //!
-//! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here they share
-//! a thread and a simulated clock, which is let go no further than the desk's. The configuration is certified as at a board's boot, and a
-//! scenario that could not be built for a board is refused ([`scenario::board`]).
+//! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
+//! they share a thread and a simulated clock, which is let go no further than the desk's. The configuration is
+//! certified as at a board's boot, and a scenario that could not be built for a board is refused ([`scenario::board`]).
 
 pub mod clock;
 pub mod faults;
@@ -165,7 +165,8 @@ impl Restart for Desk {
 }
 
 impl Sitl {
-    /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if it will not.
+    /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if
+    /// it will not.
     ///
     /// # Errors
     /// In words: what the firmware cannot fly, and files and ports that cannot be used.

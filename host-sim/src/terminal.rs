@@ -1,4 +1,5 @@
-//! What commands have in common at a terminal: a file read once, output written whole, signals watched, and the status they end with.
+//! What commands have in common at a terminal: a file read once, output written whole, signals watched, and the status
+//! they end with.
 
 use host_sim::campaign::manifest::MANIFEST;
 use host_sim::interrupt::Interrupt;

@@ -2,14 +2,15 @@
 //!
 //! What is asked, in this order:
 //!
-//! 1. a constraint: every inequality of the certificate, down to the rotors, with [`requirements::Requirements::margin`] to spare; the
-//!    sampled loops stable with gain and delay margins, at least those without which nothing may fly; the vehicle recovers
-//!    from upside down; the file's own reference is flown without a clipped command and within the errors asked for;
+//! 1. a constraint: every inequality of the certificate, down to the rotors, with
+//!    [`requirements::Requirements::margin`] to spare; the sampled loops stable with gain and delay margins, at least
+//!    those without which nothing may fly; the vehicle recovers from upside down; the file's own reference is flown
+//!    without a clipped command and within the errors asked for;
 //! 2. the least cost: what a pilot feels of the trials in [`trials`], averaged over the vehicle as it may really be.
 //!
-//! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`] searches;
-//! [`output`] writes what was found. A search starts from the file's constants and never ends with worse ones. Seeds are fixed: the same
-//! file gives the same constants.
+//! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`]
+//! searches; [`output`] writes what was found. A search starts from the file's constants and never ends with worse
+//! ones. Seeds are fixed: the same file gives the same constants.
 
 pub mod candidate;
 pub mod chosen;

@@ -90,8 +90,8 @@ impl SimulatedVehicle {
         }
     }
 
-    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and the
-    /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
+    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
+    /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].

@@ -102,8 +102,8 @@ impl Drop for WholeFile {
     }
 }
 
-/// How the name begins under which the file called `path` grows. Not its own name, which may be as long as names can be; but one of its own
-/// also among programs that share a number, as in containers.
+/// How the name begins under which the file called `path` grows. Not its own name, which may be as long as names can
+/// be; but one of its own also among programs that share a number, as in containers.
 fn hidden(path: &Path) -> Option<String> {
     let mut name = DefaultHasher::new();
     path.file_name()?.hash(&mut name);

@@ -1,11 +1,13 @@
 //! What the firmware can fly of all scenarios: 100 Hz, four rotors, and sampled loops with margin.
 //!
-//! On a board the law is told body rates by the estimator, which are late ([`rates_delay`]); they are in the loops judged here, whether the
-//! scenario has `[estimator]` or not.
+//! On a board the law is told body rates by the estimator, which are late ([`rates_delay`]); they are in the loops
+//! judged here, whether the scenario has `[estimator]` or not.
 //!
-//! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice of factors is judged here.
+//! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
+//! of factors is judged here.
 //!
-//! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built for a board.
+//! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built
+//! for a board.
 
 use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;
@@ -22,10 +24,11 @@ pub const RATE: f64 = 100.0;
 /// Rotors that the boards have outputs for.
 pub const ROTORS: usize = 4;
 
-/// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not arm: why, if so.
+/// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not
+/// arm: why, if so.
 ///
-/// One whose sampled loops are unstable or without margin is refused: no board works that out, so nothing else would keep it on
-/// the ground.
+/// One whose sampled loops are unstable or without margin is refused: no board works that out, so nothing else would
+/// keep it on the ground.
 ///
 /// # Errors
 /// One line: the file, the field or the loop, and what is wrong.
@@ -60,8 +63,8 @@ fn timing(scenario: &Scenario) -> Timing {
     Timing { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
-/// The loops that only the attitude's factors change, and those that these and the position's across change; under the paper's law, whose
-/// gains are those of every axis, the vertical one is among them.
+/// The loops that only the attitude's factors change, and those that these and the position's across change; under the
+/// paper's law, whose gains are those of every axis, the vertical one is among them.
 const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
 const ACROSS: [Axis; 2] = [Axis::LateralX, Axis::LateralY];
 
@@ -94,7 +97,8 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
     loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
 }
 
-/// A number that tells one scenario's configuration from another's, in [0, 2^24): what was tuned on one is not the other's.
+/// A number that tells one scenario's configuration from another's, in [0, 2^24): what was tuned on one is not the
+/// other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
     // FNV-1a, 32 bits, over everything that the configuration and its loops are made of.

@@ -1,5 +1,6 @@
-//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of itself and, under the extended
-//! law, what the vehicle can fly if that is more ([`controller_core::extended::defaults::reference_bounds`]).
+//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of
+//! itself and, under the extended law, what the vehicle can fly if that is more
+//! ([`controller_core::extended::defaults::reference_bounds`]).
 //!
 //! ```toml
 //! [reference_bounds]
@@ -20,7 +21,8 @@ use controller_core::reference::ReferenceBounds;
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
 const DEFAULT_SPEED: f32 = 5.0;
 
-/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` says what they are where the section is left out.
+/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` says what they are where the
+/// section is left out.
 ///
 /// # Errors
 /// Names the bound that is missing, negative, or below what the reference takes.

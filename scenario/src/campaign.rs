@@ -1,4 +1,5 @@
-//! `[campaign]`: how far the circumstances of a campaign's flights may differ. `host-sim campaign` flies them; nothing else looks.
+//! `[campaign]`: how far the circumstances of a campaign's flights may differ. `host-sim campaign` flies them; nothing
+//! else looks.
 //!
 //! ```toml
 //! [campaign]
@@ -25,8 +26,9 @@
 //! rotor_scales = 0.0                   # part of each rotor's thrust, more or less
 //! ```
 //!
-//! Each number is the greatest of what is drawn: evenly from zero up, or within a ball of that radius, or as much on either side.
-//! Every key may be left out; these are the defaults. Those of `duration` and `wind` ([`default_wind`]) depend on the law.
+//! Each number is the greatest of what is drawn: evenly from zero up, or within a ball of that radius, or as much on
+//! either side. Every key may be left out; these are the defaults. Those of `duration` and `wind` ([`default_wind`])
+//! depend on the law.
 
 use crate::body::GREATEST_TURN_PER_STEP;
 use crate::reality::numbers::{Allowed, seed};
@@ -145,9 +147,9 @@ fn greatest_rate(timing: &Timing) -> f64 {
 /// Degrees.
 const ATTITUDE_NOISE_DEG: f64 = 0.2;
 
-/// The wind that a law is asked to bear where the file says nothing, m/s: 5, or less where the estimate of forces cannot hold
-/// against it. A wind of 1 m/s pushes with about 0.5 m/s^2, and four fifths of the estimate's level are taken. The paper's law, which
-/// estimates nothing and gives way to every constant force, gets none.
+/// The wind that a law is asked to bear where the file says nothing, m/s: 5, or less where the estimate of forces
+/// cannot hold against it. A wind of 1 m/s pushes with about 0.5 m/s^2, and four fifths of the estimate's level are
+/// taken. The paper's law, which estimates nothing and gives way to every constant force, gets none.
 #[must_use]
 pub fn default_wind(configuration: &Configuration) -> f64 {
     const GREATEST: f64 = 5.0;
@@ -209,7 +211,8 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
     Ok(Campaign { flights: flights as u64, seed: seed(&section)?, ranges })
 }
 
-/// The least duration of a flight, s: in less nothing that was thrown has time to miss its reference, or to come back to it.
+/// The least duration of a flight, s: in less nothing that was thrown has time to miss its reference, or to come back
+/// to it.
 const LEAST_DURATION: f64 = 1.0;
 
 /// The most flights of a campaign.

@@ -5,7 +5,8 @@
 //! v_across = 6.0             # m/s
 //! ```
 //!
-//! Every key is one of [`ExtendedParameters::TABLE`]; `docs/scenario-file.md` lists them, and [`written`] prints them all.
+//! Every key is one of [`ExtendedParameters::TABLE`]; `docs/scenario-file.md` lists them, and [`written`] prints them
+//! all.
 
 use crate::section::{FieldError, Section};
 use controller_core::certificate::configuration::ExtendedLaw;

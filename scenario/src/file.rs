@@ -150,8 +150,8 @@ impl Scenario {
         sensors + self.reality.estimator.map_or(0.0, |_| estimator::rates_delay())
     }
 
-    /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together, and where the velocity
-    /// comes from.
+    /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together, and
+    /// where the velocity comes from.
     ///
     /// # Errors
     /// If the timing is outside the model's range; no file that was read leads there.

@@ -18,11 +18,12 @@
 //! | `[campaign]` | the circumstances of [`campaign`] |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the list of sections
-//! and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's types take them.
+//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the
+//! list of sections and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's
+//! types take them.
 //!
-//! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`], which
-//! is about the small motions of the [`sampled_loop`]; [`board`], whether the firmware can.
+//! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`],
+//! which is about the small motions of the [`sampled_loop`]; [`board`], whether the firmware can.
 
 pub mod actuation;
 pub mod board;

@@ -67,7 +67,8 @@ pub struct Reality {
 }
 
 impl Reality {
-    /// Reads all sections but those of `measured`, `[sensors]` and `[estimator]`, for a flight of `configuration` from `initial`.
+    /// Reads all sections but those of `measured`, `[sensors]` and `[estimator]`, for a flight of `configuration` from
+    /// `initial`.
     ///
     /// # Errors
     /// Names the field that is refused, or the section that lacks another.

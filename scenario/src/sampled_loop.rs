@@ -1,8 +1,9 @@
 //! The sampled loop with real actuators, linearised about hover: will these gains hold still on this vehicle?
 //!
-//! The paper's proofs are for continuous time and ideal actuators. On a vehicle the law is evaluated every h seconds, its
-//! wrench arrives d samples late and is held, and rotors follow it with a first-order lag. Near the origin the saturations
-//! have unit slope and the axes separate, so each axis is a linear sampled loop whose transition matrix is known exactly:
+//! The paper's proofs are for continuous time and ideal actuators. On a vehicle the law is evaluated every h seconds,
+//! its wrench arrives d samples late and is held, and rotors follow it with a first-order lag. Near the origin the
+//! saturations have unit slope and the axes separate, so each axis is a linear sampled loop whose transition matrix is
+//! known exactly:
 //!
 //! | [`Axis`] | command | what follows it |
 //! |---|---|---|
@@ -10,12 +11,14 @@
 //! | `LateralX`, `LateralY` | tau_2, tau_1 with the whole law in front: z, filters, force, omega_d, omega_d' | rate, tilt, velocity, position |
 //! | `Vertical` | thrust from z and filters | velocity, position |
 //!
-//! For each: the spectral radius per sample, and the gain and delay margins at the actuator's command. `docs/sampled-loop.md`
-//! derives the matrices. The extended law's estimates are part of them, each with its own gains. Mass drops out.
+//! For each: the spectral radius per sample, and the gain and delay margins at the actuator's command.
+//! `docs/sampled-loop.md` derives the matrices. The extended law's estimates are part of them, each with its own gains.
+//! Mass drops out.
 //!
 //! It cannot speak about large errors: a saturated loop has less gain, so a loop with a lower gain limit
-//! ([`Margins::gain_down`]) or a small one may still hang in a limit cycle far from the origin. Nor about noise, flexible
-//! frames, the thrust that a rotor loses in moving air, or the torque of a rotor's own acceleration, which helps yaw.
+//! ([`Margins::gain_down`]) or a small one may still hang in a limit cycle far from the origin. Nor about noise,
+//! flexible frames, the thrust that a rotor loses in moving air, or the torque of a rotor's own acceleration, which
+//! helps yaw.
 
 mod chain;
 mod compensator;
@@ -139,14 +142,15 @@ impl LoopModel {
         Ok(Self { inertia, slopes: Slopes::of(law), timing, velocity_bandwidth: None })
     }
 
-    /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`, rad/s.
+    /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`,
+    /// rad/s.
     #[must_use]
     pub fn with_velocity_from_positions(&self, bandwidth: f64) -> Self {
         Self { velocity_bandwidth: Some(bandwidth), ..*self }
     }
 
-    /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have that
-    /// gain margin at the position feedback. The gains need not be ones that may fly.
+    /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have
+    /// that gain margin at the position feedback. The gains need not be ones that may fly.
     #[must_use]
     pub fn with_position_feedback(&self, factor: f64) -> Self {
         Self { slopes: self.slopes.with_position_feedback(factor), ..*self }

@@ -79,8 +79,8 @@ impl<'a> Section<'a> {
         element(table, last).map(in_line)
     }
 
-    /// A refusal by one of the law's constructors, which know the file's dotted paths; `self` is the whole file, for the
-    /// value it has there.
+    /// A refusal by one of the law's constructors, which know the file's dotted paths; `self` is the whole file, for
+    /// the value it has there.
     #[must_use]
     pub fn refused(&self, error: &ParameterError) -> FieldError {
         let found = self.lookup(error.field).map_or(String::new(), |value| format!(", found {value}"));

@@ -1,7 +1,7 @@
 //! What is asked of the sampled loops: stable, and not nearly unstable.
 //!
-//! A linear model without margin is a model of a vehicle that nobody has. [`LoopMargin::LEAST`] is what a configuration must
-//! have to fly; `host-sim tune` asks for more.
+//! A linear model without margin is a model of a vehicle that nobody has. [`LoopMargin::LEAST`] is what a configuration
+//! must have to fly; `host-sim tune` asks for more.
 
 use crate::sampled_loop::{Axis, LoopReport};
 use std::fmt;
@@ -18,13 +18,13 @@ pub struct LoopMargin {
 impl LoopMargin {
     /// What must be there to fly.
     ///
-    /// *Gain, 1.5*: a loop's gain is proportional to the rotors' thrust coefficient and to one over the inertia. Data sheets,
-    /// air density and a fresh or a worn propeller move the first by a fifth, an estimate of the inertia is rarely better than
-    /// that: 1.2 * 1.2 = 1.44. Both are as often too small as too great, so the loop must bear 1 / 1.5 as well: a lateral loop
-    /// whose attitude loop is too weak to carry it fails there.
+    /// *Gain, 1.5*: a loop's gain is proportional to the rotors' thrust coefficient and to one over the inertia. Data
+    /// sheets, air density and a fresh or a worn propeller move the first by a fifth, an estimate of the inertia is
+    /// rarely better than that: 1.2 * 1.2 = 1.44. Both are as often too small as too great, so the loop must bear 1 /
+    /// 1.5 as well: a lateral loop whose attitude loop is too weak to carry it fails there.
     ///
-    /// *Delay, 2 ms*: what no file states. A sample of a gyro read at 1 kHz is up to 1 ms old when a tick uses it; the tick's
-    /// own work, the frame to the motor controllers and their next step take most of another.
+    /// *Delay, 2 ms*: what no file states. A sample of a gyro read at 1 kHz is up to 1 ms old when a tick uses it; the
+    /// tick's own work, the frame to the motor controllers and their next step take most of another.
     pub const LEAST: Self = Self { gain: 1.5, delay: 2e-3 };
 
     /// What `report`'s loop lacks most of this margin; none if it has all of it.

@@ -26,8 +26,9 @@ use nalgebra::Vector3;
 /// Gravity where the file leaves it out, m/s^2.
 const DEFAULT_GRAVITY: f64 = 9.81;
 
-/// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its references; its own reference is
-/// within `own`. The extended law's estimates count on rotors that respond as `actuators` says.
+/// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its
+/// references; its own reference is within `own`. The extended law's estimates count on rotors that respond as
+/// `actuators` says.
 ///
 /// # Errors
 /// Names the field that is missing, of another law, or leaves the law undefined: M_p >= g - K_a3; `rotors.position` if
@@ -124,8 +125,9 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
     }
 }
 
-/// The references that a vehicle is asked to fly where the file does not say: its own, within `own`, and as much of `most` beside it as certifies, in
-/// steps of a tenth. All of it where even a hundredth does not, so that the certificate says why.
+/// The references that a vehicle is asked to fly where the file does not say: its own, within `own`, and as much of
+/// `most` beside it as certifies, in steps of a tenth. All of it where even a hundredth does not, so that the
+/// certificate says why.
 fn flyable(
     own: &ReferenceBounds,
     most: ReferenceBounds,

@@ -4,8 +4,8 @@
 //!
 //! - the *certificate* is a proof about commands: whatever the vehicle does, the law never asks for more than it has. A
 //!   vehicle whose rotors follow a second late falls with every command within its limits.
-//! - the [sampled loops](crate::sampled_loop) are an analysis of small motions about hover: with this period, delay and lag
-//!   they die out, with [`LoopMargin::LEAST`] to spare. It knows nothing of limits and large angles.
+//! - the [sampled loops](crate::sampled_loop) are an analysis of small motions about hover: with this period, delay and
+//!   lag they die out, with [`LoopMargin::LEAST`] to spare. It knows nothing of limits and large angles.
 //!
 //! Together they are what can be said without flying. Neither is a proof that a recovery succeeds.
 

@@ -32,8 +32,8 @@ impl Imu {
         }
     }
 
-    /// Rate and force, as the sensor says. A density n sampled at f is noise of deviation n sqrt(f); a walk of density w moves by
-    /// w / sqrt(f) between samples.
+    /// Rate and force, as the sensor says. A density n sampled at f is noise of deviation n sqrt(f); a walk of density
+    /// w moves by w / sqrt(f) between samples.
     pub fn sample(&mut self, moment: &Moment, random: &mut impl Rng) -> (Vector3<f32>, Vector3<f32>) {
         self.gyro_bias += noise(random, f64::from(REAL.gyro_walk) / RATE.sqrt());
         self.accelerometer_bias += noise(random, f64::from(REAL.accelerometer_walk) / RATE.sqrt());

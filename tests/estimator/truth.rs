@@ -69,8 +69,8 @@ impl Truth {
         Self { name, moments: (0..=milliseconds).map(moment).collect(), counts_from: 2_000 }
     }
 
-    /// The certified Hummingbird, drag and rotor lag on: held upside down for 3 s, then let go, upright and at rest again after
-    /// a few seconds. The plant moves in steps of 1 ms, the law ticks every 10.
+    /// The certified Hummingbird, drag and rotor lag on: held upside down for 3 s, then let go, upright and at rest
+    /// again after a few seconds. The plant moves in steps of 1 ms, the law ticks every 10.
     pub fn recovery() -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");
         let file = Scenario::load(&folder.join("hummingbird.toml")).unwrap();
@@ -101,8 +101,8 @@ impl Truth {
         Self { name: "recovery", moments, counts_from: 2_500 }
     }
 
-    /// The same on a vehicle whose rotors shake the sensor: a gyro by 0.5 rad/s and an accelerometer by 5 m/s^2 on each axis, at
-    /// 97 Hz, which the law's ticks fold to 3 Hz.
+    /// The same on a vehicle whose rotors shake the sensor: a gyro by 0.5 rad/s and an accelerometer by 5 m/s^2 on each
+    /// axis, at 97 Hz, which the law's ticks fold to 3 Hz.
     pub fn shaken(self) -> Self {
         let mut moments = self.moments;
         for (n, moment) in moments.iter_mut().enumerate() {

@@ -1,7 +1,8 @@
-//! V_0 = 1/2 |z_2|^2 + the integral of s(phi(mu); M) . d mu of section 1, along the vertical and across, and what a force error does.
+//! V_0 = 1/2 |z_2|^2 + the integral of s(phi(mu); M) . d mu of section 1, along the vertical and across, and what a
+//! force error does.
 //!
-//! The filters' drive is the one wanted, in continuous time; the force is constant and known. The vertical decides alone; across has a
-//! constant level once the vertical rests, and while the net's level is in force.
+//! The filters' drive is the one wanted, in continuous time; the force is constant and known. The vertical decides
+//! alone; across has a constant level once the vertical rests, and while the net's level is in force.
 
 use crate::support::extended::{law, random_configuration, random_parameters};
 use crate::support::random::{self, ChaCha8Rng};

@@ -1,8 +1,9 @@
-//! What must follow, as data: of each failure, by when the vehicle must do how much about it, and how much it may do at most.
+//! What must follow, as data: of each failure, by when the vehicle must do how much about it, and how much it may do at
+//! most.
 //!
-//! **The order of severity**, from the least that may be done to the most: carry on; hold; land; go down by the IMU alone; stop the motors. Of
-//! two failures the more severe answer must be given, each by its own time, and no answer may be given that is more severe than the
-//! more severe of the two allows.
+//! **The order of severity**, from the least that may be done to the most: carry on; hold; land; go down by the IMU
+//! alone; stop the motors. Of two failures the more severe answer must be given, each by its own time, and no answer
+//! may be given that is more severe than the more severe of the two allows.
 //!
 //! These are read off `docs/firmware.md` and the limits in it. The rules' table is not asked.
 
@@ -40,7 +41,8 @@ use Severity::{CarryOn, Descend, Hold, Land, Off};
 pub struct Answer {
     /// In flight on the estimate: at least so much, so long after it has failed, s.
     pub in_flight: &'static [(Severity, f64)],
-    /// In flight on the estimate: at most so much. Motors that stop on the ground after a landing are no more than that landing.
+    /// In flight on the estimate: at most so much. Motors that stop on the ground after a landing are no more than that
+    /// landing.
     pub most: Severity,
     /// Idling: motors off so long after it has failed, s.
     pub idling: Option<f64>,
@@ -97,8 +99,8 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
         // It takes a while until a drift is more than noise.
         Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
-        // On the ground they may be of a simulated vehicle that stands still. Whoever stops a take-off then stops the motors of a vehicle that is
-        // believed to stand, and may be some centimetres up.
+        // On the ground they may be of a simulated vehicle that stands still. Whoever stops a take-off then stops the
+        // motors of a vehicle that is believed to stand, and may be some centimetres up.
         Failure::PoseFreezes if phase == Phase::Spooling => {
             Answer { in_flight: &[(Descend, 3.6)], idling: None, forbids_arming: false, is_gentle: false, ..NO_POSES }
         }
@@ -172,8 +174,9 @@ pub fn least(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
         }
     };
     let least = of_phase(phase).0;
-    // What may be lost need not get where it is pushed, nor what is lower by the move of its frame; what a sender says of itself is believed;
-    // frozen poses that begin anew, or drift, are found anew; and hands that come later find it in the air.
+    // What may be lost need not get where it is pushed, nor what is lower by the move of its frame; what a sender says
+    // of itself is believed; frozen poses that begin anew, or drift, are found anew; and hands that come later find it
+    // in the air.
     let has = |wanted: &[Failure]| failed.iter().any(|(failure, _)| wanted.contains(failure));
     let may_be_lost = failed.iter().any(|(failure, _)| answer(*failure, phase).most == Off);
     let counts = |failure: Failure| match failure {

@@ -107,8 +107,8 @@ const TIPPING: f64 = 0.5;
 /// How long hands take to stop what they take hold of, s.
 const GRASPING: f64 = 0.05;
 
-/// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study has 24 m/s^2 across, of which it leaves the last
-/// ones to its feedback, metres off, and 6.2 m/s^2 downwards.
+/// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study has 24 m/s^2 across, of
+/// which it leaves the last ones to its feedback, metres off, and 6.2 m/s^2 downwards.
 const GUST: (f64, f64) = (28.0, 2.5);
 const UPDRAFT: (f64, f64) = (7.2, 5.0);
 const THERMAL: (f64, f64) = (2.8, 5.0);

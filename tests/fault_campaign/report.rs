@@ -23,7 +23,8 @@ fn letter(mode: Mode) -> char {
     }
 }
 
-/// The way that a flight took after its failure, a letter a mode, what happened disarmed left out; and when motors stopped, s.
+/// The way that a flight took after its failure, a letter a mode, what happened disarmed left out; and when motors
+/// stopped, s.
 fn way(flown: &Flown) -> String {
     let mut modes: Vec<Mode> = Vec::new();
     let mut off = None;

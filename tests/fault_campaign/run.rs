@@ -10,8 +10,8 @@ use controller_core::flight::{Inputs, Mode, Outcome, Output, Reason, Request, Tr
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone: 0.6 m/s, and a landing's 0.5 m/s that frozen poses have
-/// taught it to take for nothing.
+/// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone: 0.6 m/s, and a
+/// landing's 0.5 m/s that frozen poses have taught it to take for nothing.
 const GENTLE: (f64, f64) = (0.6, 1.1);
 
 /// Ticks after the last failure after which the operator wants the vehicle down, whatever it does.
@@ -42,7 +42,8 @@ pub struct Flown {
     pub path: Vec<(Transition, f64)>,
     /// Every transition of the flight.
     pub taken: Vec<Transition>,
-    /// The hardest touchdown after the first failure, m/s, and whether everything that had failed permitted a gentle one.
+    /// The hardest touchdown after the first failure, m/s, and whether everything that had failed permitted a gentle
+    /// one.
     pub touchdown: Option<f64>,
     pub is_gentle: bool,
     /// Ticks flown.
@@ -205,7 +206,8 @@ impl Flight<'_> {
             self.flown.path.push((transition, (self.sight.tick - first) as f64 * 0.01));
         }
         let speed = self.vehicle.vehicle().state().velocity.norm();
-        // Who hits the ground hard may lose count of its speed; and who does not know it takes a steady updraft for the ground.
+        // Who hits the ground hard may lose count of its speed; and who does not know it takes a steady updraft for the
+        // ground.
         let counts = self.flown.is_gentle || self.flown.touchdown.is_none();
         let knows = counts && !self.failures.has(Failure::PoseVague);
         if transition.reason == Reason::Landed && knows && !self.is_on_ground() {
@@ -225,7 +227,8 @@ impl Flight<'_> {
     /// What has failed, and for how long, s.
     fn failed(&self) -> Vec<(Failure, f64)> {
         let now = self.sight.now;
-        // What a hit on the ground has given to the velocity, beyond the accelerometer's range, is told from a drift only in time.
+        // What a hit on the ground has given to the velocity, beyond the accelerometer's range, is told from a drift
+        // only in time.
         let counts_from = |failure| if failure == Failure::PoseDrifts { self.hit } else { 0 };
         let lasts = |failure| Some(self.failures.since(failure, now)?.min((now - counts_from(failure)) as f64 * 1e-6));
         let failed = |failure| Some((failure, lasts(failure)?));
@@ -280,8 +283,8 @@ impl Flight<'_> {
         }
     }
 
-    /// What makes it land at most leaves its poses to be believed, also where it hits the ground harder than the accelerometer can show. One in
-    /// a hundred thousand is refused for its noise, but not two after each other.
+    /// What makes it land at most leaves its poses to be believed, also where it hits the ground harder than the
+    /// accelerometer can show. One in a hundred thousand is refused for its noise, but not two after each other.
     fn check_pose(&mut self, outcome: &Outcome) {
         let refused = outcome.pose.and_then(Result::err).filter(|refused| refused.is_lie());
         let (failed, phase) = (self.failed(), self.case.phase);

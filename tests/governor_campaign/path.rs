@@ -1,11 +1,13 @@
-//! Points that move as vehicles are asked to: round circles, along eights, to and fro, up and down; inside a case's bounds, or not.
+//! Points that move as vehicles are asked to: round circles, along eights, to and fro, up and down; inside a case's
+//! bounds, or not.
 
 use super::case::{Case, Random};
 use controller_core::governor::Motion;
 use controller_core::prelude::Vector3;
 use core::f64::consts::TAU;
 
-/// A sum of two turns of each axis about a centre: amplitudes, phases, and how many turns the second makes to the first's one.
+/// A sum of two turns of each axis about a centre: amplitudes, phases, and how many turns the second makes to the
+/// first's one.
 #[derive(Clone, Copy)]
 pub struct Path {
     centre: Vector3<f64>,

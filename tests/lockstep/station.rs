@@ -1,4 +1,5 @@
-//! The ground station and the pose source: MAVLink written and read by the public crate, not by the firmware's own code.
+//! The ground station and the pose source: MAVLink written and read by the public crate, not by the firmware's own
+//! code.
 
 use super::clock::SimClock;
 use super::line::Line;

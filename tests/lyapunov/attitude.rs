@@ -5,8 +5,8 @@
 //!
 //!   V_2' = -2a w.s_omega + b (T w).sigma_omega + b k_omega theta.Lambda (Delta - s_omega - s_theta (1 + |theta|^2)/4).
 //!
-//! Lambda is diagonal in (0, 1] and s_theta = g theta with g >= gamma_theta, so with d = |Delta| + |s_omega| its term is at
-//! most b k_omega min(d^2 / gamma_theta, alpha_theta d). Also |T w| <= beta_theta y, |sigma_omega| <= min(k_omega
+//! Lambda is diagonal in (0, 1] and s_theta = g theta with g >= gamma_theta, so with d = |Delta| + |s_omega| its term
+//! is at most b k_omega min(d^2 / gamma_theta, alpha_theta d). Also |T w| <= beta_theta y, |sigma_omega| <= min(k_omega
 //! lambda_max y, sqrt(3) M*), |Delta| <= (max |J_i - J_j| y^2 + 2 (tr J - 2 lambda_min) y |omega_d|) / sqrt(3). Hence
 //! V_2' < 0 for 0 < y <= Y if a / b exceeds, at every such y,
 //!
@@ -52,8 +52,8 @@ pub fn auxiliary_level(law: &Law) -> f64 {
 }
 
 impl Weights {
-    /// The least a / b of the paper's conditions (ConditionLyapunovGain1) and (ConditionLyapunovGain2), the second without
-    /// its constant 1 / (2 k_theta), which scales with neither.
+    /// The least a / b of the paper's conditions (ConditionLyapunovGain1) and (ConditionLyapunovGain2), the second
+    /// without its constant 1 / (2 k_theta), which scales with neither.
     pub fn ratio_in_print(law: &Law) -> f64 {
         let j = law.inertia.diagonal();
         let (gamma, alpha) = (gamma(law), 1.0 + law.delta);

@@ -2,7 +2,8 @@
 //!
 //!   z_1' = z_2 + c d,  z_2' = ubar_p + d,  c = 1/k_f + 1/k_s,
 //!
-//! where the paper has z_1' = z_2. V_1' then gains at most (2 k_p / k_v + k_p c) |z_2| |d| + (1 + 2 k_p c / k_v) |ubar_p| |d|, for
+//! where the paper has z_1' = z_2. V_1' then gains at most (2 k_p / k_v + k_p c) |z_2| |d| + (1 + 2 k_p c / k_v)
+//! |ubar_p| |d|, for
 //! |sigma_p(k_p z_1)| <= |ubar_p| + k_v |z_2|.
 
 use super::configuration;

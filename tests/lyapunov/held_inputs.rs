@@ -1,5 +1,6 @@
-//! What sampling at 100 Hz costs: along flights with inputs held between ticks V_1 and V_2 need not fall at every sample.
-//! Prints how often each rises where the law rather than rounding or the tracking of a moving reference decides.
+//! What sampling at 100 Hz costs: along flights with inputs held between ticks V_1 and V_2 need not fall at every
+//! sample. Prints how often each rises where the law rather than rounding or the tracking of a moving reference
+//! decides.
 
 use super::attitude::{Weights, random_rate_error};
 use super::position::{Translation, random_translation};

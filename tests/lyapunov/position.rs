@@ -61,7 +61,8 @@ impl Translation {
     }
 }
 
-/// Random z of any size from a millimetre to `greatest`, filter states anywhere in their box, as single precision has it.
+/// Random z of any size from a millimetre to `greatest`, filter states anywhere in their box, as single precision has
+/// it.
 pub fn random_translation(rng: &mut ChaCha8Rng, law: &Law, greatest: f32) -> Translation {
     let level = law.m_p as f32;
     let (u_f, u_s) = (random::in_box(rng, level).cast::<f64>(), random::in_box(rng, level).cast::<f64>());

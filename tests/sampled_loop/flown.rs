@@ -1,8 +1,10 @@
-//! Margins of the extended law, predicted by the sampled loops and flown: the command of one axis is made stronger, weaker or
-//! later in the simulation of the whole vehicle, rotors and six degrees of freedom, until the hover oscillates. All estimates
-//! are at work. `cargo test -p host-sim margins_are_where -- --nocapture` prints the table of `docs/sampled-loop.md`.
+//! Margins of the extended law, predicted by the sampled loops and flown: the command of one axis is made stronger,
+//! weaker or later in the simulation of the whole vehicle, rotors and six degrees of freedom, until the hover
+//! oscillates. All estimates are at work. `cargo test -p host-sim margins_are_where -- --nocapture` prints the table of
+//! `docs/sampled-loop.md`.
 //!
-//! There is no air in them: the model has none. A second test flies in the files' air. An attitude loop's own margins are flown without position and velocity, as on a gimbal.
+//! There is no air in them: the model has none. A second test flies in the files' air. An attitude loop's own margins
+//! are flown without position and velocity, as on a gimbal.
 
 use crate::support::extended::{with_constants, without_estimates};
 use controller_core::heading::Heading;
@@ -68,7 +70,8 @@ impl Bench {
         Self { scenario, axis }
     }
 
-    /// Whether the motion grows with the command `gain` times as strong and `later` plant steps later than the law knows.
+    /// Whether the motion grows with the command `gain` times as strong and `later` plant steps later than the law
+    /// knows.
     fn grows(&self, gain: f64, later: u64) -> bool {
         /// Ticks of the start, of a stretch after it, and how many of those are flown at most.
         const START: usize = 100;

@@ -103,8 +103,8 @@ fn ends_where_it_says(axis: Axis, gains: GainParameters, timing: Timing) -> f64 
     margins.delay
 }
 
-/// A lateral loop whose command changes its sign from tick to tick: slow ticks, and a position law so stiff that what it feeds forward
-/// jumps. Part of a sample more turns it over, at the Nyquist frequency and nowhere else.
+/// A lateral loop whose command changes its sign from tick to tick: slow ticks, and a position law so stiff that what
+/// it feeds forward jumps. Part of a sample more turns it over, at the Nyquist frequency and nowhere else.
 #[test]
 fn delay_that_makes_commands_alternate_ends_the_margin() {
     let gains = GainParameters {
@@ -122,7 +122,8 @@ fn delay_that_makes_commands_alternate_ends_the_margin() {
     }
 }
 
-/// A vertical loop at 20 Hz whose commands are 1.5 ticks late: a fraction of a tick more makes a crossing that was not there before.
+/// A vertical loop at 20 Hz whose commands are 1.5 ticks late: a fraction of a tick more makes a crossing that was not
+/// there before.
 #[test]
 fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
     let gains = GainParameters {

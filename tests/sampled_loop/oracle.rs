@@ -27,8 +27,8 @@ pub struct Motion {
     pub smoothed: f64,
 }
 
-/// What stands still between two ticks: ubar, as under the paper's law, or x', as under the extended one, which has a filter of bandwidth
-/// `k_d` before it.
+/// What stands still between two ticks: ubar, as under the paper's law, or x', as under the extended one, which has a
+/// filter of bandwidth `k_d` before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Held {
     Feedback,

@@ -1,9 +1,10 @@
 //! An adversary for the certificate: it searches everything reachable after a reset for the greatest rates and torques.
 //!
-//! A [`Situation`] is one instant: per axis a point of the filters' reachable set (`controller_core::certificate::
-//! reachable`), a feedback within ±M_p, a reference within Omega_r with any heading, any attitude error the path lifting
-//! admits and any body-rate error. Situations are coded as points of a cube, so that the search knows nothing of the
-//! sets' shapes; what a situation amounts to is worked out by the law's own code in `controller-core`.
+//! A [`Situation`] is one instant: per axis a point of the filters' reachable set
+//! (`controller_core::certificate:: reachable`), a feedback within ±M_p, a reference within Omega_r with any heading,
+//! any attitude error the path lifting admits and any body-rate error. Situations are coded as points of a cube, so
+//! that the search knows nothing of the sets' shapes; what a situation amounts to is worked out by the law's own code
+//! in `controller-core`.
 
 pub mod configurations;
 pub mod search;

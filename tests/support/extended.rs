@@ -29,8 +29,8 @@ pub fn paper_vehicle() -> Scenario {
     Scenario::load(&folder.join("paper-extended.toml")).unwrap()
 }
 
-/// Constants within a factor of four of `formulas` wherever the law allows, with any hysteresis and any share of yaw above what the
-/// hysteresis asks for; the potential below M_all, as the certificate has it.
+/// Constants within a factor of four of `formulas` wherever the law allows, with any hysteresis and any share of yaw
+/// above what the hysteresis asks for; the potential below M_all, as the certificate has it.
 pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, vehicle: &Vehicle) -> Extended {
     let mut values = formulas.values();
     for (value, constant) in values.iter_mut().zip(&ExtendedParameters::TABLE) {
@@ -67,8 +67,8 @@ pub fn random_vehicle(rng: &mut ChaCha8Rng) -> Vehicle {
     Vehicle::new(VehicleParameters { mass, inertia: Vector3::new(b + c, c + a, a + b), gravity: 9.81 }).unwrap()
 }
 
-/// A vehicle near the Hummingbird with its rotors idling anywhere, lagging and late or not at all, within any limits, and the constants that
-/// follow from its numbers, if they do: rotors may idle too fast for it.
+/// A vehicle near the Hummingbird with its rotors idling anywhere, lagging and late or not at all, within any limits,
+/// and the constants that follow from its numbers, if they do: rotors may idle too fast for it.
 pub fn random_configuration(rng: &mut ChaCha8Rng) -> Configuration {
     loop {
         if let Some(configuration) = configured(rng) {

@@ -20,10 +20,12 @@
 //! two multiply-adds per slab and no division: [`Slabs::range`]. The image of Z in the roll-pitch plane is a polygon
 //! with two edges per rotor; [`Polygon::nearest`] projects onto it.
 //!
-//! Normals are worked out in f64 with the wrench scaled as in [`Rotors`]; a tick works in f32. Where d nearly runs along a
-//! face, a.d is small, and the rounding of a.w becomes a large error in s. Three rules keep that from mattering:
+//! Normals are worked out in f64 with the wrench scaled as in [`Rotors`]; a tick works in f32. Where d nearly runs
+//! along a face, a.d is small, and the rounding of a.w becomes a large error in s. Three rules keep that from
+//! mattering:
 //!
-//! - a *steep* slab (|a.d| < [`STEEP`] |a||d|) is widened by that rounding, so that it never cuts off what is attainable;
+//! - a *steep* slab (|a.d| < [`STEEP`] |a||d|) is widened by that rounding, so that it never cuts off what is
+//!   attainable;
 //! - slabs narrow the range in the order of their steepness, and none moves it out of what the gentler ones left;
 //! - a slab with |a.d| below [`PARALLEL`] is left out.
 //!
@@ -76,7 +78,8 @@ struct Slab {
 }
 
 impl Slab {
-    /// The slab between the faces with `normal`, and the cosine between normal and direction; none where they are parallel.
+    /// The slab between the faces with `normal`, and the cosine between normal and direction; none where they are
+    /// parallel.
     fn new(
         rotors: &Rotors,
         generators: &[Generator],
@@ -220,7 +223,8 @@ impl Polygon {
                     for (rotor, other) in rotors.iter().zip(arms()) {
                         let (low, high) = (f64::from(rotor.thrust_min), f64::from(rotor.thrust_max));
                         let side = outward.dot(&other);
-                        // Rotors on one line with the centre share an edge; the rounding of their places does not count.
+                        // Rotors on one line with the centre share an edge; the rounding of their places does not
+                        // count.
                         let parallel = side.abs() <= 1e-12 * length;
                         let rises = if parallel { forward.dot(&other) < 0.0 } else { side > 0.0 };
                         start += other * if rises { high } else { low };

@@ -5,13 +5,14 @@
 //! u = phi^-1(y) = 2 y / (a + sqrt(a^2 + 4 (1 - a) y))
 //! ```
 //!
-//! u is the command (0 stopped, 1 full), f_max the thrust of a full command at the nominal voltage. a = 0 is a rotor whose
-//! speed follows the command, a = 1 one whose thrust does; real ones lie between. The inverse is written without the
-//! difference of nearly equal numbers that the textbook root has, so that it keeps single precision at small thrusts.
+//! u is the command (0 stopped, 1 full), f_max the thrust of a full command at the nominal voltage. a = 0 is a rotor
+//! whose speed follows the command, a = 1 one whose thrust does; real ones lie between. The inverse is written without
+//! the difference of nearly equal numbers that the textbook root has, so that it keeps single precision at small
+//! thrusts.
 //!
-//! A motor sees u V, the command times the battery's voltage. So the command that gives at V what u gives at the nominal
-//! V_0 is u V_0 / V. The ratio V_0 / V is held within [[`RATIO_MIN`], [`RATIO_MAX`]], and without a plausible, recent
-//! reading it is one: no compensation.
+//! A motor sees u V, the command times the battery's voltage. So the command that gives at V what u gives at the
+//! nominal V_0 is u V_0 / V. The ratio V_0 / V is held within [[`RATIO_MIN`], [`RATIO_MAX`]], and without a plausible,
+//! recent reading it is one: no compensation.
 //!
 //! A full command is all there is: below the nominal voltage the greatest thrust falls to f_max phi(V / V_0), and a
 //! certificate for the end of the battery must be asked for with that thrust as the rotors' maximum.

@@ -6,12 +6,12 @@
 //! tau = p_i x (f_i e3) + s_i (k_m / k_eta) f_i e3 = (y_i, -x_i, s_i k_m / k_eta) f_i,   f_i = k_eta (speed)^2
 //! ```
 //!
-//! so column i of B is (1, y_i, -x_i, s_i k_m / k_eta): newtons and newton metres per newton. The height z_i is kept for
-//! other users; with all thrusts along body z it moves no torque. Drag of the air on the rotor turns the body *against*
-//! the rotor's own rotation: s_i = +1 for a rotor that turns clockwise seen from above.
+//! so column i of B is (1, y_i, -x_i, s_i k_m / k_eta): newtons and newton metres per newton. The height z_i is kept
+//! for other users; with all thrusts along body z it moves no torque. Drag of the air on the rotor turns the body
+//! *against* the rotor's own rotation: s_i = +1 for a rotor that turns clockwise seen from above.
 //!
-//! The pseudo-inverse B+ = B' (B B')^-1 gives the thrusts of least sum of squares; for four rotors it is the inverse. It
-//! is worked out in f64 from rows scaled to unit length, so that newtons and newton metres weigh the same.
+//! The pseudo-inverse B+ = B' (B B')^-1 gives the thrusts of least sum of squares; for four rotors it is the inverse.
+//! It is worked out in f64 from rows scaled to unit length, so that newtons and newton metres weigh the same.
 //!
 //! Tilted rotors, and rotors that push down, are beyond this module.
 
@@ -178,7 +178,8 @@ impl Rotors {
         Self::spanning(list).ok_or(ParameterError { field: "rotors", reason: Reason::DoesNotSpan })
     }
 
-    /// Four equal rotors: 1 front left and 3 rear right turn clockwise, 2 rear left and 4 front right counter-clockwise.
+    /// Four equal rotors: 1 front left and 3 rear right turn clockwise, 2 rear left and 4 front right
+    /// counter-clockwise.
     ///
     /// # Errors
     /// As [`Rotors::new`]; a bad arm shows as the positions it makes, bad speeds as the thrusts.

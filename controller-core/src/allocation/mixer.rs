@@ -16,12 +16,12 @@
 //!    as near to its share of B+ w as lets the rotors after it deliver the rest (a range, again by slabs); the
 //!    last four follow from the inverse of their part of B. No iteration, and the thrusts depend continuously on w.
 //!
-//! **Never worse than clipping, in roll and pitch.** Clipping each rotor of B+ w gives thrusts within their ranges, hence
-//! a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding, which
-//! [`Mixer::wrench`] shows.
+//! **Never worse than clipping, in roll and pitch.** Clipping each rotor of B+ w gives thrusts within their ranges,
+//! hence a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding,
+//! which [`Mixer::wrench`] shows.
 //!
-//! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its scenario says
-//! never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
+//! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its
+//! scenario says never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
 
 use super::attainable::{PAIRS, Polygon, Slabs, generators};
 use super::collected;
@@ -103,7 +103,8 @@ impl Mixer {
         mixer
     }
 
-    /// Prepares the mixer for `rotors` where it lies: built apart and moved here, it would take its size on the stack again.
+    /// Prepares the mixer for `rotors` where it lies: built apart and moved here, it would take its size on the stack
+    /// again.
     pub fn prepare(&mut self, rotors: &Rotors) {
         let carriers = carriers(rotors);
         let carrying = || carriers.iter().map(|carrier| carrier.rotor);
@@ -129,7 +130,8 @@ impl Mixer {
     /// Thrusts for `wrench`, N and N m, body frame.
     ///
     /// # Errors
-    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never are.
+    /// Refuses a wrench that is not finite or beyond [`STATE_RANGE`](crate::state::STATE_RANGE); the law's own never
+    /// are.
     pub fn allocate(&self, wrench: &Wrench) -> Result<Allocation, InputError> {
         let Delivered { thrusts, clipped } = self.minimum_norm.allocate(wrench)?;
         if !clipped {
@@ -197,8 +199,8 @@ fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
 
 /// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.
 ///
-/// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one, so
-/// handing its thrust over to them never magnifies an error.
+/// With the largest volume, every other rotor's column is a combination of the four with coefficients of at most one,
+/// so handing its thrust over to them never magnifies an error.
 fn carriers(rotors: &Rotors) -> Vec<Carrier, ROTORS_MIN> {
     let (mut best, mut largest) = (Vec::new(), 0.0);
     for choice in 0_u32..1 << rotors.len() {

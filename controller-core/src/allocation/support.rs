@@ -21,9 +21,9 @@
 //!
 //! J times a ball of radius r is the ellipsoid with semi-axes J_kk r.
 //!
-//! For four rotors this is exact: a set of wrenches fits the rotors if and only if every [`RotorDemand::fits`]. For more it
-//! is sufficient only: the mixer also reaches wrenches for which B+ leaves a range. T and tau count as independent.
-//! Results are rounded outwards by [`ROUNDING`], which covers the f32 of the mixer's tick.
+//! For four rotors this is exact: a set of wrenches fits the rotors if and only if every [`RotorDemand::fits`]. For
+//! more it is sufficient only: the mixer also reaches wrenches for which B+ leaves a range. T and tau count as
+//! independent. Results are rounded outwards by [`ROUNDING`], which covers the f32 of the mixer's tick.
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};

@@ -89,11 +89,12 @@ impl Configuration {
         Ok(Self { vehicle, limits, law, bounds, rotors: None })
     }
 
-    /// Turns on the thrust projection T = max(m u.R e3, floor) of the paper's law, `floor` in N; see [`crate::projection`].
+    /// Turns on the thrust projection T = max(m u.R e3, floor) of the paper's law, `floor` in N; see
+    /// [`crate::projection`].
     ///
     /// # Errors
-    /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends, or the law is
-    /// another.
+    /// If the floor is not positive or above m (g - M_p - K_a3), where the argument for the projection ends, or the law
+    /// is another.
     pub fn with_thrust_floor(self, floor: f32) -> Result<Self, ParameterError> {
         let field = "control.thrust_floor";
         let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
@@ -122,7 +123,8 @@ impl Configuration {
         self.thrust_floor().map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
     }
 
-    /// By how much the law itself may command to fall, m/s^2: the reference's vertical acceleration must stay above this less g.
+    /// By how much the law itself may command to fall, m/s^2: the reference's vertical acceleration must stay above
+    /// this less g.
     #[must_use]
     pub fn greatest_fall(&self) -> f32 {
         match &self.law {
@@ -131,7 +133,8 @@ impl Configuration {
         }
     }
 
-    /// m (g - K_a3) less m times what the law may command to fall, N: the greatest floor the thrust projection may have.
+    /// m (g - K_a3) less m times what the law may command to fall, N: the greatest floor the thrust projection may
+    /// have.
     #[must_use]
     pub fn least_thrust(&self) -> f32 {
         self.vehicle.mass * (self.vehicle.gravity - self.greatest_fall() - self.bounds.vertical_acceleration)

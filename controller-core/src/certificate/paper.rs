@@ -1,4 +1,5 @@
-//! The certificate of the paper's law: the wrench in two forms, as printed and sharp, and the rotors under the sharp one.
+//! The certificate of the paper's law: the wrench in two forms, as printed and sharp, and the rotors under the sharp
+//! one.
 
 use super::configuration::{Configuration, PaperLaw};
 use super::form::{self, Derivation, Form};

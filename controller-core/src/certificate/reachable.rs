@@ -1,8 +1,8 @@
 //! What the filters can reach from x_f = 0, and so what u, u', u'' can be.
 //!
-//! Each axis of the cascade u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar) has an input |ubar| <= M_p. Its reachable set
-//! from zero is the convex region between the two extremal arcs that run from (M_p, M_p) to (-M_p, -M_p) and back with
-//! the input at its bound. Along an arc, with E_f = e^(-k_f t), E_s = e^(-k_s t),
+//! Each axis of the cascade u_f' = -k_f (u_f - u_s), u_s' = -k_s (u_s - ubar) has an input |ubar| <= M_p. Its reachable
+//! set from zero is the convex region between the two extremal arcs that run from (M_p, M_p) to (-M_p, -M_p) and back
+//! with the input at its bound. Along an arc, with E_f = e^(-k_f t), E_s = e^(-k_s t),
 //!
 //! u_s = M_p (2 E_s - 1),  u_f - u_s = 2 M_p k_s (E_f - E_s) / (k_s - k_f).
 //!
@@ -14,8 +14,8 @@
 //! | u_f' = -k_f (u_f - u_s) | 2 k_f U_l M_p | the same |
 //! | u_f'' = k_f (k_f (u_f - u_s) - k_s (u_s - ubar)) | 2 k_f M_p (k_s + k_f U_l^2) | 2 k_f M_p (k_s + k_f U_l) |
 //!
-//! Single axes stay single axes here: the horizontal pair is bounded by its Euclidean norm, sqrt(2) times an axis, and the
-//! vertical axis by itself.
+//! Single axes stay single axes here: the horizontal pair is bounded by its Euclidean norm, sqrt(2) times an axis, and
+//! the vertical axis by itself.
 
 use crate::math;
 use crate::reference::ReferenceBounds;

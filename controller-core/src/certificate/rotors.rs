@@ -12,8 +12,8 @@
 //! rotor i over thrust interval and torque set are support functions in the direction of its row of the inverse
 //! ([`crate::allocation::support`]): no box around a ball is paid for.
 //!
-//! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may ask for beyond
-//! hovering is required of it.
+//! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may ask for
+//! beyond hovering is required of it.
 
 use super::configuration::Configuration;
 use super::form::{ARITHMETIC_ALLOWANCE, Form};

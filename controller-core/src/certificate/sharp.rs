@@ -1,9 +1,10 @@
 //! A bound on omega_d and omega_d' sharper than Lemma 1's. `docs/sharp-bound.md` derives it step by step.
 //!
-//! Let n = |u|, gamma the tilt of rho = u / n from the vertical, chi the angle in the plane orthogonal to rho from body x to the
-//! uphill direction, so that the roll of R_d has tan phi = tan gamma sin chi. Write w and p for the parts of u'' and u'
-//! orthogonal to rho, r for the part of u' along it, w_perp and p_perp for the horizontal ones among the orthogonal, and
-//! `[v]` = (|v| + |v_perp|) / 2, which is the greatest sin chi (x . v) over chi. Then, exactly, omega_d' = L u'' + N, with
+//! Let n = |u|, gamma the tilt of rho = u / n from the vertical, chi the angle in the plane orthogonal to rho from body
+//! x to the uphill direction, so that the roll of R_d has tan phi = tan gamma sin chi. Write w and p for the parts of
+//! u'' and u' orthogonal to rho, r for the part of u' along it, w_perp and p_perp for the horizontal ones among the
+//! orthogonal, and `[v]` = (|v| + |v_perp|) / 2, which is the greatest sin chi (x . v) over chi. Then, exactly,
+//! omega_d' = L u'' + N, with
 //!
 //! ```text
 //! |L_12 u''| = |w| / n,  |L_3 u''| = |tan phi (x . w)| / n <= tan gamma [w] / n,
@@ -16,14 +17,14 @@
 //! |omega_d'|^2 <= (|L_12 u''| + |N_12|)^2 + (|L_3 u''| + |N_3|)^2.
 //! ```
 //!
-//! What is gained over the lemma: the yaw acceleration feels w only through tan gamma, and the tilt is bounded; p and r share
-//! one budget, p^2 + r^2 <= |u'|^2; the horizontal parts of w share another; the tilting and the yawing part of omega_d' are
-//! orthogonal; tall n goes with tilt, n >= u_z,min / cos gamma.
+//! What is gained over the lemma: the yaw acceleration feels w only through tan gamma, and the tilt is bounded; p and r
+//! share one budget, p^2 + r^2 <= |u'|^2; the horizontal parts of w share another; the tilting and the yawing part of
+//! omega_d' are orthogonal; tall n goes with tilt, n >= u_z,min / cos gamma.
 //!
 //! The supremum over (gamma; direction of w; split of u'; psi') is taken over cells that cover the whole range, each
-//! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. The number of cells is constant. Cells whose bound, every part at its worst
-//! at once, does not exceed what was found already are not looked into: rounding is monotone, so the result is the same to
-//! the last bit.
+//! quantity at the end of the cell where it is worst, so that the result is a bound and not a sample. The number of
+//! cells is constant. Cells whose bound, every part at its worst at once, does not exceed what was found already are
+//! not looked into: rounding is monotone, so the result is the same to the last bit.
 
 use super::reachable::Reachable;
 use crate::math;
@@ -176,8 +177,8 @@ impl Tilt {
         }
     }
 
-    /// The tangential part of a vector whose horizontal part is at most `horizontal` long and points within `direction` of
-    /// the slope, and whose vertical part is at most `vertical`.
+    /// The tangential part of a vector whose horizontal part is at most `horizontal` long and points within `direction`
+    /// of the slope, and whose vertical part is at most `vertical`.
     ///
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
     fn tangential(&self, horizontal: f64, vertical: f64, direction: &Direction) -> Tangential {
@@ -214,7 +215,8 @@ impl Tilt {
         }
     }
 
-    /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their parts.
+    /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their
+    /// parts.
     fn quadratic_part(&self, heading: &HeadingCell, shares: &Shares) -> Parts {
         let HeadingCell { rate, acceleration } = *heading;
         let Shares { stretch, length, product, mixed } = *shares;
@@ -229,8 +231,8 @@ impl Tilt {
     }
 }
 
-/// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which an
-/// upper bound already says that they change nothing.
+/// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which
+/// an upper bound already says that they change nothing.
 fn acceleration_square(
     tilt: &Tilt,
     linear: &[Parts; ANGLE_CELLS],
@@ -292,8 +294,8 @@ struct HeadingCell {
 }
 
 impl HeadingCell {
-    /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end. The
-    /// fastest first: they are the likeliest to matter.
+    /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end.
+    /// The fastest first: they are the likeliest to matter.
     fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
         let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
         // No heading turns faster than K_nu'' allows.
@@ -310,8 +312,8 @@ impl HeadingCell {
     }
 }
 
-/// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for everything in
-/// `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
+/// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for
+/// everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
 #[inline(never)] // a board's stack is not to hold it beside the other bounds
 pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {

@@ -1,14 +1,15 @@
-//! Where an estimate begins: a candidate, at first, that must prove itself; at rest or in motion, for the first time or again.
+//! Where an estimate begins: a candidate, at first, that must prove itself; at rest or in motion, for the first time or
+//! again.
 //!
-//! A candidate is a filter that starts at a pose and knows no velocity. It fuses the poses that come, through the same gates as
-//! any filter, and may pass over [`MISSES_MAX`] in a row; one more is the start of a new candidate. After [`POSES_MIN`] poses over [`PROVEN_AFTER`] they agree
-//! among themselves and with the gyro, about every turn, and with the accelerometer, about every change of velocity. Where up
-//! is comes out of that too, at rest as in motion: with an attitude that is off by an angle e, gravity is an acceleration of
-//! g sin(e) that the poses do not show. The filter has nowhere to put it but the accelerometer's bias, which is then not
-//! plausible.
+//! A candidate is a filter that starts at a pose and knows no velocity. It fuses the poses that come, through the same
+//! gates as any filter, and may pass over [`MISSES_MAX`] in a row; one more is the start of a new candidate. After
+//! [`POSES_MIN`] poses over [`PROVEN_AFTER`] they agree among themselves and with the gyro, about every turn, and with
+//! the accelerometer, about every change of velocity. Where up is comes out of that too, at rest as in motion: with an
+//! attitude that is off by an angle e, gravity is an acceleration of g sin(e) that the poses do not show. The filter
+//! has nowhere to put it but the accelerometer's bias, which is then not plausible.
 //!
-//! Where there is an estimate already, coasting since it believed no pose any more, a candidate that has proven itself is the
-//! same body found again if it is no further away than coasting for T seconds may have drifted:
+//! Where there is an estimate already, coasting since it believed no pose any more, a candidate that has proven itself
+//! is the same body found again if it is no further away than coasting for T seconds may have drifted:
 //!
 //! ```text
 //! turned by      0.1 + 0.02 T rad          an error of the gyro's bias that any calibration leaves
@@ -16,8 +17,8 @@
 //! at position    0.1 + 0.1 T + 0.15 T^2 m
 //! ```
 //!
-//! Otherwise the poses lie, or their frame has moved and nobody said so. Nothing here decides which: [`super::Estimator::adopt`]
-//! is for those who know.
+//! Otherwise the poses lie, or their frame has moved and nobody said so. Nothing here decides which:
+//! [`super::Estimator::adopt`] is for those who know.
 
 use super::filter::{Biases, Filter};
 use super::history::History;
@@ -76,7 +77,8 @@ impl Candidate {
         Ok(())
     }
 
-    /// Whether there is no use for it any more: it believes no pose, or has found up where the accelerometer has it not.
+    /// Whether there is no use for it any more: it believes no pose, or has found up where the accelerometer has it
+    /// not.
     pub fn is_lost(&self, settings: &Settings) -> bool {
         self.misses > MISSES_MAX || !self.filter.covariance.is_positive() || self.check_gravity(settings).is_err()
     }

@@ -1,5 +1,6 @@
-//! Poses that come out of order: the filter as it was before each of the last poses, so that one that belongs between them can
-//! be fused in its place and those after it again. The result is that of the same poses in order, to the last bit.
+//! Poses that come out of order: the filter as it was before each of the last poses, so that one that belongs between
+//! them can be fused in its place and those after it again. The result is that of the same poses in order, to the last
+//! bit.
 
 use super::filter::Filter;
 use super::measurement::PoseMeasurement;
@@ -48,8 +49,8 @@ impl Checkpoints {
         self.kept.clear();
     }
 
-    /// The filter as it was before the first pose later than `time` (us), and the poses from there on, which are forgotten here; none
-    /// if that is not known any more.
+    /// The filter as it was before the first pose later than `time` (us), and the poses from there on, which are
+    /// forgotten here; none if that is not known any more.
     pub fn rewind(&mut self, time: u64) -> Option<(Filter, Later)> {
         self.kept.iter().find(|kept| kept.pose.time > time).filter(|kept| kept.before.time <= time)?;
         let mut later = Later::new();

@@ -1,24 +1,24 @@
 //! How far off the nominal state may be: the covariance of the error, 15 by 15, written out in blocks of 3 by 3.
 //!
-//! The error is (dp, dv, theta, db_g, db_a): true less nominal, and for the attitude q_true = exp(theta) * q, in world axes. Over
-//! an increment of h seconds it moves as
+//! The error is (dp, dv, theta, db_g, db_a): true less nominal, and for the attitude q_true = exp(theta) * q, in world
+//! axes. Over an increment of h seconds it moves as
 //!
 //! ```text
 //! dp' = dv      dv' = -[f]x theta - R db_a      theta' = -R db_g       f = R (f_m - b_a), world
 //! ```
 //!
-//! With the attitude's error in world axes, theta does not turn with the body and nothing is singular. The transition is
-//! made as a product of shears, each of which adds a multiple of one part of the error to another, in an order that reads the
-//! same from both ends, so that it is right to second order in h:
+//! With the attitude's error in world axes, theta does not turn with the body and nothing is singular. The transition
+//! is made as a product of shears, each of which adds a multiple of one part of the error to another, in an order that
+//! reads the same from both ends, so that it is right to second order in h:
 //!
 //! ```text
 //! dp += h/2 dv;   theta += G db_g;   dv += S theta + A db_a;   theta += G db_g;   dp += h/2 dv
 //! G = -h/2 R,   S = -[R d]x,   A = -h R
 //! ```
 //!
-//! A shear costs as many products as it has blocks, keeps every symmetry and keeps P positive definite, rounding apart. R
-//! is that of the increment's middle. Then the noise of h seconds is added; and where a sensor was at full scale, what that may have left
-//! out of the velocity (`SHOCK`) or of the turn (`WHIRL`).
+//! A shear costs as many products as it has blocks, keeps every symmetry and keeps P positive definite, rounding apart.
+//! R is that of the increment's middle. Then the noise of h seconds is added; and where a sensor was at full scale,
+//! what that may have left out of the velocity (`SHOCK`) or of the turn (`WHIRL`).
 //!
 //! A measured part x (position, velocity or attitude) with noise covariance V and residual r is fused with
 //!
@@ -26,9 +26,9 @@
 //! S = P_xx + V,   K_j = P_jx S^-1,   error += K r,   P_ij -= K_i P_xj,   P_xj = V S^-1 P_xj
 //! ```
 //!
-//! where the last form of the measured rows, the same in exact arithmetic, subtracts nothing: a position known to 10 m before and
-//! to 1 mm after stays positive in single precision. Source of the equations: J. Sola, *Quaternion kinematics for the error-state
-//! Kalman filter*, 2017, chapters 5 to 7 (global angular error).
+//! where the last form of the measured rows, the same in exact arithmetic, subtracts nothing: a position known to 10 m
+//! before and to 1 mm after stays positive in single precision. Source of the equations: J. Sola, *Quaternion
+//! kinematics for the error-state Kalman filter*, 2017, chapters 5 to 7 (global angular error).
 
 use super::history::Clipped;
 use super::nominal::Motion;
@@ -36,12 +36,12 @@ use super::settings::EstimatorParameters;
 use crate::math;
 use nalgebra::{Matrix3, Vector3};
 
-/// The deviation of what the accelerometer may have missed of a change of velocity within an increment, in any direction, m/s: in a touchdown
-/// at a few metres a second, nearly all of it.
+/// The deviation of what the accelerometer may have missed of a change of velocity within an increment, in any
+/// direction, m/s: in a touchdown at a few metres a second, nearly all of it.
 const SHOCK: f32 = 1.0;
 
-/// The deviation of what the gyro may have missed of a turn within an increment, about any axis, rad: 5 ms at twice the range of 2000 deg/s, of which
-/// it showed one half, are 0.17.
+/// The deviation of what the gyro may have missed of a turn within an increment, about any axis, rad: 5 ms at twice the
+/// range of 2000 deg/s, of which it showed one half, are 0.17.
 const WHIRL: f32 = 0.1;
 
 /// The upper blocks of P; p, v, t(heta), g(yro's bias), a(ccelerometer's bias). SI units, radians.
@@ -189,8 +189,8 @@ impl Covariance {
         self.vv = symmetric(&self.vv);
     }
 
-    /// Takes a measurement of `part` into account: `residual` is measured less nominal, `noise` its covariance, `weight` the
-    /// inverse of P_xx + noise.
+    /// Takes a measurement of `part` into account: `residual` is measured less nominal, `noise` its covariance,
+    /// `weight` the inverse of P_xx + noise.
     pub(super) fn fuse(
         &mut self,
         part: Part,
@@ -226,8 +226,8 @@ impl Covariance {
         }
     }
 
-    /// Turns the world frame's part of the error that stays (dv) by `rotation`, and makes position and attitude as certain as a
-    /// pose that says all there is to know of them.
+    /// Turns the world frame's part of the error that stays (dv) by `rotation`, and makes position and attitude as
+    /// certain as a pose that says all there is to know of them.
     pub(super) fn rebase(
         &mut self,
         rotation: &Matrix3<f32>,

@@ -4,9 +4,9 @@
 //! - `Filter::test` and `Filter::fuse`: a pose that was true at the horizon is weighed, and taken into account.
 //! - `Filter::rebase`: the pose source says that its frame has moved.
 //!
-//! Normalised innovations squared (NIS) are r' S^-1 r of a residual r whose covariance is S: for a filter and a pose that are
-//! what they say, chi-square distributed with three degrees of freedom, 3 on average, and above [`GATE`] once in a hundred
-//! thousand times.
+//! Normalised innovations squared (NIS) are r' S^-1 r of a residual r whose covariance is S: for a filter and a pose
+//! that are what they say, chi-square distributed with three degrees of freedom, 3 on average, and above [`GATE`] once
+//! in a hundred thousand times.
 
 use super::covariance::{Correction, Covariance, Part, inverse};
 use super::history::History;
@@ -175,7 +175,8 @@ impl Filter {
         })
     }
 
-    /// Takes a pose into account that has been weighed: position, attitude, velocity, each with what the last one taught.
+    /// Takes a pose into account that has been weighed: position, attitude, velocity, each with what the last one
+    /// taught.
     ///
     /// # Errors
     /// Where a covariance is none; the filter is then of no use.
@@ -191,7 +192,8 @@ impl Filter {
         if self.covariance.is_positive() { Ok(()) } else { Err(Rejected::NotFinite) }
     }
 
-    /// Puts the state into the frame in which `pose` is: position and attitude are the pose's, the velocity turns along.
+    /// Puts the state into the frame in which `pose` is: position and attitude are the pose's, the velocity turns
+    /// along.
     pub(super) fn rebase(&mut self, pose: &PoseMeasurement, settings: &Settings) {
         let (position, attitude) = settings.deviations(pose.deviations);
         let turn = nominal::unit(&(pose.attitude * self.nominal.attitude.conjugate()));

@@ -1,8 +1,9 @@
-//! What the estimate is worth: how long it has been without poses, how uncertain it is, and whether its sensors are plausible.
+//! What the estimate is worth: how long it has been without poses, how uncertain it is, and whether its sensors are
+//! plausible.
 //!
-//! Uncertainties are those at the horizon, which is as far back as the last pose, or as the history goes where none comes.
-//! Means of NIS run over the last 50 poses that were weighed (an exponential average, each NIS cut at [`NIS_MAX`]); a filter whose
-//! sensors are what its settings say has 3.
+//! Uncertainties are those at the horizon, which is as far back as the last pose, or as the history goes where none
+//! comes. Means of NIS run over the last 50 poses that were weighed (an exponential average, each NIS cut at
+//! [`NIS_MAX`]); a filter whose sensors are what its settings say has 3.
 
 use super::filter::Filter;
 use super::history::EXTRAPOLATION_MAX;
@@ -11,12 +12,12 @@ use super::verdict::{Fault, Rejected, Taken};
 use crate::math;
 use nalgebra::Matrix3;
 
-/// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150 ms late,
-/// and their jitter.
+/// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150
+/// ms late, and their jitter.
 pub const COASTING_AFTER: u64 = 300_000;
 
-/// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace). As with poses, not for longer than
-/// [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
+/// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace). As with poses, not
+/// for longer than [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
 const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
 /// The mean NIS beyond which poses are noisier than they say: by a factor of 1.7, or not white.

@@ -1,14 +1,14 @@
 //! What the IMU did lately: increments in a ring, whole or in part, for poses that come late.
 //!
-//! An increment spans [start, end], us of the vehicle's clock; each begins where the last one ended. Inside one, body rate and
-//! specific force count as constant. A part f of it, taken from anywhere inside, is then
+//! An increment spans [start, end], us of the vehicle's clock; each begins where the last one ended. Inside one, body
+//! rate and specific force count as constant. A part f of it, taken from anywhere inside, is then
 //!
 //! ```text
 //! phi_f = f phi        d_f = f d - f (1 - f) / 2 phi x d
 //! ```
 //!
-//! each d in the body frame at the start of its own part (to first order in phi; the error is |phi|^2 |d| / 12 of an increment,
-//! 3e-4 m/s at 10 rad/s and 10 ms under 2 g). The parts of an increment put together are the increment.
+//! each d in the body frame at the start of its own part (to first order in phi; the error is |phi|^2 |d| / 12 of an
+//! increment, 3e-4 m/s at 10 rad/s and 10 ms under 2 g). The parts of an increment put together are the increment.
 
 use heapless::Deque;
 use nalgebra::Vector3;
@@ -141,7 +141,8 @@ impl History {
         if self.increments.is_full() { self.increments.front() } else { None }
     }
 
-    /// The specific force averaged over a twentieth of a second, m/s^2, in the body frame at the end of the newest increment.
+    /// The specific force averaged over a twentieth of a second, m/s^2, in the body frame at the end of the newest
+    /// increment.
     pub fn slow_force(&self) -> &Vector3<f32> {
         &self.slow_force
     }

@@ -1,4 +1,5 @@
-//! A pose as the estimator takes it: where the vehicle was, how sure the sender is, and what it says about its own stream.
+//! A pose as the estimator takes it: where the vehicle was, how sure the sender is, and what it says about its own
+//! stream.
 
 use crate::measurement::Pose;
 use nalgebra::{Quaternion, Vector3};
@@ -52,8 +53,8 @@ impl PoseMeasurement {
         Self { velocity: Some(pose.velocity()), ..Self::new(pose) }
     }
 
-    /// The same with the sender's deviations of position (m) and attitude (rad). Numbers that are not finite or negative say
-    /// nothing (MAVLink: NaN for unknown), and the settings' stay.
+    /// The same with the sender's deviations of position (m) and attitude (rad). Numbers that are not finite or
+    /// negative say nothing (MAVLink: NaN for unknown), and the settings' stay.
     #[must_use]
     pub fn deviations(self, position: f32, attitude: f32) -> Self {
         let says = |deviation: f32| deviation.is_finite() && deviation >= 0.0;

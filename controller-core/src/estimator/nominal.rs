@@ -1,18 +1,19 @@
 //! The nominal state and its motion: where the filter believes the vehicle to be, without doubt about it.
 //!
-//! Over an increment of h seconds with the turn phi and the change of velocity d (body frame at its start, biases taken off):
+//! Over an increment of h seconds with the turn phi and the change of velocity d (body frame at its start, biases taken
+//! off):
 //!
 //! ```text
 //! v+ = v + R d - g h e3        p+ = p + h (v + v+) / 2        q+ = q * exp(phi / 2)
 //! ```
 //!
-//! d was brought into the frame at the start by a gyro with its bias, which counts half: d loses h/2 b_g x d too. The turn is exact
-//! for the increment's phi; the position takes the acceleration as constant over the increment, an error of
-//! jerk h^3 / 12, 1e-8 m for 1 m/s^3 and 5 ms. World frame z up, body to world, SI units.
+//! d was brought into the frame at the start by a gyro with its bias, which counts half: d loses h/2 b_g x d too. The
+//! turn is exact for the increment's phi; the position takes the acceleration as constant over the increment, an error
+//! of jerk h^3 / 12, 1e-8 m for 1 m/s^3 and 5 ms. World frame z up, body to world, SI units.
 //!
-//! Attitude errors are 3-vectors, four modified Rodrigues parameters: a rotation by angle t about the unit axis n is
-//! 4 tan(t / 4) n, which is t n to third order, has a rational exponential and logarithm, and no singularity below a full turn.
-//! They act from the left, in world axes: q_true = exp(theta) * q.
+//! Attitude errors are 3-vectors, four modified Rodrigues parameters: a rotation by angle t about the unit axis n is 4
+//! tan(t / 4) n, which is t n to third order, has a rational exponential and logarithm, and no singularity below a full
+//! turn. They act from the left, in world axes: q_true = exp(theta) * q.
 
 use super::history::{Clipped, Increment};
 use crate::math;

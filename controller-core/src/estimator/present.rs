@@ -1,9 +1,10 @@
 //! What the last increments say of the present: the force that acts, and a velocity that does not shake.
 //!
-//! Rotors that are out of balance shake the IMU at 70 to 130 Hz, some millimetres to and fro a second for each m/s^2. That is a true
-//! motion, but a law that looks at it 100 times a second takes it for a slow one. So it is told the mean of three velocities, v_0 at the
-//! end of the last increment, v_1 and v_2 one and two increments before; and because that is 5 ms late, and the last increment A = 2 to 8 ms old, what
-//! a force adds to it meanwhile, which is averaged over so long that it does not shake:
+//! Rotors that are out of balance shake the IMU at 70 to 130 Hz, some millimetres to and fro a second for each m/s^2.
+//! That is a true motion, but a law that looks at it 100 times a second takes it for a slow one. So it is told the mean
+//! of three velocities, v_0 at the end of the last increment, v_1 and v_2 one and two increments before; and because
+//! that is 5 ms late, and the last increment A = 2 to 8 ms old, what a force adds to it meanwhile, which is averaged
+//! over so long that it does not shake:
 //!
 //! ```text
 //! v_calm = (v_0 + 2 v_1 + v_2) / 4 + (H + A) (R f_slow - g e3) = v_0 - R (D - H f_slow) + A (R f_slow - g e3)
@@ -19,9 +20,10 @@
 //! | 100 Hz | 0 | 0 | 0.03 |
 //! | 130 Hz | 0.21 | 0.20 | 0.03 |
 //!
-//! f must not carry the velocity on: in 6 ms it makes as much of it as the shaking itself is. Where the thrust changes within a twentieth of a second,
-//! v_calm is up to 12 ms late along it; across, R is that of now. The vertical loops bear five times as much. All d are turned into the
-//! frame at the end of the last increment, to first order in the turn.
+//! f must not carry the velocity on: in 6 ms it makes as much of it as the shaking itself is. Where the thrust changes
+//! within a twentieth of a second, v_calm is up to 12 ms late along it; across, R is that of now. The vertical loops
+//! bear five times as much. All d are turned into the frame at the end of the last increment, to first order in the
+//! turn.
 
 use super::history::Increment;
 use nalgebra::Vector3;

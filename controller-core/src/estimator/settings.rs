@@ -6,12 +6,14 @@
 //! pose            p_m = p + n_p,   q_m = exp(n_q) * q
 //! ```
 //!
-//! n_g, n_a, w_g and w_a are white; they are given as the root of their density. n_p and n_q are drawn for each pose. A pose
-//! whose time stamp is off by sigma_t is displaced by v sigma_t and turned by omega sigma_t: that counts as noise too.
+//! n_g, n_a, w_g and w_a are white; they are given as the root of their density. n_p and n_q are drawn for each pose. A
+//! pose whose time stamp is off by sigma_t is displaced by v sigma_t and turned by omega sigma_t: that counts as noise
+//! too.
 //!
-//! [`EstimatorParameters::BMI088`] has the data sheet's densities (Bosch, BST-BMI088-DS001, tables 2 and 3: 0.014 deg/s/sqrt(Hz),
-//! 190 ug/sqrt(Hz) on the worst axis). The sheet gives no random walk of the biases. Ours is a tenth of a degree a second,
-//! and 20 mg, in the square root of three hours: generous, since the filter pays nothing for it in a flight of minutes.
+//! [`EstimatorParameters::BMI088`] has the data sheet's densities (Bosch, BST-BMI088-DS001, tables 2 and 3: 0.014
+//! deg/s/sqrt(Hz), 190 ug/sqrt(Hz) on the worst axis). The sheet gives no random walk of the biases. Ours is a tenth of
+//! a degree a second, and 20 mg, in the square root of three hours: generous, since the filter pays nothing for it in a
+//! flight of minutes.
 
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::vehicle::Vehicle;
@@ -35,7 +37,8 @@ pub struct EstimatorParameters {
     pub gyro_bias_max: f32,
     /// |b_a| beyond which the accelerometer and the poses do not agree on where up is, m/s^2.
     pub accelerometer_bias_max: f32,
-    /// Deviation of n_p on each axis, m, of poses that do not give their own; no pose is believed to be better than a tenth of it.
+    /// Deviation of n_p on each axis, m, of poses that do not give their own; no pose is believed to be better than a
+    /// tenth of it.
     pub position_noise: f32,
     /// Deviation of n_q on each axis, rad, in the same way.
     pub attitude_noise: f32,
@@ -70,7 +73,8 @@ impl EstimatorParameters {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings(EstimatorParameters);
 
-/// The least deviation of a position and of an attitude that single precision tells from zero with room to spare, m and rad.
+/// The least deviation of a position and of an attitude that single precision tells from zero with room to spare, m and
+/// rad.
 const DEVIATION_LEAST: f32 = 1e-4;
 
 /// The greatest of any deviation or density.
@@ -123,8 +127,8 @@ impl Settings {
         &self.0
     }
 
-    /// The deviations of a pose that says `given` of itself (position m, attitude rad): never better than a tenth of the
-    /// usual ones, so that exact poses do not make the filter deaf to all later ones.
+    /// The deviations of a pose that says `given` of itself (position m, attitude rad): never better than a tenth of
+    /// the usual ones, so that exact poses do not make the filter deaf to all later ones.
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {

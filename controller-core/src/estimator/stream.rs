@@ -1,10 +1,12 @@
 //! The stream of poses, judged by itself: what its sender says of it, its time stamps, and whether it moves at all.
 //!
 //! - A pose whose sender says that tracking has failed is none.
-//! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those forgotten.
-//! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved meanwhile. A
-//!   simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the least of the IMU's noise is
-//!   motion enough: a vehicle that hovers well hardly moves, and poses that stand still would be believed while it drifts away.
+//! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those
+//!   forgotten.
+//! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved
+//!   meanwhile. A simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the
+//!   least of the IMU's noise is motion enough: a vehicle that hovers well hardly moves, and poses that stand still
+//!   would be believed while it drifts away.
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;
@@ -17,7 +19,8 @@ const SEEN: usize = 32;
 /// Poses in a row that may be the same.
 pub const IDENTICAL_MAX: u16 = 9;
 
-/// Increments that must have moved for identical poses to be frozen ones: a single one may be a knock against the table.
+/// Increments that must have moved for identical poses to be frozen ones: a single one may be a knock against the
+/// table.
 const MOVED_MIN: u16 = 3;
 
 /// What is remembered of the stream.

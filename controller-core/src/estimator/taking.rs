@@ -126,7 +126,8 @@ impl Estimator {
         Ok(Taken::Rebased)
     }
 
-    /// Tries a pose on the candidate: without a filter, or where the filter does not believe the pose for the reason given.
+    /// Tries a pose on the candidate: without a filter, or where the filter does not believe the pose for the reason
+    /// given.
     fn seek(&mut self, pose: &Stamped<Pose>, why: Option<Rejected>) -> Result<Taken, Rejected> {
         let unproven = why.map_or(Ok(Taken::Aligning), Err);
         self.check_up(&pose.value)?;
@@ -196,8 +197,8 @@ impl Estimator {
         self.differs(increment, RATE, ACCELERATION)
     }
 
-    /// Whether an increment is of a sensor that says anything but what it does at perfect rest: in the air a real one has its noise,
-    /// and an exact one that is simulated says as little as its poses.
+    /// Whether an increment is of a sensor that says anything but what it does at perfect rest: in the air a real one
+    /// has its noise, and an exact one that is simulated says as little as its poses.
     pub(super) fn stirs(&self, increment: &Increment) -> bool {
         /// rad/s: less than a BMI088's noise over 5 ms.
         const RATE: f32 = 0.002;

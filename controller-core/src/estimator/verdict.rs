@@ -53,8 +53,8 @@ worded! {
 }
 
 impl Taken {
-    /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves the frame, which
-    /// agrees with nothing yet.
+    /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves
+    /// the frame, which agrees with nothing yet.
     #[must_use]
     pub const fn is_believed(self) -> bool {
         match self {
@@ -65,8 +65,8 @@ impl Taken {
 }
 
 impl Rejected {
-    /// Whether it was refused for what it says of the vehicle: not for its time, nor for what its sender thinks of it, nor because
-    /// there was nothing to compare it with.
+    /// Whether it was refused for what it says of the vehicle: not for its time, nor for what its sender thinks of it,
+    /// nor because there was nothing to compare it with.
     #[must_use]
     pub const fn is_lie(self) -> bool {
         match self {

@@ -1,12 +1,13 @@
 //! What the rotors were commanded, through their delay and lag: the wrench that acts, as far as the law knows.
 //! Section 10 of `docs/extended-law.md`.
 //!
-//! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with the
-//! rotors' time constant. So between two ticks the command c_(k-n-1) acts for a time f h, then c_(k-n), and with x the wrench
-//! and e(t) = e^(-t / lag), its end and its mean over the interval are linear in x, c_(k-n-1) and c_(k-n): `Response`.
+//! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with
+//! the rotors' time constant. So between two ticks the command c_(k-n-1) acts for a time f h, then c_(k-n), and with x
+//! the wrench and e(t) = e^(-t / lag), its end and its mean over the interval are linear in x, c_(k-n-1) and c_(k-n):
+//! `Response`.
 //!
-//! The estimates compare accelerations averaged over an interval with this mean. The rotors' speeds lag, not their thrusts;
-//! the difference is of second order in the command's step.
+//! The estimates compare accelerations averaged over an interval with this mean. The rotors' speeds lag, not their
+//! thrusts; the difference is of second order in the command's step.
 
 use crate::error::{ParameterError, Reason, require, require_finite};
 use crate::math;
@@ -31,7 +32,8 @@ pub struct ActuatorParameters {
 }
 
 impl ActuatorParameters {
-    /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up, and one.
+    /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up,
+    /// and one.
     #[must_use]
     pub fn settling(&self, period: f32) -> u32 {
         // Converting to an integer rounds towards zero, and ends at the greatest.
@@ -137,8 +139,9 @@ impl ActuatorModel {
         })
     }
 
-    /// What commands of the past will still deliver: the integral of the wrench from now on, N s and N m s, if zero were commanded from now on.
-    /// The lag passes all of what reaches it, so the integral is lag times what acts and the commands that are under way.
+    /// What commands of the past will still deliver: the integral of the wrench from now on, N s and N m s, if zero
+    /// were commanded from now on. The lag passes all of what reaches it, so the integral is lag times what acts and
+    /// the commands that are under way.
     #[must_use]
     pub fn pending(&self, state: &ActuatorState) -> Vector4<f32> {
         let whole = (0..self.whole_delay).fold(Vector4::zeros(), |sum, age| sum + state.command_before(age));

@@ -1,6 +1,7 @@
 //! The attitude law with separate levels for tilt and yaw. Section 6 of `docs/extended-law.md`.
 //!
-//! With the lifted error q = m* Phi(q_hat, R~) = (q_0, q_1, q_2, q_3), r^2 = q_1^2 + q_2^2 and h = sqrt((q_0 + eta)^2 + q_3^2):
+//! With the lifted error q = m* Phi(q_hat, R~) = (q_0, q_1, q_2, q_3), r^2 = q_1^2 + q_2^2 and
+//! h = sqrt((q_0 + eta)^2 + q_3^2):
 //!
 //! | here | equation |
 //! |---|---|
@@ -11,18 +12,22 @@
 //! | lambda | the greatest in (0, 1] with \|P + lambda D\| <= M_all, P the potential's part about the tilt's axes |
 //! | `torque` | -potential - damping + J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d |
 //!
-//! Then V' = -omega~ . damping <= 0 for any J and omega_d, and V falls across the switch to the shadow, where U_t does not change. With room
-//! = M_all^2 - |P|^2, which the certificate keeps positive,
+//! Then V' = -omega~ . damping <= 0 for any J and omega_d, and V falls across the switch to the shadow, where U_t does
+//! not change. With room = M_all^2 - |P|^2, which the certificate keeps positive,
 //!
-//! lambda = 1 if |D|^2 + 2 P.D <= room, else room / (sqrt((P.D)^2 + |D|^2 room) + P.D)    (or its conjugate where P.D < 0).
+//! ```text
+//! lambda = 1 if |D|^2 + 2 P.D <= room,
+//! else room / (sqrt((P.D)^2 + |D|^2 room) + P.D), or its conjugate where P.D < 0.
+//! ```
 //!
-//! **Actuators that are late.** With the lag and the delay together T and the angular impulse I that commands of the past will still
-//! deliver, the law is evaluated for the errors projected over T ([`Late`]),
+//! **Actuators that are late.** With the lag and the delay together T and the angular impulse I that commands of the
+//! past will still deliver, the law is evaluated for the errors projected over T ([`Late`]),
 //!
 //! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T R~^T omega_d':
 //!
-//! with a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is omega_p, as if the
-//! actuators were ideal. It is what the paper's z_1 and z_2 do for its filters. Every bound holds for any errors, so for projected ones. Body frame, N m.
+//! with a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is
+//! omega_p, as if the actuators were ideal. It is what the paper's z_1 and z_2 do for its filters. Every bound holds
+//! for any errors, so for projected ones. Body frame, N m.
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
@@ -145,7 +150,8 @@ impl AttitudeLaw {
         if along > 0.0 { room / (root + along) } else { (root - along) / square }
     }
 
-    /// tau: J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d less the feedback. `rate` and `acceleration` are R~^T omega_d and R~^T omega_d'.
+    /// tau: J R~^T omega_d' - \[J R~^T omega_d\]x R~^T omega_d less the feedback. `rate` and `acceleration` are R~^T
+    /// omega_d and R~^T omega_d'.
     #[must_use]
     pub fn torque(
         &self,
@@ -164,7 +170,8 @@ impl AttitudeLaw {
         let r_squared = q_1 * q_1 + q_2 * q_2;
         let lifted = q_0 + self.eta;
         let whole = self.half_w / math::sqrt(lifted * lifted + q_3 * q_3);
-        // One root for both: sqrt(M_t^2 + k_t^2 r^2) sqrt(1 - r^2 + eta_t^2). 1 - r^2 is q_0^2 + q_3^2, which cannot round below 0.
+        // One root for both: sqrt(M_t^2 + k_t^2 r^2) sqrt(1 - r^2 + eta_t^2). 1 - r^2 is q_0^2 + q_3^2, which cannot
+        // round below 0.
         let level = self.tilt_level_squared + self.tilt_gain_squared * r_squared;
         let ease = q_0 * q_0 + q_3 * q_3 + self.eta_t_squared;
         let tilt = self.tilt_product / math::sqrt(level * ease);

@@ -1,4 +1,5 @@
-//! What turning the desired frame may cost: the thrust and the torque at hand in a tick. Section 4 of `docs/extended-law.md`.
+//! What turning the desired frame may cost: the thrust and the torque at hand in a tick. Section 4 of
+//! `docs/extended-law.md`.
 //!
 //! Tilt and yaw torques fit the rotors, and the limits, if for each of at most four rows
 //!
@@ -13,15 +14,17 @@
 //! | limits of roll and pitch | 1 | 0 | the lesser of the two |
 //! | limit of yaw | 0 | 1 | it |
 //!
-//! What does not change from tick to tick is taken off beforehand: the bias estimate at its level, yaw's feedback, J_33 A,
-//! and the gyroscopic torque at Omega and W_max. What is left is the tilt feedback's |P + lambda D| of this tick and J R~^T omega_d', which tilts by
-//! at most J_max |omega'| and leaks J_33 |omega'| sin theta into yaw, theta from b to rho. So the frame may turn with
+//! What does not change from tick to tick is taken off beforehand: the bias estimate at its level, yaw's feedback, J_33
+//! A, and the gyroscopic torque at Omega and W_max. What is left is the tilt feedback's |P + lambda D| of this tick and
+//! J R~^T omega_d', which tilts by at most J_max |omega'| and leaks J_33 |omega'| sin theta into yaw, theta from b to
+//! rho. So the frame may turn with
 //!
 //! ```text
 //! |omega'_12| <= alpha = min( alpha_max, ((1 - mu) m n - N_0) / L, min over rows (R - t |tau_fb|) / (t J_max + y J_33 sin theta) )
 //! ```
 //!
-//! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the thrust near the target.
+//! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the
+//! thrust near the target.
 
 use super::parameters::ExtendedParameters;
 use crate::allocation::geometry::ROTORS_MAX;
@@ -162,8 +165,8 @@ impl TorqueBudget {
         Self { rows, inertia, fixed, floor: floor + margin, floor_per_acceleration: per_acceleration, ceiling }
     }
 
-    /// What is left of each row with a tilt feedback of `feedback`, N m, and the frame turning with `acceleration`, rad/s^2, at the worst
-    /// angle: what is needed and what there is.
+    /// What is left of each row with a tilt feedback of `feedback`, N m, and the frame turning with `acceleration`,
+    /// rad/s^2, at the worst angle: what is needed and what there is.
     pub fn reserves(&self, feedback: f64, acceleration: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
         let [tilt, yaw] = self.inertia;
         self.rows
@@ -231,8 +234,8 @@ impl TurningBudget {
         }
     }
 
-    /// alpha, rad/s^2, at |u| = `magnitude`, m/s^2, with `feedback` N m about the tilt's axes and the sine of the angle from b to rho, one beyond a
-    /// right angle. May be negative: the reserve is the caller's.
+    /// alpha, rad/s^2, at |u| = `magnitude`, m/s^2, with `feedback` N m about the tilt's axes and the sine of the angle
+    /// from b to rho, one beyond a right angle. May be negative: the reserve is the caller's.
     #[must_use]
     pub fn acceleration(&self, magnitude: f32, feedback: f32, sine: f32) -> f32 {
         let [tilt, yaw] = self.inertia;

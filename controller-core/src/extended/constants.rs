@@ -1,7 +1,8 @@
 //! The one declaration of every constant of the extended law, and the macro that reads it.
 //!
-//! A constant is one entry: section and key as in scenario files, symbol and meaning, unit, range, and whether `tune` searches it. The
-//! struct, its table, the checks, the scenario's keys, the search space, the board's image and the documents' table follow from it.
+//! A constant is one entry: section and key as in scenario files, symbol and meaning, unit, range, and whether `tune`
+//! searches it. The struct, its table, the checks, the scenario's keys, the search space, the board's image and the
+//! documents' table follow from it.
 
 use crate::error::{ParameterError, Reason, require, require_finite};
 

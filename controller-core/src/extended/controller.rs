@@ -6,10 +6,10 @@
 //!                  -> heading -> attitude (torque) -> thrust_range -> Wrench
 //! ```
 //!
-//! The order within a tick: what can be refused first, up to the desired motion, from filters and generators as they stand and
-//! with the averages that have taken in what happened. Nothing is remembered before that. From there on every part of the memory
-//! advances by one period as soon as its last value has served. So the wrench is the one for the instant the state was taken, as
-//! in the paper's [`controller`](crate::controller).
+//! The order within a tick: what can be refused first, up to the desired motion, from filters and generators as they
+//! stand and with the averages that have taken in what happened. Nothing is remembered before that. From there on every
+//! part of the memory advances by one period as soon as its last value has served. So the wrench is the one for the
+//! instant the state was taken, as in the paper's [`controller`](crate::controller).
 
 use super::actuators::ActuatorModel;
 use super::attitude::{AttitudeLaw, Late};
@@ -71,8 +71,9 @@ impl Controller {
         self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
-    /// The same with what has been estimated of the vehicle itself kept: how a flight goes on without a pose. The force across is forgotten:
-    /// it came from velocities that are no longer known. The one along the vertical is kept: it is what the thrust lacks, mostly.
+    /// The same with what has been estimated of the vehicle itself kept: how a flight goes on without a pose. The force
+    /// across is forgotten: it came from velocities that are no longer known. The one along the vertical is kept: it is
+    /// what the thrust lacks, mostly.
     pub fn restart(&mut self) {
         let vertical = Vector3::new(0.0, 0.0, self.estimates().force.z);
         let Averages { torque, scale, .. } = self.memory.averages;
@@ -80,13 +81,14 @@ impl Controller {
         self.memory = Memory { filters: Filters::at(-vertical), ..Memory::fresh(&self.vehicle, averages) };
     }
 
-    /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For every tick on
-    /// the ground, without a velocity, or of which the rotors could not deliver the wrench.
+    /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For
+    /// every tick on the ground, without a velocity, or of which the rotors could not deliver the wrench.
     pub fn hold_estimates(&mut self) {
         self.memory.held = self.settling;
     }
 
-    /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided by it.
+    /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided
+    /// by it.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         self.memory.averages.scale.scale
@@ -117,8 +119,8 @@ impl Controller {
     /// One tick of the law.
     ///
     /// # Errors
-    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or (the
-    /// reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
+    /// [`InputError`] names the field of `state` or `reference` that is not finite, out of range, not a rotation, or
+    /// (the reference's acceleration) falls faster than the thrust direction allows. The memory is then unchanged.
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {

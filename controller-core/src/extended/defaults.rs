@@ -1,6 +1,7 @@
 //! Every constant from a vehicle's numbers. Section 14 of `docs/extended-law.md` says why each formula is what it is.
 //!
-//! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and what the rotors give:
+//! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and what the
+//! rotors give:
 //!
 //! | what | formula |
 //! |---|---|

@@ -45,8 +45,8 @@ impl ForceObserver {
         }
     }
 
-    /// The mean acceleration over an interval without gravity's and without the known drag's, m/s^2, world frame: what thrust and unknown
-    /// force make. `velocities` are those at the interval's start and end, m/s.
+    /// The mean acceleration over an interval without gravity's and without the known drag's, m/s^2, world frame: what
+    /// thrust and unknown force make. `velocities` are those at the interval's start and end, m/s.
     #[must_use]
     pub fn observed(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
         let [start, end] = velocities;

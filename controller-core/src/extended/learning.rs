@@ -1,8 +1,8 @@
-//! What the estimates learn of an interval: how the vehicle moved, against the wrench that acted. Sections 2, 7 and 9 of
-//! `docs/extended-law.md`.
+//! What the estimates learn of an interval: how the vehicle moved, against the wrench that acted. Sections 2, 7 and 9
+//! of `docs/extended-law.md`.
 //!
-//! The acceleration beside gravity's and the known drag's goes to the thrust scale; what thrust with that scale does not
-//! explain, to the force; and what the torque with that scale does not explain of the rotation, to the torque bias.
+//! The acceleration beside gravity's and the known drag's goes to the thrust scale; what thrust with that scale does
+//! not explain, to the force; and what the torque with that scale does not explain of the rotation, to the torque bias.
 
 use super::force::ForceObserver;
 use super::memory::{Averages, Estimates, Memory};
@@ -34,8 +34,8 @@ impl Learning {
         }
     }
 
-    /// The averages in `memory` with what happened since its last tick, if there is something to be learnt from that; `axis` is
-    /// R e3 now.
+    /// The averages in `memory` with what happened since its last tick, if there is something to be learnt from that;
+    /// `axis` is R e3 now.
     #[must_use]
     pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
         let Memory { averages, acted, .. } = memory;

@@ -1,10 +1,11 @@
 //! The net: every flight arrives, by proven gains if need be. Section 13 of `docs/extended-law.md`.
 //!
-//! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle arrives. That the limiter falls
-//! silent is proven near the target; from far away no proof is known for strong gains. So the law counts the time for which it acted since the
-//! vehicle was last near its target. Once that is longer than any flight has been seen to need, the filters start afresh (c = x = y = -d) and the
-//! feedback is cut to the level of the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides
-//! alone. Near the target the law's own level returns.
+//! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle
+//! arrives. That the limiter falls silent is proven near the target; from far away no proof is known for strong gains.
+//! So the law counts the time for which it acted since the vehicle was last near its target. Once that is longer than
+//! any flight has been seen to need, the filters start afresh (c = x = y = -d) and the feedback is cut to the level of
+//! the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides alone.
+//! Near the target the law's own level returns.
 //!
 //! | state | counts | leaves |
 //! |---|---|---|
@@ -20,7 +21,8 @@ use nalgebra::Vector3;
 /// The time of changed drives after which the net is used, s.
 pub const PATIENCE: f32 = 60.0;
 
-/// The part of a silent time that is taken off what was counted: in gusts the limiter acts now and then, and the own level is wanted.
+/// The part of a silent time that is taken off what was counted: in gusts the limiter acts now and then, and the own
+/// level is wanted.
 const FORGIVEN: f32 = 0.05;
 
 /// Near the target: |z_1|, m, and |z_2|, m/s.

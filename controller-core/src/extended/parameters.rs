@@ -1,4 +1,5 @@
-//! The constants of the extended law, declared once and validated. Every one has a default from the vehicle's numbers: [`super::defaults`].
+//! The constants of the extended law, declared once and validated. Every one has a default from the vehicle's numbers:
+//! [`super::defaults`].
 
 use super::constants::{Range, constants};
 use crate::error::{ParameterError, Reason, require};

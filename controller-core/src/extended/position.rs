@@ -1,7 +1,9 @@
-//! The position law: feedback gets what the wind leaves, across what the vertical leaves. Section 1 of `docs/extended-law.md`.
+//! The position law: feedback gets what the wind leaves, across what the vertical leaves. Section 1 of
+//! `docs/extended-law.md`.
 //!
-//! c is the part of u that is neither gravity nor reference, x the filter before it, y the one before that, d the observed force per mass
-//! (section 2). The paper has two filters; the third takes the noise of measurements out of u'', which turns the vehicle:
+//! c is the part of u that is neither gravity nor reference, x the filter before it, y the one before that, d the
+//! observed force per mass (section 2). The paper has two filters; the third takes the noise of measurements out of
+//! u'', which turns the vehicle:
 //!
 //! | here | equation |
 //! |---|---|
@@ -14,9 +16,10 @@
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across has what the vertical leaves |
 //! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
 //!
-//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide as that allows. Where d
-//! leaves less than the least level, 0.3 m/s^2, that stands, and ubar may be outside; u itself is bounded by [`super::turning`]. World frame; accelerations in m/s^2. All theorems on ubar need is that s is monotone, has a slope of at most one and the sign
-//! of its argument.
+//! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide
+//! as that allows. Where d leaves less than the least level, 0.3 m/s^2, that stands, and ubar may be outside; u itself
+//! is bounded by [`super::turning`]. World frame; accelerations in m/s^2. All theorems on ubar need is that s is
+//! monotone, has a slope of at most one and the sign of its argument.
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
@@ -153,8 +156,8 @@ impl PositionLaw {
         self.k_f
     }
 
-    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2; `caught`, whether the level
-    /// is the net's.
+    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2;
+    /// `caught`, whether the level is the net's.
     #[must_use]
     pub fn feedback(
         &self,
@@ -213,8 +216,8 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the last bit; x_z does not
-    /// lead it there.
+    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the
+    /// last bit; x_z does not lead it there.
     #[must_use]
     pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
@@ -229,7 +232,8 @@ impl PositionLaw {
     }
 }
 
-/// The level of the net, m/s^2: with it c' and c'' take three tenths of alpha_0 and half of Omega at the least |u|, so that the frame is never limited.
+/// The level of the net, m/s^2: with it c' and c'' take three tenths of alpha_0 and half of Omega at the least |u|, so
+/// that the frame is never limited.
 #[must_use]
 pub fn net_level(parameters: &ExtendedParameters, gravity: f32) -> f64 {
     let p = parameters;

@@ -1,4 +1,5 @@
-//! The radial saturation that all feedback of the law passes: s(x; M) = M x / sqrt(M^2 + |x|^2), shorter than M, along x.
+//! The radial saturation that all feedback of the law passes: s(x; M) = M x / sqrt(M^2 + |x|^2), shorter than M, along
+//! x.
 //!
 //! A gain k acts before it, and both together are one number times x:
 //!

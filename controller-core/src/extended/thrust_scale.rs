@@ -1,11 +1,16 @@
-//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 9 of `docs/extended-law.md`.
+//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 9 of
+//! `docs/extended-law.md`.
 //!
-//! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from what varies alone. With
-//! y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
+//! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from
+//! what varies alone. With y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
-//! y - ybar = s (f - fbar) for any constant force,   s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
+//! ```text
+//! y - ybar = s (f - fbar) for any constant force,
+//! s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
+//! ```
 //!
-//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are commanded f / s.
+//! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are
+//! commanded f / s.
 
 use super::parameters::ExtendedParameters;
 use crate::math;
@@ -20,7 +25,8 @@ const SLOW: f64 = 0.7;
 /// The scale and what it is learnt from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaleEstimate {
-    /// ybar and fbar, m/s^2; none before the first interval, with which they begin: any other beginning would look like a variation.
+    /// ybar and fbar, m/s^2; none before the first interval, with which they begin: any other beginning would look like
+    /// a variation.
     pub slow: Option<[Vector3<f32>; 2]>,
     /// s.
     pub scale: f32,

@@ -21,7 +21,8 @@ pub struct TorqueBias {
     level: Vector3<f32>,
     /// The diagonal of J over h, kg m^2/s.
     inertia_per_period: Vector3<f32>,
-    /// (J_z - J_y, J_x - J_z, J_y - J_x) / 4, kg m^2: the mean of two rates, twice in a product, is a quarter of their sums'.
+    /// (J_z - J_y, J_x - J_z, J_y - J_x) / 4, kg m^2: the mean of two rates, twice in a product, is a quarter of their
+    /// sums'.
     quarter_differences: Vector3<f32>,
 }
 

@@ -1,4 +1,5 @@
-//! How the thrust direction turns: as fast as the thrust and torque at hand can turn the vehicle. Section 3 of `docs/extended-law.md`.
+//! How the thrust direction turns: as fast as the thrust and torque at hand can turn the vehicle. Section 3 of
+//! `docs/extended-law.md`.
 //!
 //! With n = |u|, rho = u / n, r = rho . u', in the axes of the desired frame, where rho = e3:
 //!
@@ -13,9 +14,10 @@
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | c_z stays above -A_- |
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
 //!
-//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: the last two lines add along rho. Where rho has left its cone, a little along the
-//! vertical is much along rho: there c_z is left to the filters' own end ([`super::position`]), or u would grow without bound. What was changed of u'' is the
-//! drive's: x' = drive + (change of u'') / k_f.
+//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: the last two lines add along rho. Where
+//! rho has left its cone, a little along the vertical is much along rho: there c_z is left to the filters' own end
+//! ([`super::position`]), or u would grow without bound. What was changed of u'' is the drive's: x' = drive + (change
+//! of u'') / k_f.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude_reference::Turn;

@@ -1,4 +1,5 @@
-//! What is done with one motor on the bench, while nothing else turns: turning it slowly, and telling its controller something.
+//! What is done with one motor on the bench, while nothing else turns: turning it slowly, and telling its controller
+//! something.
 //!
 //! | setting | what its controller hears, from the beginning |
 //! |---|---|

@@ -1,9 +1,10 @@
 //! The motion as a whole: what is left of it when the shaking of the rotors is taken away.
 //!
-//! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An average tells one from
-//! the other: each tick takes a fifth of what is new, so that a change is known to nine tenths after 0.1 s, and of what seems to swing at
-//! 25 Hz one eighth is left. Accelerations shake most: theirs is the average of an average, and one sixtieth is left. A hit at speed would
-//! stay in it for longer than what was hit is asked about: of an acceleration no more counts than [`COUNTED`].
+//! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An
+//! average tells one from the other: each tick takes a fifth of what is new, so that a change is known to nine tenths
+//! after 0.1 s, and of what seems to swing at 25 Hz one eighth is left. Accelerations shake most: theirs is the average
+//! of an average, and one sixtieth is left. A hit at speed would stay in it for longer than what was hit is asked
+//! about: of an acceleration no more counts than [`COUNTED`].
 
 use crate::estimator::EstimatedState;
 use crate::math;
@@ -38,7 +39,8 @@ impl Calm {
         self.0.is_some_and(|last| last.jumps != estimated.jumps)
     }
 
-    /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has jumped.
+    /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has
+    /// jumped.
     pub fn tick(&mut self, estimated: Option<&EstimatedState>) -> Option<EstimatedState> {
         let Some(&EstimatedState { state, acceleration, jumps }) = estimated else {
             self.0 = None;

@@ -1,16 +1,17 @@
 //! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
-//! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle and
-//! every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach, and
-//! takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and the
-//! reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on told
-//! that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had. The vertical
-//! speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to that of the descent; how far it
-//! stays behind that is summed up as well, so that it sinks in an updraft too.
-//! The extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and learns nothing meanwhile.
+//! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle
+//! and every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach,
+//! and takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and
+//! the reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on
+//! told that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had.
+//! The vertical speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to
+//! that of the descent; how far it stays behind that is summed up as well, so that it sinks in an updraft too. The
+//! extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and
+//! learns nothing meanwhile.
 //!
-//! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady velocity, with the
-//! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
+//! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady
+//! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
 use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
@@ -190,8 +191,8 @@ impl<'m> Chain<'m> {
         (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
     }
 
-    /// Comes to rest across, then goes down at `speed`, m/s; to be said again each tick. Both at once would brake as slowly as the
-    /// vertical bounds have it.
+    /// Comes to rest across, then goes down at `speed`, m/s; to be said again each tick. Both at once would brake as
+    /// slowly as the vertical bounds have it.
     pub fn come_down(&mut self, speed: f32) {
         if self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
             return self.governor.stop();
@@ -201,8 +202,8 @@ impl<'m> Chain<'m> {
         let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
     }
 
-    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s; of its reference's, if
-    /// that is not known.
+    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s; of
+    /// its reference's, if that is not known.
     pub fn level(&mut self, sinking: Option<f32>) {
         let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
@@ -210,8 +211,9 @@ impl<'m> Chain<'m> {
         self.law.restart();
     }
 
-    /// Takes a flight up again where the vehicle is found, at its velocity as far as references may be as fast, with the heading that was
-    /// held; then brakes to a stop. The law needs no restart: levelling has left its filters at zero.
+    /// Takes a flight up again where the vehicle is found, at its velocity as far as references may be as fast, with
+    /// the heading that was held; then brakes to a stop. The law needs no restart: levelling has left its filters at
+    /// zero.
     ///
     /// # Errors
     /// As [`Self::start`].
@@ -225,9 +227,9 @@ impl<'m> Chain<'m> {
         Ok(())
     }
 
-    /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which may have
-    /// jumped too, and as far up as it jumped if it `rises`. Nothing is learnt from the jump. The certificate covers it as it covers
-    /// any other jump of the reference.
+    /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which
+    /// may have jumped too, and as far up as it jumped if it `rises`. Nothing is learnt from the jump. The certificate
+    /// covers it as it covers any other jump of the reference.
     ///
     /// # Errors
     /// Names the field the governor refuses.

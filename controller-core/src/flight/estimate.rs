@@ -1,7 +1,7 @@
 //! What is flown: the estimator's state, what it is worth, and since when.
 //!
-//! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that have jumped and
-//! agree among themselves; in flight it does not: such poses are refused as long as they lie.
+//! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that
+//! have jumped and agree among themselves; in flight it does not: such poses are refused as long as they lie.
 
 use super::exchange::Inputs;
 use super::rules::COASTING_MAX;

@@ -112,14 +112,15 @@ pub struct Outcome {
     pub is_airborne: bool,
     /// Whether its motors were stopped in the air, and nothing says yet that it lies still.
     pub may_fall: bool,
-    /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited for.
+    /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited
+    /// for.
     pub setpoint: Option<Result<(), Refusal>>,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
     /// What it is worth.
     pub health: Health,
-    /// What became of this tick's poses: the last refusal, or else what the last was taken for; none where none came, or
-    /// where all of them wait for the IMU.
+    /// What became of this tick's poses: the last refusal, or else what the last was taken for; none where none came,
+    /// or where all of them wait for the IMU.
     pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,

@@ -40,7 +40,8 @@ impl Fence {
         self.home
     }
 
-    /// The frame has moved and turned about the vertical: a vehicle that was in `before` is found in `after`, at the same instant.
+    /// The frame has moved and turned about the vertical: a vehicle that was in `before` is found in `after`, at the
+    /// same instant.
     pub fn displace(&mut self, before: &State, after: &State) {
         let home = self.home - before.position;
         let turned = match (heading(&before.attitude), heading(&after.attitude)) {

@@ -1,8 +1,9 @@
 //! Whether a vehicle that was armed where it stands has left the ground.
 //!
-//! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are held until
-//! the vehicle is [`CLEAR`] above where it was armed or faster than [`MOVING`] in any direction. A vehicle armed in the air
-//! falls faster than that within a few ticks if anything is left to be learnt. A later landing is `watch`'s to notice.
+//! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are
+//! held until the vehicle is [`CLEAR`] above where it was armed or faster than [`MOVING`] in any direction. A vehicle
+//! armed in the air falls faster than that within a few ticks if anything is left to be learnt. A later landing is
+//! `watch`'s to notice.
 
 use crate::state::State;
 use nalgebra::Vector3;

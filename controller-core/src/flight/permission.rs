@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 /// The cosine of the greatest tilt that arms, 30 degrees.
 const TILT_COSINE: f32 = 0.866_025_4;
 
-/// The acceleration, m/s^2, beyond which the accelerometer and the estimate do not agree on gravity: what 10 degrees between two ups
-/// make of it, 2 g sin 5 degrees. A vehicle at rest has none.
+/// The acceleration, m/s^2, beyond which the accelerometer and the estimate do not agree on gravity: what 10 degrees
+/// between two ups make of it, 2 g sin 5 degrees. A vehicle at rest has none.
 const GRAVITY_ERROR: f32 = 1.71;
 
 /// The speed, m/s, and the body rate, rad/s, beyond which a vehicle does not arm.
@@ -56,8 +56,8 @@ pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
-/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and somebody at the
-/// other end of the link.
+/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and somebody
+/// at the other end of the link.
 pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
     let faults = estimate.health.faults;
     // Without an IMU nothing else can be well.

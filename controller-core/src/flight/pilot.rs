@@ -1,8 +1,8 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! In a tick, in this order: the estimator takes what was measured; a jump of the estimate is followed; the flight is looked at; a
-//! request is answered; the rules' conditions are worked out and the table decides; a new mode is entered; a setpoint is
-//! taken; and the mode's output is worked out.
+//! In a tick, in this order: the estimator takes what was measured; a jump of the estimate is followed; the flight is
+//! looked at; a request is answered; the rules' conditions are worked out and the table decides; a new mode is entered;
+//! a setpoint is taken; and the mode's output is worked out.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
@@ -35,8 +35,8 @@ pub struct Pilot<'m> {
     watch: Watch,
     fall: Fall,
     fence: Fence,
-    /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle without a pose has
-    /// levelled.
+    /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle
+    /// without a pose has levelled.
     lies: Option<(u64, u64)>,
     bench: Bench,
     /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
@@ -48,11 +48,11 @@ pub struct Pilot<'m> {
 }
 
 impl<'m> Pilot<'m> {
-    /// A pilot at boot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration time. It flies
-    /// on what `estimator` makes of the measurements; its governor and mixer lie in `memory`.
+    /// A pilot at boot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration
+    /// time. It flies on what `estimator` makes of the measurements; its governor and mixer lie in `memory`.
     ///
-    /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but never
-    /// arms, and says why.
+    /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
+    /// never arms, and says why.
     #[must_use]
     pub fn new(
         certification: Result<&Certified, &Refused>,
@@ -192,7 +192,8 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found possible.
+    /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found
+    /// possible.
     fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {

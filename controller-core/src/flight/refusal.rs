@@ -70,7 +70,8 @@ pub enum Refusal {
     Stopped,
     /// The kill switch is on.
     Killed,
-    /// Flash is being written, which may stall the processor; or a changed configuration is certified; or a restart is under way.
+    /// Flash is being written, which may stall the processor; or a changed configuration is certified; or a restart is
+    /// under way.
     Busy,
     /// The clock's crystal does not run.
     ClockDoubtful,

@@ -15,8 +15,8 @@ pub enum Request {
     Disarm,
     /// Go up so high, m, or as high as the settings say; then hold.
     TakeOff(Option<f32>),
-    /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_WANTED_MAX`] and unless anything
-    /// else is asked for.
+    /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_WANTED_MAX`] and
+    /// unless anything else is asked for.
     FlySetpoints,
     /// Come to rest and hold position.
     Hold,

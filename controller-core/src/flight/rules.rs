@@ -1,16 +1,17 @@
 //! The flight rules: a table of modes and transitions, and every time limit they use.
 //!
-//! Once a tick, the rows of the present mode are read from top to bottom and the first whose condition holds is taken: at
-//! most one transition a tick, and the order of the rows is the order of precedence. What the conditions mean is said at
-//! [`Condition`]; [`super::pilot`] works them out, and carries out what a mode means. Nothing else changes the mode.
+//! Once a tick, the rows of the present mode are read from top to bottom and the first whose condition holds is taken:
+//! at most one transition a tick, and the order of the rows is the order of precedence. What the conditions mean is
+//! said at [`Condition`]; [`super::pilot`] works them out, and carries out what a mode means. Nothing else changes the
+//! mode.
 //!
 //! - [`mode`](Mode): what the vehicle is doing, with the picture of how the modes hang together;
 //! - `condition`: what a transition can depend on;
 //! - `table`: the rows.
 //!
-//! What is lost in flight ends in the mildest way that what is left allows: holding, with an estimate and somebody who may come back;
-//! landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a new arm request, with every
-//! check made anew.
+//! What is lost in flight ends in the mildest way that what is left allows: holding, with an estimate and somebody who
+//! may come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
+//! new arm request, with every check made anew.
 
 mod condition;
 mod mode;
@@ -23,12 +24,13 @@ pub use table::{Row, TABLE};
 use super::reason::Reason;
 use crate::estimator::EXTRAPOLATION_MAX;
 
-/// How long a flight goes on by IMU alone after the last pose that was believed, us. Drift grows with the square of the time: it must
-/// stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
+/// How long a flight goes on by IMU alone after the last pose that was believed, us. Drift grows with the square of the
+/// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
 pub const COASTING_MAX: u64 = 1_000_000;
 
-/// The greatest age of what the IMU said that is flown, us: twenty samples missed, two control ticks, and the delay of its own filters. The attitude loop
-/// stands one or two ticks of delay, not more (docs/sampled-loop.md), and without rates nothing tells where up is.
+/// The greatest age of what the IMU said that is flown, us: twenty samples missed, two control ticks, and the delay of
+/// its own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without
+/// rates nothing tells where up is.
 pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
 
 /// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.
@@ -37,21 +39,22 @@ pub const LEVELLING_MAX: u64 = 1_000_000;
 /// How long it may go down by the IMU alone, us, levelling included: 20 m at the least speed.
 pub const DESCENDING_MAX: u64 = 30_000_000;
 
-/// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half a
-/// second is for their jitter.
+/// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half
+/// a second is for their jitter.
 pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
 
 /// How long an armed vehicle may idle on the ground, us.
 pub const IDLING_MAX: u64 = 10_000_000;
 
-/// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and arms within a
-/// second or two, and who arms later may not know that anybody did.
+/// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and
+/// arms within a second or two, and who arms later may not know that anybody did.
 pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
 
 /// How long a battery must be low before anything is done, us: it sags under a burst of thrust.
 pub const BATTERY_LASTING: u64 = 3_000_000;
 
-/// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not end.
+/// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not
+/// end.
 pub const TRACKING_LASTING: u64 = 5_000_000;
 
 /// How long the rotors may give less than they are asked for, us. In a certified flight they never do.
@@ -66,8 +69,8 @@ pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
 /// The longest motor test, us.
 pub const MOTOR_TEST_MAX: u64 = 2_000_000;
 
-/// Ticks in a row without new thrusts (the law or the allocation refused their input) that the last thrusts are held for.
-/// Inputs are checked before the law sees them, so a refusal is a defect; 50 ms outlast a passing one.
+/// Ticks in a row without new thrusts (the law or the allocation refused their input) that the last thrusts are held
+/// for. Inputs are checked before the law sees them, so a refusal is a defect; 50 ms outlast a passing one.
 pub const REFUSALS_MAX: u32 = 5;
 
 /// A change of mode, and why.

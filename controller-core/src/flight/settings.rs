@@ -2,8 +2,8 @@
 
 use crate::math;
 
-/// Limits and answers to failures. Numbers outside what their fields say are brought to the nearest that is allowed; one that is
-/// none is the default.
+/// Limits and answers to failures. Numbers outside what their fields say are brought to the nearest that is allowed;
+/// one that is none is the default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightSettings {
     /// How high a take-off goes that names no height, m, in [0.5, 50].

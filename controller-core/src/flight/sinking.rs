@@ -9,12 +9,12 @@ const DESCENT: f32 = 0.6;
 /// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
 const DRIFT: f32 = 0.05;
 
-/// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in a second: most
-/// drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
+/// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in
+/// a second: most drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
 const MOVING: (f32, f32) = (0.3, 0.01);
 
-/// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no more is left to be made up
-/// for where the draft ends.
+/// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no
+/// more is left to be made up for where the draft ends.
 const BEHIND: f32 = 0.3;
 
 /// How a vehicle that has lost its pose sinks.
@@ -36,7 +36,8 @@ impl Sinking {
         Self { speed, ..Self::default() }
     }
 
-    /// One tick of `period`, s, on; the vertical speed, m/s. What the estimate gains between its jumps is the accelerometer's.
+    /// One tick of `period`, s, on; the vertical speed, m/s. What the estimate gains between its jumps is the
+    /// accelerometer's.
     pub fn advance(&mut self, estimated: &EstimatedState, period: f32) -> f32 {
         let (now, jumps) = (estimated.state.velocity.z, estimated.jumps);
         if let Some((before, _)) = self.last.filter(|last| last.1 == jumps) {
@@ -47,7 +48,8 @@ impl Sinking {
         self.speed
     }
 
-    /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at `wanted`, m/s.
+    /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at
+    /// `wanted`, m/s.
     pub fn behind(&mut self, wanted: f32, period: f32) -> f32 {
         self.behind = math::between(self.behind + (self.speed - wanted) * period, -BEHIND, BEHIND);
         self.behind

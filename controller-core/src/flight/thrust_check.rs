@@ -1,8 +1,9 @@
 //! What the rotors give of what they are asked for, as a check of battery, mass and thrust curve.
 //!
-//! The law estimates it as its thrust scale, and flies with what it finds; the certificate bears what its file says, 0.8 to 1.3 on the
-//! vehicles here. With a battery that is compensated and a mass that is right it stays near 1. Farther off than [`DOUBTFUL`], for
-//! [`LASTING`], something is not what the file says, and somebody should look before the limit is reached.
+//! The law estimates it as its thrust scale, and flies with what it finds; the certificate bears what its file says,
+//! 0.8 to 1.3 on the vehicles here. With a battery that is compensated and a mass that is right it stays near 1.
+//! Farther off than [`DOUBTFUL`], for [`LASTING`], something is not what the file says, and somebody should look before
+//! the limit is reached.
 
 /// The distance from 1 beyond which the scale is told.
 pub const DOUBTFUL: f32 = 0.15;

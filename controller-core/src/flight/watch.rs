@@ -1,19 +1,21 @@
 //! What a flight looks like: whether the vehicle follows its reference, has landed, or lies on its back.
 //!
-//! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer than a vehicle does
-//!   that turns round in the air: where wind carries it upwards faster than it may go down, say.
-//! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust than carries it.
-//!   Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not. Rotors that give 8 % more
-//!   than the law knows would look the same: with the law's thrust scale and force they do not. What rises or sinks on stands on nothing; but a hit
-//!   is more than an accelerometer can show, and leaves a speed that is none.
-//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not as the ground's, or the
-//!   vehicle does not come upright, or turns on.
-//! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a vehicle turns or falls.
-//! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or thrown out of its place,
-//!   where its frame seems to move just after it was struck: a crash looks like that.
+//! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer
+//!   than a vehicle does that turns round in the air: where wind carries it upwards faster than it may go down, say.
+//! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust
+//!   than carries it. Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not.
+//!   Rotors that give 8 % more than the law knows would look the same: with the law's thrust scale and force they do
+//!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
+//!   speed that is none.
+//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not
+//!   as the ground's, or the vehicle does not come upright, or turns on.
+//! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a
+//!   vehicle turns or falls.
+//! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
+//!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
 //!
-//! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the [average](super::calm). A jerk is over
-//! too soon for that.
+//! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the
+//! [average](super::calm). A jerk is over too soon for that.
 
 use super::calm::Calm;
 use super::chain::{Chain, Flown};
@@ -27,7 +29,8 @@ use nalgebra::Vector3;
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
 
-/// How far below the vehicle the reference is when it has landed, m; how slow the vehicle is then, m/s; and for how long, us.
+/// How far below the vehicle the reference is when it has landed, m; how slow the vehicle is then, m/s; and for how
+/// long, us.
 const GONE_ON: f32 = 0.25;
 const STANDING: f32 = 0.1;
 const STANDING_LASTING: u64 = 1_000_000;
@@ -44,11 +47,12 @@ const JERK: f32 = 5.0;
 /// The upward acceleration of a hit, m/s^2.
 const HIT: f32 = 10.0;
 
-/// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the greatest that
-/// is measured instead.
+/// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the
+/// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
-/// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is believed, us.
+/// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
+/// believed, us.
 const STRUCK: f32 = 25.0;
 const STRUCK_LASTING: u64 = 3_000_000;
 
@@ -153,8 +157,8 @@ impl Look<'_> {
         !within(&chain.unexpected(flown, state), STRUCK)
     }
 
-    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only where nothing
-    /// but the IMU is left.
+    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only
+    /// where nothing but the IMU is left.
     fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
         let (Mode::Descending, Some(state), Some(chain), Some(flown)) = (self.mode, self.state, self.chain, self.flown)
         else {
@@ -169,7 +173,8 @@ impl Look<'_> {
         self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a `hit`.
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
+    /// `hit`.
     fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };

@@ -1,7 +1,7 @@
 //! The first two moving averages, and the command x_0 that goes into them.
 //!
-//! With lengths N_1, N_2 in ticks the second difference of N_1 N_2 times the averaged acceleration is the command alpha at
-//! four delays with signs: a comb. It is what [`super::smoother`] sums up again, in integers, so nothing rounds.
+//! With lengths N_1, N_2 in ticks the second difference of N_1 N_2 times the averaged acceleration is the command alpha
+//! at four delays with signs: a comb. It is what [`super::smoother`] sums up again, in integers, so nothing rounds.
 
 use super::limits::HISTORY;
 use super::windows::Windows;

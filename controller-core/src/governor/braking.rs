@@ -1,13 +1,13 @@
 //! How fast one may approach a point and still stop on it: the sampled double integrator, solved exactly.
 //!
-//! Per tick u+ = u + alpha with |alpha| <= 1 and x+ = x + u+. From speed w the shortest stop, this tick's step included,
-//! covers w + (w-1) + (w-2) + ... With n = floor(w), f = w - n that is n(n+1)/2 + (n+1) f, increasing in w, so the greatest
-//! speed from which a distance d is not overrun is its inverse:
+//! Per tick u+ = u + alpha with |alpha| <= 1 and x+ = x + u+. From speed w the shortest stop, this tick's step
+//! included, covers w + (w-1) + (w-2) + ... With n = floor(w), f = w - n that is n(n+1)/2 + (n+1) f, increasing in w,
+//! so the greatest speed from which a distance d is not overrun is its inverse:
 //!
 //! w(d) = n + f,  n = floor((sqrt(1+8d)-1)/2),  f = (d - n(n+1)/2)/(n+1).
 //!
-//! Having taken the step w(d), the distance left is d - w(d) and w(d - w(d)) = max(w(d) - 1, 0): following the law costs
-//! exactly one unit of deceleration a tick and ends on the point, at rest, in a finite number of ticks.
+//! Having taken the step w(d), the distance left is d - w(d) and w(d - w(d)) = max(w(d) - 1, 0): following the law
+//! costs exactly one unit of deceleration a tick and ends on the point, at rest, in a finite number of ticks.
 
 use crate::math;
 

@@ -1,16 +1,17 @@
 //! Following a stream of positions, velocities and accelerations as it is sent, where it keeps the bounds.
 //!
-//! The averages make any command fit, and smooth away what fits already. So where a stream is itself inside the bounds and the
-//! head can get onto it without haste, the head is steered directly:
+//! The averages make any command fit, and smooth away what fits already. So where a stream is itself inside the bounds
+//! and the head can get onto it without haste, the head is steered directly:
 //!
 //! ```text
 //! Averaged -- a feasible stream, near --> Direct -- it ceases, changes kind or is lost --> Levelling --> Averaged
 //! ```
 //!
 //! - *Averaged*: the head is the averaged command ([`super::averages`]).
-//! - *Direct*: the head's snap is the stream's and feedback of what it is off by, as far as [`super::envelope`] lets it.
-//! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else. From there the
-//!   averages start ([`super::steady`]), as if this steady motion had always been commanded.
+//! - *Direct*: the head's snap is the stream's and feedback of what it is off by, as far as [`super::envelope`] lets
+//!   it.
+//! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else.
+//!   From there the averages start ([`super::steady`]), as if this steady motion had always been commanded.
 //!
 //! In every stage the head keeps the bounds, and no change of stage moves it. So the bounds hold across them.
 //!
@@ -18,9 +19,9 @@
 //!
 //! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
 //!
-//! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at rest in the
-//! middle of a circle, shrinks without changing direction, and asks for next to no acceleration of its own. l begins at what the
-//! error allows, and grows as it shrinks.
+//! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at
+//! rest in the middle of a circle, shrinks without changing direction, and asks for next to no acceleration of its own.
+//! l begins at what the error allows, and grows as it shrinks.
 
 use super::envelope::{Envelope, Moving, WayOut};
 use super::stream::{Point, quarter};
@@ -35,21 +36,25 @@ const RETREATING: f32 = 0.98;
 const FEEDBACK: f32 = 0.25;
 const LEAST_LEFT: f32 = 0.01;
 
-/// The stiffness times the averages' span: at the beginning at most, and in the end; per tick at most; and its growth, l' = growth l^2.
+/// The stiffness times the averages' span: at the beginning at most, and in the end; per tick at most; and its growth,
+/// l' = growth l^2.
 const SLACK: f32 = 2.5;
 const STIFF: f32 = 9.0;
 const SLACKEST: f32 = 0.4;
 const STIFFEST: f32 = 0.2;
 const GROWTH: f32 = 0.12;
 
-/// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it leaves.
+/// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it
+/// leaves.
 const TURNING: f32 = 0.8;
 
-/// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too late.
+/// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too
+/// late.
 const DELAYED: f32 = 0.15;
 const SAMPLED: f32 = 0.05;
 
-/// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest acceleration.
+/// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest
+/// acceleration.
 const FARTHER: f32 = 1.5;
 const FAR: f32 = 0.01;
 
@@ -124,7 +129,8 @@ impl Direct {
         next: 0,
     };
 
-    /// Prepares for an envelope of these greatest accelerations, m/s^2, and averages that span so many ticks, the last of them `last`.
+    /// Prepares for an envelope of these greatest accelerations, m/s^2, and averages that span so many ticks, the last
+    /// of them `last`.
     pub fn design(&mut self, envelope: Envelope, [horizontal, vertical]: [f32; 2], span: u32, last: u32, period: f32) {
         // The last average delays by half of it.
         let fastest = (2.0 * DELAYED / last as f32).min(SAMPLED) / period;
@@ -247,7 +253,8 @@ impl Direct {
         self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
     }
 
-    /// The acceleration that feedback may ask for, m/s^2: a share of what is left by a head whose error turns with the stream.
+    /// The acceleration that feedback may ask for, m/s^2: a share of what is left by a head whose error turns with the
+    /// stream.
     fn room(&self, sought: &Sought) -> f32 {
         let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
         let turned = |y: &Vector3<f32>| quarter(y) * *rate;

@@ -1,20 +1,21 @@
 //! The bounds that a head is kept in, tick by tick, whatever snap is wanted of it.
 //!
-//! The head is a velocity v, an acceleration a, its difference d a tick, and the second difference q that is chosen each tick
-//! (d+ = d + q, a+ = a + d+). Required always: a in the cylinder C, |d| <= D, |q| <= Q, v in another cylinder. A head inside may be
-//! lost nevertheless: too fast to be stopped before the wall. So a *way out* is kept in hand: a turn of some ticks with one
-//! constant q, then braking of d, straight, then a brought to zero, straight.
+//! The head is a velocity v, an acceleration a, its difference d a tick, and the second difference q that is chosen
+//! each tick (d+ = d + q, a+ = a + d+). Required always: a in the cylinder C, |d| <= D, |q| <= Q, v in another
+//! cylinder. A head inside may be lost nevertheless: too fast to be stopped before the wall. So a *way out* is kept in
+//! hand: a turn of some ticks with one constant q, then braking of d, straight, then a brought to zero, straight.
 //!
-//! - **Braking**: q = -Q d/|d|, at the end -d. The ticks that it takes add up to at most d |d|/(2 Q), so a moves along a segment, and
-//!   C is convex: where a and r = a + d |d|/(2 Q) are in C it stays there, and ends with d = 0.
+//! - **Braking**: q = -Q d/|d|, at the end -d. The ticks that it takes add up to at most d |d|/(2 Q), so a moves along
+//!   a segment, and C is convex: where a and r = a + d |d|/(2 Q) are in C it stays there, and ends with d = 0.
 //! - **To zero**: from d = 0, along the segment from r to zero, at any d and q along it that are small enough.
 //! - **The turn**: with n ticks of q, a runs along a parabola, which lies in the hull of its three control points a,
 //!   a + n (d + q/2)/2 and a + n d + n(n+1)/2 q; d runs along a segment. Where these are inside, all of the turn is.
-//! - **Speed**: until d is zero at most t_1 passes, and a is in the hull of these points p and r; then r fades to zero evenly, which
-//!   adds at most r t_2. So v stays in the hull of v, v + t_1 p and these moved by r t_2.
+//! - **Speed**: until d is zero at most t_1 passes, and a is in the hull of these points p and r; then r fades to zero
+//!   evenly, which adds at most r t_2. So v stays in the hull of v, v + t_1 p and these moved by r t_2.
 //!
-//! A q is taken only if from where it leads there is a way out, and that one is kept. Otherwise the way out in hand is followed.
-//! So the bounds hold for ever, by induction, however poor the guess of a turn; a poor guess gives way too early.
+//! A q is taken only if from where it leads there is a way out, and that one is kept. Otherwise the way out in hand is
+//! followed. So the bounds hold for ever, by induction, however poor the guess of a turn; a poor guess gives way too
+//! early.
 
 use super::braking::{BRAKING_SHARE, approach_speed};
 use crate::math;

@@ -1,8 +1,8 @@
 //! Where the head is, and where the stream is that it follows: both at the head's time, which is ahead of the knot's.
 //!
-//! Between the head and the knot lie the last average, N_3 ticks, and the spline. The head's acceleration is known, as integers; its
-//! velocity and place follow from the knot's by the time between, (N_3 + 1)/2 ticks, with an acceleration that changes evenly.
-//! They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is asked for that much more.
+//! Between the head and the knot lie the last average, N_3 ticks, and the spline. The head's acceleration is known, as
+//! integers; its velocity and place follow from the knot's by the time between, (N_3 + 1)/2 ticks, with an acceleration
+//! that changes evenly. They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is asked for that much more.
 
 use super::direct::Sought;
 use super::envelope::{Bounds, Cylinder, Envelope, Moving};
@@ -55,7 +55,8 @@ impl Governor {
         }
     }
 
-    /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the `head`.
+    /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the
+    /// `head`.
     pub(super) fn sought(&self, head: &Moving) -> Option<Sought> {
         if !self.goal.is_point() || self.goal_age > self.timeout {
             return None;

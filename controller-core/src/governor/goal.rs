@@ -23,8 +23,8 @@ impl Goal {
         self.held == [true; 3]
     }
 
-    /// How the point of a setpoint moves, `time` seconds after the `last` goal, if that is fresh; with what the two say together where
-    /// both are points on every axis.
+    /// How the point of a setpoint moves, `time` seconds after the `last` goal, if that is fresh; with what the two say
+    /// together where both are points on every axis.
     pub fn stream(
         held: [bool; 3],
         velocity: Vector3<f32>,

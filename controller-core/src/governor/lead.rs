@@ -1,10 +1,12 @@
 //! Where the command must be for the averages to come out on a moving point.
 //!
-//! Averages with mean delay d and variance sigma^2 turn e^(i w t) into H(w) e^(i w (t-d)), H = 1 - w^2 sigma^2/2 + ..., and
-//! a parabola q into q - d q' + (d^2 + sigma^2) q''/2. Inverted, with L = d plus the age of what is known of the point:
+//! Averages with mean delay d and variance sigma^2 turn e^(i w t) into H(w) e^(i w (t-d)), H = 1 - w^2 sigma^2/2 + ...,
+//! and a parabola q into q - d q' + (d^2 + sigma^2) q''/2. Inverted, with L = d plus the age of what is known of the
+//! point:
 //!
-//! - a point on a circle, a = i w v in the horizontal plane: ahead = (v/w) (g sin(wL) + i (1 - g cos(wL))), feed =
-//!   g e^(i w L) v, with g = 1/H, or as much as the acceleration bound allows: then the circle comes out smaller, in phase;
+//! - a point on a circle, a = i w v in the horizontal plane: ahead = (v/w) (g sin(wL) + i (1 - g cos(wL))), feed = g
+//!   e^(i w L) v, with g = 1/H, or as much as the acceleration bound allows: then the circle comes out smaller, in
+//!   phase;
 //! - what else accelerates it, along its path or vertically: ahead = v L + a (L^2 - sigma^2)/2, feed = v + a L.
 //!
 //! As w -> 0 the first becomes the second. Motions that change otherwise within d (a second or so) come out smoothed.

@@ -1,15 +1,17 @@
-//! The command generator: a double integrator that makes for the target as fast as its cylinder of accelerations allows.
+//! The command generator: a double integrator that makes for the target as fast as its cylinder of accelerations
+//! allows.
 //!
-//! Wanted velocity: w = feed + |e|-directed approach, cut to the speed limits. Commanded acceleration: w - u, scaled (not
-//! cut by component) into the cylinder C. "How long" is measured by C itself, ||y|| = max(|y_12|/A_12, |y_3|/A_3), so one
-//! number says both how hard a step is and how much of C it uses, and everything along one direction is the scalar
-//! problem of [`super::braking`]: from rest the path is the straight segment to the target, run without overshoot and ended
-//! on the exact point.
+//! Wanted velocity: w = feed + |e|-directed approach, cut to the speed limits. Commanded acceleration: w - u, scaled
+//! (not cut by component) into the cylinder C. "How long" is measured by C itself, ||y|| = max(|y_12|/A_12, |y_3|/A_3),
+//! so one number says both how hard a step is and how much of C it uses, and everything along one direction is the
+//! scalar problem of [`super::braking`]: from rest the path is the straight segment to the target, run without
+//! overshoot and ended on the exact point.
 //!
-//! The bounds do not depend on any of this: alpha in C is all the windows ask for. From a state in motion, arrival is by
-//! feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then persists;
-//! when the target is passed at speed the same law brakes and returns. That every such pursuit ends is shown by test (at
-//! worst 1.4 times as late as stopping first would) and by the campaign in `tests/governor_campaign.rs`, not proven.
+//! The bounds do not depend on any of this: alpha in C is all the windows ask for. From a state in motion, arrival is
+//! by feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then
+//! persists; when the target is passed at speed the same law brakes and returns. That every such pursuit ends is shown
+//! by test (at worst 1.4 times as late as stopping first would) and by the campaign in `tests/governor_campaign.rs`,
+//! not proven.
 
 use super::braking::{BRAKING_SHARE, approach_speed};
 use super::windows::Windows;
@@ -76,9 +78,9 @@ impl Pursuit {
         self.accelerations.limited(&(self.speeds.limited(wanted) - u)).map(|component| component as i32)
     }
 
-    /// The velocity wanted to reach a target `error` away that moves with `feed` and accelerates with `acceleration` (units per
-    /// tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what following the
-    /// target leaves.
+    /// The velocity wanted to reach a target `error` away that moves with `feed` and accelerates with `acceleration`
+    /// (units per tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what
+    /// following the target leaves.
     pub fn approach(&self, error: &Vector3<i64>, feed: &Vector3<i64>, acceleration: &Vector3<f32>) -> Vector3<i64> {
         let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
         let distance = self.accelerations.measure(&single(error)) / share;

@@ -24,9 +24,9 @@ pub enum Motion {
         /// m/s^2.
         acceleration: Vector3<f32>,
     },
-    /// Go to a position on the axes that have one, and move at a velocity on the others: across by velocity at a height that is
-    /// held, for one. Where an axis has a position, its velocity is that position's own. Velocities end in a smooth stop if not
-    /// renewed in time, positions are valid until replaced.
+    /// Go to a position on the axes that have one, and move at a velocity on the others: across by velocity at a height
+    /// that is held, for one. Where an axis has a position, its velocity is that position's own. Velocities end in a
+    /// smooth stop if not renewed in time, positions are valid until replaced.
     Mixed {
         /// m.
         position: [Option<f32>; 3],

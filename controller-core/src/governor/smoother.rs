@@ -1,15 +1,15 @@
 //! The last moving average and a quintic spline, in integers: from snap, tick by tick, to position and derivatives.
 //!
 //! What comes in is the second difference c of the *head*: an acceleration whose own bounds hold already, jerk and snap
-//! included (by [`super::averages`] or by [`super::tracker`]). It is averaged once more, over N_3 ticks: so snap is continuous. The
-//! averaged head is the second difference of control points P_m, one a tick, of a uniform quintic B-spline. The reference *is*
-//! that spline, a function of continuous time with continuous snap, sampled at its knots:
+//! included (by [`super::averages`] or by [`super::tracker`]). It is averaged once more, over N_3 ticks: so snap is
+//! continuous. The averaged head is the second difference of control points P_m, one a tick, of a uniform quintic
+//! B-spline. The reference *is* that spline, a function of continuous time with continuous snap, sampled at its knots:
 //!
 //! p = P + D2/4 + D4/120,  T p' = D1 + D3/12,  T^2 p'' = D2 + D4/6,  T^3 p''' = D3,  T^4 p'''' = D4
 //!
-//! with T the period and D1..D4 the central differences of P at the knot (D1 and D3 the mean of the two beside it). An average
-//! is a convex combination of the head, and each derivative of a B-spline is one of the like differences of its control points.
-//! So the bounds of the head are those of the reference, between ticks as well.
+//! with T the period and D1..D4 the central differences of P at the knot (D1 and D3 the mean of the two beside it). An
+//! average is a convex combination of the head, and each derivative of a B-spline is one of the like differences of its
+//! control points. So the bounds of the head are those of the reference, between ticks as well.
 //!
 //! All sums carry the factor N = N_1 N_2 N_3 of the averages: nothing is divided, nothing rounds, nothing drifts.
 
@@ -159,7 +159,8 @@ impl Smoother {
         }
     }
 
-    /// The commands whose averages go on as what is at hand does, where that has been in steady acceleration for N_3 ticks.
+    /// The commands whose averages go on as what is at hand does, where that has been in steady acceleration for N_3
+    /// ticks.
     pub fn steady(&self, windows: &Windows) -> [Steady; 3] {
         self.axes.map(|Axis { difference: [first, second, ..], place, part, .. }| {
             Steady::of(&Outcome { place, part, first, second }, windows)

@@ -1,7 +1,8 @@
-//! A command in steady acceleration, and what the averages and the spline make of it: where both begin, and begin again.
+//! A command in steady acceleration, and what the averages and the spline make of it: where both begin, and begin
+//! again.
 //!
-//! The averages weigh the command's past with mean mu and variance sigma^2 (ticks). With x_0, u and alpha now, alpha always the
-//! same, the newest control point P, its difference D1 and the control point at the knot P_-2 are
+//! The averages weigh the command's past with mean mu and variance sigma^2 (ticks). With x_0, u and alpha now, alpha
+//! always the same, the newest control point P, its difference D1 and the control point at the knot P_-2 are
 //!
 //! D1 = u - mu alpha,  P = x_0 - mu u + (sigma^2 + mu^2 - mu) alpha / 2,  P_-2 = P - 2 D1 + alpha.
 //!

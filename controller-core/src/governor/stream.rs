@@ -1,8 +1,9 @@
-//! A stream of positions, velocities and accelerations between two setpoints: where its point is by now, and what it does.
+//! A stream of positions, velocities and accelerations between two setpoints: where its point is by now, and what it
+//! does.
 //!
-//! The turning model: what of the acceleration is across the horizontal velocity goes round with it, at w = (v x a)_3 / |v|^2;
-//! what is along it or vertical changes at the rate c, and c is what turning leaves unexplained of the last change of acceleration.
-//! With a = a_w + a_c in that sense, R(w t) the turn about the vertical and J a quarter turn,
+//! The turning model: what of the acceleration is across the horizontal velocity goes round with it, at w = (v x a)_3 /
+//! |v|^2; what is along it or vertical changes at the rate c, and c is what turning leaves unexplained of the last
+//! change of acceleration. With a = a_w + a_c in that sense, R(w t) the turn about the vertical and J a quarter turn,
 //!
 //! ```text
 //! a(t) = R(w t) a_w + a_c + c t,  jerk = w J R(w t) a_w + c,  snap = -w^2 R(w t) a_w

@@ -6,8 +6,8 @@
 //! psi = Psi + D2/6,  T psi' = D1,  T^2 psi'' = D2.
 //!
 //! Bounds: |nu''|^2 = psi''^2 + psi'^4 is convex in (psi', psi''), so where each commanded pair (u, u') satisfies
-//! u'^2 + u^4 <= K_nu''^2, the averages do. With R = min(K_nu', 0.857 sqrt(K_nu'')), B = sqrt(K_nu''^2 - R^4): that share
-//! makes a half turn, pi/R + R/B, as short as this budget permits.
+//! u'^2 + u^4 <= K_nu''^2, the averages do. With R = min(K_nu', 0.857 sqrt(K_nu'')), B = sqrt(K_nu''^2 - R^4): that
+//! share makes a half turn, pi/R + R/B, as short as this budget permits.
 //!
 //! A turn is 2^44 integer units: phases wrap where the circle does, sums are exact, and the way to an angle is the
 //! shorter one.
@@ -196,8 +196,8 @@ fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
 
 /// An angle (rad) as a phase in units, to 2^-34 turns for any angle that a setpoint may have.
 ///
-/// In fixed point: the angle in 2^-32 rad is exact (or smaller than that), and so is, on the circle, its product with the
-/// whole part of the 2^64-ths of a turn in it.
+/// In fixed point: the angle in 2^-32 rad is exact (or smaller than that), and so is, on the circle, its product with
+/// the whole part of the 2^64-ths of a turn in it.
 pub(super) fn phase(angle: f32) -> i64 {
     /// 2^32 / (2 pi): its whole part, and 2^22 times the rest.
     const WHOLE: i64 = 683_565_275;

@@ -1,16 +1,16 @@
 //! From bounds to window lengths and integer scales: where the governor's bounds are made to hold.
 //!
 //! The commanded acceleration alpha stays in the cylinder C = {|alpha_12| <= A_12, |alpha_3| <= A_3}, whose diameter is
-//! D = 2 sqrt(A_12^2 + A_3^2). Three moving averages of lengths T_1, T_2, T_3 follow. An average is a convex combination,
-//! so it stays in C; and
+//! D = 2 sqrt(A_12^2 + A_3^2). Three moving averages of lengths T_1, T_2, T_3 follow. An average is a convex
+//! combination, so it stays in C; and
 //!
 //! - jerk is (alpha(t) - alpha(t-T_i))/T_i averaged by the other two, for each i: |j| <= D / max(T_1, T_2);
 //! - snap is a second difference, (alpha(t) - alpha(t-T_1)) - (alpha(t-T_2) - alpha(t-T_1-T_2)), over T_1 T_2 and
 //!   averaged by the third: |s| <= 2D / (T_1 T_2);
 //! - the third window bounds how fast snap itself moves: by at most 2 K_s in T_3.
 //!
-//! So T_1 = max(D/K_j, sqrt(2D/K_s)), T_2 = 2D/(K_s T_1): the least T_1 + T_2 that satisfies both. Should the windows not
-//! fit the memory, the authority A is lowered until they do: slower, never beyond a bound.
+//! So T_1 = max(D/K_j, sqrt(2D/K_s)), T_2 = 2D/(K_s T_1): the least T_1 + T_2 that satisfies both. Should the windows
+//! not fit the memory, the authority A is lowered until they do: slower, never beyond a bound.
 
 use super::limits::{GovernorLimits, HISTORY, LAST, SPEED_RANGE};
 use crate::error::{ParameterError, Reason, require};
@@ -21,8 +21,8 @@ use crate::reference::ReferenceBounds;
 /// 6e-8 lie between an exact integer and a Euclidean norm).
 pub(super) const ROUNDING_ROOM: f32 = 4e-6;
 
-/// Greatest integer value of a commanded acceleration: single precision has every whole number up to it, a comb of four still
-/// fits 32 bits, three averages 64.
+/// Greatest integer value of a commanded acceleration: single precision has every whole number up to it, a comb of four
+/// still fits 32 bits, three averages 64.
 const GREATEST_LEVEL: f32 = 16_777_216.0;
 
 /// Fewest integer steps from zero to an acceleration bound.

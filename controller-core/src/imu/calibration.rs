@@ -1,12 +1,13 @@
-//! What turns a sensor's numbers into the body's: the gyro's bias, the accelerometer's offsets and scales, and how level it sits.
+//! What turns a sensor's numbers into the body's: the gyro's bias, the accelerometer's offsets and scales, and how
+//! level it sits.
 //!
 //! ```text
 //! omega = L (omega_m - b)          f = L S (f_m - o)          S diagonal, L a small rotation
 //! ```
 //!
-//! b comes from [`super::standstill`], o and S from [`super::six_point`], and L from one more standstill with the *vehicle*
-//! level: the rotation about a horizontal axis that takes the mean force to straight up. A turn of the sensor about the
-//! vertical cannot be seen by standing still; the mounting must have that right.
+//! b comes from [`super::standstill`], o and S from [`super::six_point`], and L from one more standstill with the
+//! *vehicle* level: the rotation about a horizontal axis that takes the mean force to straight up. A turn of the sensor
+//! about the vertical cannot be seen by standing still; the mounting must have that right.
 
 use super::standstill::Rest;
 use crate::math;
@@ -66,7 +67,8 @@ impl Calibration {
         Self { gyro_bias: rest.angular_velocity, ..*self }
     }
 
-    /// The same, levelled by a standstill of the level vehicle: L takes u = S (f_m - o) / |…| to e3, about the axis u x e3.
+    /// The same, levelled by a standstill of the level vehicle: L takes u = S (f_m - o) / |…| to e3, about the axis u x
+    /// e3.
     ///
     /// ```text
     /// L = I + [a]x + [a]x^2 / (1 + u_z),   a = u x e3

@@ -1,16 +1,17 @@
 //! Samples to increments: how the body turned, and what it felt, over a few milliseconds.
 //!
-//! Between two samples rate and force run straight (the trapezoid). With h the time between them, alpha = h (omega_0 + omega_1) / 2
-//! and f = (f_0 + f_1) / 2:
+//! Between two samples rate and force run straight (the trapezoid). With h the time between them, alpha = h (omega_0 +
+//! omega_1) / 2 and f = (f_0 + f_1) / 2:
 //!
 //! ```text
 //! phi+ = phi + alpha + (phi x alpha) / 2          coning
 //! d+   = d + h f + (phi + alpha / 2) x h f        sculling: d in the body frame at the increment's start
 //! ```
 //!
-//! The products are what a sum of rates alone misses when the axis of rotation itself turns within an increment. For a cone of
-//! 3 degrees at 50 Hz, a violent vibration, that is 9.2 deg/s of false rate without them and 0.8 with (this module's tests). They cost 15 multiplications. Source: P. G. Savage, *Strapdown inertial navigation integration algorithm design*, AIAA
-//! J. Guidance 21, 1998, parts 1 and 2, to the order that samples at 1 kHz need.
+//! The products are what a sum of rates alone misses when the axis of rotation itself turns within an increment. For a
+//! cone of 3 degrees at 50 Hz, a violent vibration, that is 9.2 deg/s of false rate without them and 0.8 with (this
+//! module's tests). They cost 15 multiplications. Source: P. G. Savage, *Strapdown inertial navigation integration
+//! algorithm design*, AIAA J. Guidance 21, 1998, parts 1 and 2, to the order that samples at 1 kHz need.
 
 use crate::estimator::{Clipped, Increment};
 use nalgebra::Vector3;
@@ -59,7 +60,8 @@ impl Integrator {
         *self = Self { last: Some(*sample), start: sample.time, ..Self::EMPTY };
     }
 
-    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. A force that is missing is the last one.
+    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. A force that is missing is
+    /// the last one.
     pub fn take(&mut self, sample: &Sample, least: u64) -> Option<Increment> {
         let (last, time) = (self.last?, sample.time);
         let before = last.force.unwrap_or_default();

@@ -1,11 +1,13 @@
-//! A second-order low-pass on three axes that stops one frequency altogether: Butterworth's poles with two zeros on the imaginary axis.
+//! A second-order low-pass on three axes that stops one frequency altogether: Butterworth's poles with two zeros on the
+//! imaginary axis.
 //!
 //! ```text
 //! H(s) = (1 + s^2 / w_z^2) / (1 + sqrt(2) s / w_c + s^2 / w_c^2)
 //! ```
 //!
-//! A zero at the rate of the control ticks, because what swings as fast as one looks seems to stand still. In front of w_z the numerator is real and positive: the phase, and with
-//! it the delay, are those of the poles alone. By the bilinear transform, with both frequencies put right:
+//! A zero at the rate of the control ticks, because what swings as fast as one looks seems to stand still. In front of
+//! w_z the numerator is real and positive: the phase, and with it the delay, are those of the poles alone. By the
+//! bilinear transform, with both frequencies put right:
 //!
 //! ```text
 //! K = tan(pi f_c / f_s),   r = 1 / tan(pi f_z / f_s)^2,   n = 1 / (1 + sqrt(2) K + K^2)
@@ -13,8 +15,8 @@
 //! y_k = b_0 x_k + b_1 x_k-1 + b_2 x_k-2 - a_1 y_k-1 - a_2 y_k-2
 //! ```
 //!
-//! Its delay for slow changes is exactly sqrt(2) / (2 K f_s): the bilinear transform changes nothing at frequency zero. At 60 Hz and
-//! 1 kHz 3.7 ms. Source: A. V. Oppenheim, R. W. Schafer, *Discrete-Time Signal Processing*, chapter 7.
+//! Its delay for slow changes is exactly sqrt(2) / (2 K f_s): the bilinear transform changes nothing at frequency zero.
+//! At 60 Hz and 1 kHz 3.7 ms. Source: A. V. Oppenheim, R. W. Schafer, *Discrete-Time Signal Processing*, chapter 7.
 
 use crate::math;
 use nalgebra::Vector3;
@@ -32,7 +34,8 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate` samples a second; all in Hz.
+    /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate`
+    /// samples a second; all in Hz.
     #[must_use]
     pub fn new(cutoff: f64, stopped: f64, rate: f64) -> Self {
         let k = math::tan(core::f64::consts::PI * cutoff / rate);

@@ -6,9 +6,9 @@
 //! sum_i s_i^2 (f_ij - o_i)^2 = g^2,   j = 1 … 6
 //! ```
 //!
-//! Six equations for three scales and three offsets, solved by Newton's method in double precision from s = 1 and the means of
-//! opposite faces. Only lengths count, so the faces need not be level: 10 degrees off are as good as none. Calibration
-//! time, on the ground; a few thousand instructions.
+//! Six equations for three scales and three offsets, solved by Newton's method in double precision from s = 1 and the
+//! means of opposite faces. Only lengths count, so the faces need not be level: 10 degrees off are as good as none.
+//! Calibration time, on the ground; a few thousand instructions.
 
 use super::standstill::Rest;
 use core::fmt;
@@ -17,8 +17,8 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 /// How much of gravity the upper axis must feel: within 30 degrees.
 const FACE: f64 = 0.866;
 
-/// The greatest offset, m/s^2, and the greatest error of scale, that are an accelerometer's and no mistake: BMI088, 20 mg and 1 %
-/// at most, times four.
+/// The greatest offset, m/s^2, and the greatest error of scale, that are an accelerometer's and no mistake: BMI088, 20
+/// mg and 1 % at most, times four.
 const OFFSET_MAX: f64 = 0.8;
 const SCALE_ERROR_MAX: f64 = 0.04;
 

@@ -1,7 +1,7 @@
 //! Means of a sensor that stands still, and the test that it does.
 //!
-//! Over [`SAMPLES`] samples the means of both halves and the spread of all are taken, as differences from the first sample so that
-//! single precision loses nothing. The sensor stood still if
+//! Over [`SAMPLES`] samples the means of both halves and the spread of all are taken, as differences from the first
+//! sample so that single precision loses nothing. The sensor stood still if
 //!
 //! - neither spread is larger than noise: a hand, or a motor that runs, shows there;
 //! - the halves' means agree: a slow rotation moves gravity between them, by 9.81 m/s^2 times the angle;
@@ -78,7 +78,8 @@ pub struct Standstill {
 }
 
 impl Standstill {
-    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, says what they were, and begins anew.
+    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, says what they were, and
+    /// begins anew.
     pub fn take(&mut self, rate: &Vector3<f32>, force: &Vector3<f32>) -> Option<Result<Rest, Moved>> {
         let first = *self.first.get_or_insert(Rest { angular_velocity: *rate, specific_force: *force });
         let (rate, force) = (rate - first.angular_velocity, force - first.specific_force);

@@ -157,7 +157,8 @@ fn another_sensor_takes_over_within_15_ms_without_a_gap_and_is_judged_by_its_own
 #[test]
 fn a_shock_beyond_a_range_is_told_by_the_increments_that_it_is_part_of_and_is_no_fault() {
     let (range, other) = (ImuParameters::BMI088.accelerometer_range, ImuParameters::BMI088.gyro_range);
-    // Within an increment, and between two: half of that sample counts for each. Then where the next forces are missing.
+    // Within an increment, and between two: half of that sample counts for each. Then where the next forces are
+    // missing.
     for (shocked, silent, expected) in [(7, 0, 1..2), (10, 0, 1..3), (7, 9, 1..4)] {
         let clipped = |gyro: bool| {
             let mut conditioner = conditioner();

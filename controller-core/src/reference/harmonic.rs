@@ -7,9 +7,9 @@
 //! All phases are integers on the circle ([`Phase`]), so they are as good after a month as on the first day. The swing
 //! B sin(w t) is computed in single precision: psi carries 3e-7 B, at most 3e-4 rad for the largest B accepted.
 //!
-//! Bounds: axes that share a frequency are combined exactly,
-//! sup over t of sum A_i^2 cos^2(omega t + phi_i) = (sum A_i^2 + |sum A_i^2 e^(2 i phi_i)|) / 2, and the same for sines;
-//! axes of different frequencies are taken at their worst together, which they may never quite meet.
+//! Bounds: axes that share a frequency are combined exactly, sup over t of sum A_i^2 cos^2(omega t + phi_i) = (sum
+//! A_i^2 + |sum A_i^2 e^(2 i phi_i)|) / 2, and the same for sines; axes of different frequencies are taken at their
+//! worst together, which they may never quite meet.
 
 use super::bernstein::Supremum;
 use super::phase::{self, Phase};

@@ -1,9 +1,9 @@
 //! A phase that a month of uptime does not blur.
 //!
-//! omega t + phi grows without limit, so in floating point it loses a bit of precision each time it doubles. Here a full
-//! turn is 2^64: the rate is an integer count of 2^-64 turns per microsecond and the product with an integer time wraps
-//! around exactly where the circle does. What remains is the rounding of the rate, at most 2^-65 turns a microsecond:
-//! after 30 days 4.5e-7 rad.
+//! omega t + phi grows without limit, so in floating point it loses a bit of precision each time it doubles. Here a
+//! full turn is 2^64: the rate is an integer count of 2^-64 turns per microsecond and the product with an integer time
+//! wraps around exactly where the circle does. What remains is the rounding of the rate, at most 2^-65 turns a
+//! microsecond: after 30 days 4.5e-7 rad.
 
 use crate::error::{ParameterError, Reason, require};
 use crate::math;

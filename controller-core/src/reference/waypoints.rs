@@ -5,9 +5,9 @@
 //! and the next (`reference::spline`). A heading belongs to every point; between two points it
 //! turns the shorter way round, an exact half turn counter-clockwise, as smoothly as the position moves.
 //!
-//! World frame; m, s, rad. Bounds come from the polynomials' convex hulls (`reference::bernstein`), so they hold at every
-//! instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points lie a
-//! hundred times further out than its curve does.
+//! World frame; m, s, rad. Bounds come from the polynomials' convex hulls (`reference::bernstein`), so they hold at
+//! every instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points
+//! lie a hundred times further out than its curve does.
 //!
 //! What it cannot do: choose the times, or keep the path from overshooting between points. Legs of very different
 //! duration overshoot most, because bending a long one costs little. About 10 kB in memory.

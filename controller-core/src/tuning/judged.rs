@@ -1,9 +1,10 @@
-//! Which factors on the gains have sampled loops that are stable, with margin: judged beforehand, for every choice there is.
+//! Which factors on the gains have sampled loops that are stable, with margin: judged beforehand, for every choice
+//! there is.
 //!
-//! Judging a loop takes an analysis that no board does (`docs/sampled-loop.md`). So whoever builds a configuration does it for each
-//! choice of [`Factors`], and what is kept is one bit a choice. The loops about the horizontal axes, and about yaw, depend on
-//! four factors, the loop along the vertical on two; under the paper's law, which has no gains of its own for the vertical, on the
-//! four.
+//! Judging a loop takes an analysis that no board does (`docs/sampled-loop.md`). So whoever builds a configuration does
+//! it for each choice of [`Factors`], and what is kept is one bit a choice. The loops about the horizontal axes, and
+//! about yaw, depend on four factors, the loop along the vertical on two; under the paper's law, which has no gains of
+//! its own for the vertical, on the four.
 
 use super::{Factors, Percent};
 
@@ -45,8 +46,8 @@ impl JudgedLoops {
         (&self.across, &self.vertical)
     }
 
-    /// Asks `across` about every choice of the first four factors, and `vertical` about every choice of the other two; the factors
-    /// that are not asked about are as built.
+    /// Asks `across` about every choice of the first four factors, and `vertical` about every choice of the other two;
+    /// the factors that are not asked about are as built.
     #[must_use]
     pub fn judge(mut across: impl FnMut(&Factors) -> bool, mut vertical: impl FnMut(&Factors) -> bool) -> Self {
         let mut judged = Self { across: [0; _], vertical: [0; _] };

@@ -1,6 +1,7 @@
 //! A pilot with a Hummingbird around it: rigid body, sensors and ground station that can be taken away, or lie.
 //!
-//! The IMU's increments are exact: from attitude and velocity at both ends of each 5 ms. Poses come every tick, exact and on time.
+//! The IMU's increments are exact: from attitude and velocity at both ends of each 5 ms. Poses come every tick, exact
+//! and on time.
 
 // Every test crate that includes this module uses a part of it.
 #![allow(dead_code)]

@@ -1,5 +1,5 @@
-//! An image to be looked at, not run: one step of the law, all that the estimator does in a tick, the runtime's reset and a panic
-//! handler. `.ci/budgets` finds none of the panic machinery in it: none of these can panic.
+//! An image to be looked at, not run: one step of the law, all that the estimator does in a tick, the runtime's reset
+//! and a panic handler. `.ci/budgets` finds none of the panic machinery in it: none of these can panic.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

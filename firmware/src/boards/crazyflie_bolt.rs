@@ -1,9 +1,9 @@
 //! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
 //!
-//! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice that.
-//! Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no RAM).
-//! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
-//! restarts.
+//! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice
+//! that. Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no
+//! RAM). The controllers' power switches close only when the motor lines are driven low, and open by themselves when
+//! the chip restarts.
 
 use super::stm32::board::Board;
 use super::stm32::clock::{self, SystemClock};

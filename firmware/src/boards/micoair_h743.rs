@@ -2,9 +2,9 @@
 //! SDMMC1 for the log.
 //!
 //! Clocks: a crystal of 8 MHz, times 100, halved: 400 MHz for the core, half for the buses, a quarter for their
-//! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would need
-//! revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays off: it
-//! would stand between the core and the DMA buffers.
+//! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would
+//! need revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays
+//! off: it would stand between the core and the DMA buffers.
 
 use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
@@ -66,7 +66,8 @@ bind_interrupts!(
 /// Motors 1 to 4 are on PE14, PE13, PE11, PE9: channels 4, 3, 2, 1 of TIM1.
 const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
 
-/// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward, right, down).
+/// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward,
+/// right, down).
 const MOUNTING: Mounting = Mounting::XLeft;
 
 /// As it mounts the BMI270 (roll 180 degrees).
@@ -172,8 +173,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     }
 }
 
-/// Revision Y may read wrong data from the AXI SRAM, where everything but the stack lies (ST's errata sheet ES0392, 2.2.9). The remedy
-/// given there: no more than one read of it at a time.
+/// Revision Y may read wrong data from the AXI SRAM, where everything but the stack lies (ST's errata sheet ES0392,
+/// 2.2.9). The remedy given there: no more than one read of it at a time.
 fn spare_revision_y() {
     /// AXI_TARG7_FN_MOD, and its bit READ_ISS_OVERRIDE.
     const AXI_SRAM: (*mut u32, u32) = (0x5100_8108 as *mut u32, 1);

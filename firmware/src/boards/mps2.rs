@@ -23,7 +23,8 @@ pub mod watchdog;
 use cortex_m::peripheral::NVIC;
 use lines::Interrupt;
 
-/// Lines by urgency, the most urgent first. Devices only move bytes and wake tasks, so they may interrupt the flight tasks.
+/// Lines by urgency, the most urgent first. Devices only move bytes and wake tasks, so they may interrupt the flight
+/// tasks.
 const PRIORITIES: [(Interrupt, u8); 7] = [
     (Interrupt::Timer0, 0x20),
     (Interrupt::Uart0Receive, 0x40),

@@ -11,7 +11,8 @@ unsafe extern "C" {
     static _recorder_end: UnsafeCell<[u8; 0]>;
 }
 
-/// The memory, once, as the last start left it; or cleared, where it has been without power and holds nothing that may be read.
+/// The memory, once, as the last start left it; or cleared, where it has been without power and holds nothing that may
+/// be read.
 #[must_use]
 pub fn take(cleared: bool) -> Option<&'static mut [Slot]> {
     static TAKEN: AtomicBool = AtomicBool::new(false);

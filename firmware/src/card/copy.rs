@@ -1,12 +1,13 @@
-//! The flight recorder's recording as a file of its own: what led to a reset, safe from the next flight and from a loss of power.
+//! The flight recorder's recording as a file of its own: what led to a reset, safe from the next flight and from a loss
+//! of power.
 
 use super::volume::{Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR};
 use crate::recorder::Recorder;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// Copies the recording that the start found, unless the newest copy is the same; the number of the file that holds it. None if there is
-/// none, or if a flight has begun meanwhile, which ends it.
+/// Copies the recording that the start found, unless the newest copy is the same; the number of the file that holds it.
+/// None if there is none, or if a flight has begun meanwhile, which ends it.
 ///
 /// A copy that a cut has shortened differs, and the next start makes another.
 ///

@@ -1,7 +1,8 @@
 //! Where a card's file system has its parts, and whether it is one that can be written to.
 //!
-//! The file system's library believes what a card says of itself. What would lead it astray (sizes of zero, tables beyond the card's
-//! end) is found here, before it looks. A card has a partition table, and in its first partition FAT16 or FAT32 in sectors of 512 bytes.
+//! The file system's library believes what a card says of itself. What would lead it astray (sizes of zero, tables
+//! beyond the card's end) is found here, before it looks. A card has a partition table, and in its first partition
+//! FAT16 or FAT32 in sectors of 512 bytes.
 
 use crate::hardware::SECTOR;
 use core::ops::Range;
@@ -56,7 +57,8 @@ pub fn partition(table: &[u8; SECTOR]) -> Option<u32> {
 }
 
 impl Geometry {
-    /// Reads the first sector of a file system that begins at sector `start` of a card of `sectors`. None if it is not one that can be used.
+    /// Reads the first sector of a file system that begins at sector `start` of a card of `sectors`. None if it is not
+    /// one that can be used.
     #[must_use]
     pub fn of(first: &[u8; SECTOR], start: u32, sectors: u32) -> Option<Self> {
         let first = Numbers(first);

@@ -1,8 +1,10 @@
-//! The card's files for whoever asks over the link: counted, measured, read a chunk at a time, between two looks for records.
+//! The card's files for whoever asks over the link: counted, measured, read a chunk at a time, between two looks for
+//! records.
 //!
-//! Offered are the newest [`OFFERED`] files, in the order of their numbers, and behind them the flight recorder's recording. What a number
-//! stands for is settled when they are counted. Files are opened for reading only. One that cannot be read is said to be unreadable, and the
-//! card goes on logging: an old file's damage is no reason not to log the next flight.
+//! Offered are the newest [`OFFERED`] files, in the order of their numbers, and behind them the flight recorder's
+//! recording. What a number stands for is settled when they are counted. Files are opened for reading only. One that
+//! cannot be read is said to be unreadable, and the card goes on logging: an old file's damage is no reason not to log
+//! the next flight.
 
 use super::log;
 use super::volume::{Entry, File, Kind, Trouble, Volume};

@@ -1,11 +1,12 @@
 //! A flight's file: its beginning, then [sectors](super::sector) in order, then blank ones to its end.
 //!
-//! The file is made as long as a flight before the flight begins, so that in flight nothing is written but the sector that is due, over a
-//! blank one: neither a table nor the directory changes, and what power cuts short is that sector and no other. A longer flight
-//! lengthens its file by [`CHUNK`] at a time; one that reaches [`SIZE_MAX`] goes on in the next file.
+//! The file is made as long as a flight before the flight begins, so that in flight nothing is written but the sector
+//! that is due, over a blank one: neither a table nor the directory changes, and what power cuts short is that sector
+//! and no other. A longer flight lengthens its file by [`CHUNK`] at a time; one that reaches [`SIZE_MAX`] goes on in
+//! the next file.
 //!
-//! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in one byte: no cut
-//! leaves a length that mixes two.
+//! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in
+//! one byte: no cut leaves a length that mixes two.
 
 use super::sector::{BLANK, Content, HEAD_SECTORS, ROOM, Sector, beginning};
 use super::volume::{File, Kind, Trouble, Volume};
@@ -20,8 +21,8 @@ pub const CHUNK: u32 = 64 << 10;
 /// The longest file, bytes: 16 minutes.
 pub const SIZE_MAX: u32 = 0x00FF_0000;
 
-/// Room for what is written between two looks at [`Log::is_full`], bytes: a record, every event that waits, and the sector that
-/// had begun.
+/// Room for what is written between two looks at [`Log::is_full`], bytes: a record, every event that waits, and the
+/// sector that had begun.
 const RESERVE: u32 = 8 * STEP;
 
 /// Bytes before the first record's sector.
@@ -47,7 +48,8 @@ pub struct Log {
 }
 
 impl Log {
-    /// Takes the newest file if nothing was logged in it, and else makes a new one. The newest loses its last sector if that is torn.
+    /// Takes the newest file if nothing was logged in it, and else makes a new one. The newest loses its last sector if
+    /// that is torn.
     ///
     /// # Errors
     /// If there is no room for it, or the card fails.
@@ -112,7 +114,8 @@ impl Log {
         self.size
     }
 
-    /// Whether it is to be finished: it may not become longer, and has room for no more than what is still to be written.
+    /// Whether it is to be finished: it may not become longer, and has room for no more than what is still to be
+    /// written.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.next >= SIZE_MAX - RESERVE
@@ -227,7 +230,8 @@ fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Cont
     Ok(Content::of(&sector))
 }
 
-/// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of what is in question can be left out at a time.
+/// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of what is in question
+/// can be left out at a time.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -6,8 +6,8 @@
 //! filler = message of a kind that ULog does not know, so that readers skip it, all its bytes set
 //! ```
 //!
-//! A sector that power cut short while it was written keeps blank bytes at one end: its checksum is wrong, and where a reader takes them for
-//! numbers they are NaN, which stands for what is not known.
+//! A sector that power cut short while it was written keeps blank bytes at one end: its checksum is wrong, and where a
+//! reader takes them for numbers they are NaN, which stands for what is not known.
 
 use crate::hardware::SECTOR;
 use crate::recorder::ulog;
@@ -80,7 +80,8 @@ impl Sector {
         self.used == 0
     }
 
-    /// Adds a message that consists of these parts, or leaves the sector as it is if there is no room; whether there was.
+    /// Adds a message that consists of these parts, or leaves the sector as it is if there is no room; whether there
+    /// was.
     #[must_use]
     pub fn put(&mut self, parts: &[&[u8]]) -> bool {
         let length: usize = parts.iter().map(|part| part.len()).sum();

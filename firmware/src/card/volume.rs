@@ -1,10 +1,11 @@
 //! The card's file system: numbered files in its root directory, over the `embedded-sdmmc` crate.
 //!
-//! What may be written is said before each step, and anything else fails: a new file's name never makes the root directory longer
-//! (the crate links a directory's new part before it clears it, so a cut in between would fill it with what was there before), and a
-//! record's sector goes nowhere but among the data.
+//! What may be written is said before each step, and anything else fails: a new file's name never makes the root
+//! directory longer (the crate links a directory's new part before it clears it, so a cut in between would fill it with
+//! what was there before), and a record's sector goes nowhere but among the data.
 //!
-//! Nothing is ever deleted, and a number is never given again while its file is there. The clock is not known: files are of 1980.
+//! Nothing is ever deleted, and a number is never given again while its file is there. The clock is not known: files
+//! are of 1980.
 
 use super::geometry::{Geometry, partition};
 use crate::hardware::{Card, Fault, SECTOR};

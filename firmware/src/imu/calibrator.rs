@@ -8,12 +8,12 @@
 //! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
 //! | all zero | ends what is under way |
 //!
-//! Whether it stood still is [`standstill`](controller_core::imu::standstill)'s to say. The sensor that stands by is calibrated along
-//! with the other, from its own samples. What comes out is applied at once, and kept in the parameters. Six sides and the
-//! single one forget the level that was found with other offsets: level afterwards.
+//! Whether it stood still is [`standstill`](controller_core::imu::standstill)'s to say. The sensor that stands by is
+//! calibrated along with the other, from its own samples. What comes out is applied at once, and kept in the
+//! parameters. Six sides and the single one forget the level that was found with other offsets: level afterwards.
 //!
-//! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. What nobody asked
-//! for is done in silence, again and again until it stood still for once.
+//! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. What
+//! nobody asked for is done in silence, again and again until it stood still for once.
 
 use super::solution::{GRAVITY, solve};
 use crate::hardware::{Fault, RawImu, Unit};
@@ -111,7 +111,8 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         }
     }
 
-    /// Whether samples of the sensor that stands by are wanted. One that has failed is not asked again: it takes its time.
+    /// Whether samples of the sensor that stands by are wanted. One that has failed is not asked again: it takes its
+    /// time.
     pub fn wants_standby(&self) -> bool {
         self.job.as_ref().is_some_and(|job| job.standby != Some(Err(Fault)))
     }

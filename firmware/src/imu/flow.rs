@@ -1,11 +1,11 @@
 //! A sensor's samples on their way to control: conditioned, and put down where control finds them.
 //!
-//! A fault is said when it sets in. One that goes on is not said again, one that comes back is, once it has been away for
-//! [`QUIET`]: eight kinds of faults cannot flood the link.
+//! A fault is said when it sets in. One that goes on is not said again, one that comes back is, once it has been away
+//! for [`QUIET`]: eight kinds of faults cannot flood the link.
 //!
-//! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a low-pass made for 1 kHz
-//! would be late by many of them: they pass as they are. And a simulator's sensors may be free of noise, so that equal samples
-//! are no fault of theirs.
+//! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a
+//! low-pass made for 1 kHz would be late by many of them: they pass as they are. And a simulator's sensors may be free
+//! of noise, so that equal samples are no fault of theirs.
 
 use crate::hardware::RawImu;
 use crate::shared::{Event, Severity, Shared};

@@ -1,4 +1,5 @@
-//! COMMAND_ACK as it is sent: of commands that the dialect does not have as well, and with whom it is for, which the crate's type cannot hold.
+//! COMMAND_ACK as it is sent: of commands that the dialect does not have as well, and with whom it is for, which the
+//! crate's type cannot hold.
 //!
 //! More than one may command. Whose command was granted and whose was refused is told apart by whom the answer is for.
 

@@ -44,7 +44,8 @@ const AUTO_TAKEOFF: f32 = 2.0;
 const AUTO_LOITER: f32 = 3.0;
 const AUTO_LAND: f32 = 6.0;
 
-/// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one (MAV_DO_REPOSITION_FLAGS_RELATIVE_YAW).
+/// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one
+/// (MAV_DO_REPOSITION_FLAGS_RELATIVE_YAW).
 const RELATIVE_YAW: u32 = 2;
 
 /// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
@@ -166,8 +167,8 @@ fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
     kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), act)
 }
 
-/// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the heading,
-/// and so does zero from where it points.
+/// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the
+/// heading, and so does zero from where it points.
 fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     let [_, flags, _, yaw, _, _, altitude] = call.parameters;
     let Some((latitude, longitude, frame)) = call.place else {
@@ -205,8 +206,8 @@ const fn unsupported(words: &'static str) -> Action {
     Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
 }
 
-/// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative times
-/// become zero, which is refused as well.
+/// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative
+/// times become zero, which is refused as well.
 fn motor_test(call: &Call) -> Action {
     let [number, unit, throttle, seconds, count, ..] = call.parameters;
     let in_percent = unit == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 as f32;
@@ -276,8 +277,8 @@ fn calibration(call: &Call) -> Action {
 /// What clients hear that have other numbers, ArduPilot's say.
 const NO_MODE: Action = Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only");
 
-/// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a simulator and the
-/// guided flag for flight by setpoints.
+/// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a
+/// simulator and the guided flag for flight by setpoints.
 fn set_mode(call: &Call, armed: bool) -> Action {
     let [base, main, sub, ..] = call.parameters;
     if !(0.0..=255.0).contains(&base) {
@@ -303,8 +304,8 @@ fn set_mode(call: &Call, armed: bool) -> Action {
 /// Knows a command that was delivered twice.
 ///
 /// A command sent again on purpose carries a new sequence number and acts again: arming twice is refused by the flight
-/// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor test, nor arm what
-/// was disarmed in between. One that goes on being delivered acts once a second.
+/// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor
+/// test, nor arm what was disarmed in between. One that goes on being delivered acts once a second.
 #[derive(Debug, Default)]
 pub struct Repetitions(Deque<(Header, u16, u64), REMEMBERED>);
 

@@ -1,8 +1,8 @@
 //! Who commands: the station that armed the vehicle, while it is armed and heard.
 //!
-//! Nobody else may disarm it, not even by force; everything else anybody may ask for. A station that has been silent for
-//! [`SILENCE`] commands no more: the next that speaks may stop the motors. So may anybody where a radio armed it. Who armed is control's
-//! to say: many may have asked.
+//! Nobody else may disarm it, not even by force; everything else anybody may ask for. A station that has been silent
+//! for [`SILENCE`] commands no more: the next that speaks may stop the motors. So may anybody where a radio armed it.
+//! Who armed is control's to say: many may have asked.
 
 use super::command::Call;
 use controller_core::flight::Stamped;

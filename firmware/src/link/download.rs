@@ -1,8 +1,9 @@
 //! The logs that somebody wants, a message at a time: their list, or one of them.
 //!
-//! Where a card is ready its task answers ([`Library`](crate::shared::Library)): what it offers is asked for chunk by chunk, the next one while
-//! the last goes out. Nobody waits for it: what it does not say within [`ANSWER_WITHIN`] ends the download. Elsewhere there is the flight
-//! recorder's recording, which is at hand. Nothing goes out while the vehicle is armed.
+//! Where a card is ready its task answers ([`Library`](crate::shared::Library)): what it offers is asked for chunk by
+//! chunk, the next one while the last goes out. Nobody waits for it: what it does not say within [`ANSWER_WITHIN`] ends
+//! the download. Elsewhere there is the flight recorder's recording, which is at hand. Nothing goes out while the
+//! vehicle is armed.
 
 use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, Shared};
 use core::fmt::Display;
@@ -12,7 +13,8 @@ use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA};
 /// Time between messages, us: 45 KB/s at most, half of a fast line.
 pub const INTERVAL: u64 = 2_000;
 
-/// The longest that the card may take over an answer, us: it also finishes a flight meanwhile, two seconds of it, and begins the next one's file.
+/// The longest that the card may take over an answer, us: it also finishes a flight meanwhile, two seconds of it, and
+/// begins the next one's file.
 pub const ANSWER_WITHIN: u64 = 6_000_000;
 
 /// Bytes of a message.

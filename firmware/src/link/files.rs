@@ -40,8 +40,8 @@ pub struct FileRequest {
 }
 
 impl FileRequest {
-    /// The request in a FILE_TRANSFER_PROTOCOL, with whom it is for: system, component. None if it is an answer, which must not be
-    /// answered.
+    /// The request in a FILE_TRANSFER_PROTOCOL, with whom it is for: system, component. None if it is an answer, which
+    /// must not be answered.
     pub fn of(frame: &Frame<'_>) -> Option<(Self, [u8; 2])> {
         // Zeros at the end are cut off.
         let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);

@@ -1,16 +1,16 @@
 //! MAVLink frames: found in a stream of bytes, and checked.
 //!
-//! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions. Whatever
-//! is not a frame (noise, truncated frames, frames of other dialects) is given up from its first byte only, and the bytes
-//! behind it are looked at again, so a good frame behind a broken one is still found.
+//! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions.
+//! Whatever is not a frame (noise, truncated frames, frames of other dialects) is given up from its first byte only,
+//! and the bytes behind it are looked at again, so a good frame behind a broken one is still found.
 //!
 //! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
-//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an old
-//! pose never comes out as a fresh one.
+//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an
+//! old pose never comes out as a fresh one.
 //!
-//! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot be
-//! told from noise. Frames of `common` that nobody here wants are checked and skipped whole: bytes inside them that look
-//! like a frame (a log being sent) do nothing.
+//! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot
+//! be told from noise. Frames of `common` that nobody here wants are checked and skipped whole: bytes inside them that
+//! look like a frame (a log being sent) do nothing.
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
@@ -77,8 +77,8 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// The message, if it is of this type and its enumerations have values of the dialect. Version 2 cuts zeros off the end
-    /// of a message; version 1 does not: there, a shorter payload is something else.
+    /// The message, if it is of this type and its enumerations have values of the dialect. Version 2 cuts zeros off the
+    /// end of a message; version 1 does not: there, a shorter payload is something else.
     #[must_use]
     pub fn decode<D: MessageData>(&self) -> Option<D> {
         let is_whole = self.version == Version::V2 || self.payload.len() >= D::ENCODED_LEN;

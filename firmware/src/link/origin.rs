@@ -4,8 +4,9 @@
 //! lat = lat_0 + north / R        lon = lon_0 + east / (R cos lat_0)        R = 6,371 km
 //! ```
 //!
-//! Many clients know no other places. Where a ground station has set an origin (SET_GPS_GLOBAL_ORIGIN), it is what its maps show; until
-//! then it is 0 N, 0 E at sea level, and nothing but the distances means anything. A degree is 1e7 units.
+//! Many clients know no other places. Where a ground station has set an origin (SET_GPS_GLOBAL_ORIGIN), it is what its
+//! maps show; until then it is 0 N, 0 E at sea level, and nothing but the distances means anything. A degree is 1e7
+//! units.
 
 use controller_core::math;
 use nalgebra::Vector3;

@@ -5,15 +5,17 @@
 //! | ODOMETRY | position in LOCAL_NED or LOCAL_FRD, velocity in BODY_FRD or in the frame of the position | quality, reset counter, covariance |
 //! | ATT_POS_MOCAP | FRD to NED | nothing |
 //!
-//! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are zero) has its
-//! poses stamped as they arrive. What a pose takes at least, from the camera to here, is known where its sender answers TIMESYNC by
-//! the clock that stamps its poses ([`TimeSync`]); where it does not, parameter POSE_DELAY says it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was
-//! overtaken, and is dropped.
+//! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are
+//! zero) has its poses stamped as they arrive. What a pose takes at least, from the camera to here, is known where its
+//! sender answers TIMESYNC by the clock that stamps its poses ([`TimeSync`]); where it does not, parameter POSE_DELAY
+//! says it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was overtaken,
+//! and is dropped.
 //!
-//! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look like
-//! jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless. Velocities and body rates
-//! must be finite too, though the IMU's are flown. Of the covariance the greatest variances of position and of attitude count, where
-//! they are positive (NaN means unknown, and zero that nobody has filled it in).
+//! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
+//! like jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless.
+//! Velocities and body rates must be finite too, though the IMU's are flown. Of the covariance the greatest variances
+//! of position and of attitude count, where they are positive (NaN means unknown, and zero that nobody has filled it
+//! in).
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
@@ -45,7 +47,8 @@ pub enum PoseRefusal {
     Repeated,
     /// It was under way for more than [`LATE_MAX`], says TIMESYNC.
     Late,
-    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC nobody knows.
+    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC nobody
+    /// knows.
     LateOrSet,
     /// Another source is being listened to.
     SecondSource,
@@ -117,8 +120,8 @@ impl Poses {
         Ok(self.listen(frame, time, delay)?.map(|time| Stamped { value, time }))
     }
 
-    /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us, or none where
-    /// that is not after what was taken last.
+    /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us,
+    /// or none where that is not after what was taken last.
     fn listen(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<Option<u64>, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
@@ -172,7 +175,8 @@ impl Poses {
 }
 
 impl Source {
-    /// What a message that says `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps the messages.
+    /// What a message that says `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps
+    /// the messages.
     fn delay(&self, time: u64) -> Option<u64> {
         let clock = self.clock.as_ref().filter(|_| time != 0)?;
         let Offset { value, error } = self.sync.offset(self.arrived)?;
@@ -182,8 +186,8 @@ impl Source {
         plausible.then(|| u64::try_from(delay).unwrap_or(0))
     }
 
-    /// Whether a message that says `time` and arrived at `arrived`, us, is too late by what TIMESYNC says. A time that does not advance
-    /// is not late: it is no new one, or its clock was set.
+    /// Whether a message that says `time` and arrived at `arrived`, us, is too late by what TIMESYNC says. A time that
+    /// does not advance is not late: it is no new one, or its clock was set.
     fn is_late(&self, time: u64, arrived: u64) -> bool {
         let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
         let known = self.sync.recent(arrived).filter(|_| self.synchronised && goes_on && time != 0);
@@ -192,7 +196,8 @@ impl Source {
         })
     }
 
-    /// The sender's clock was set: what TIMESYNC said is of another. The line is what it was, until the next answer says better.
+    /// The sender's clock was set: what TIMESYNC said is of another. The line is what it was, until the next answer
+    /// says better.
     fn begin_anew(&mut self) {
         let value =
             self.clock.as_ref().filter(|_| self.synchronised).map(|clock| clock.offset() - i128::from(self.delay));

@@ -1,6 +1,7 @@
 //! What comes in: bytes to frames, frames to what the other tasks want to know.
 //!
-//! A message that cannot be used changes nothing, is counted and, once a second at most, told in words. No input panics.
+//! A message that cannot be used changes nothing, is counted and, once a second at most, told in words. No input
+//! panics.
 
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
@@ -230,7 +231,8 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    /// Somebody asks to fly setpoints at `now`, us: sticks that have fallen silent stand back, and what was sent meanwhile counts.
+    /// Somebody asks to fly setpoints at `now`, us: sticks that have fallen silent stand back, and what was sent
+    /// meanwhile counts.
     fn take_over(&mut self, now: u64) {
         let sticks = self.shared.sticks.get();
         if sticks.is_none_or(|sticks| !sticks.value || sticks.age(now) <= RADIO_SILENCE) {

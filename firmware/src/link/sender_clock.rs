@@ -1,19 +1,20 @@
 //! A sender's clock against the vehicle's: when a message was true, and whether its time is a new one.
 //!
-//! A message that arrives at a (the vehicle's clock) and says s (the sender's) was true at s + o, where o is what the clocks differ by.
-//! Every arrival is late by what the line took: a - s = o + delay. So the least a - s seen is nearest to o:
+//! A message that arrives at a (the vehicle's clock) and says s (the sender's) was true at s + o, where o is what the
+//! clocks differ by. Every arrival is late by what the line took: a - s = o + delay. So the least a - s seen is nearest
+//! to o:
 //!
 //! ```text
 //! o_k = min(a_k - s_k, o_(k-1) + drift (a_k - a_(k-1)))      drift: 200 ppm, more than two quartz clocks part
 //! ```
 //!
-//! What every message takes at least is not seen that way and stays part of o: [`super::time_sync`] may know it, or somebody who
-//! has measured it. A message is never stamped later than it arrived.
+//! What every message takes at least is not seen that way and stays part of o: [`super::time_sync`] may know it, or
+//! somebody who has measured it. A message is never stamped later than it arrived.
 //!
-//! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one that would be more
-//! than [`LATE_MAX`] late. A clock that was set back, or stood still, or begins anew, goes on from frame to frame as the vehicle's
-//! does. After [`STEADY`] such frames it is believed, and o is found anew. A line that is that late from some time on looks the same;
-//! who knows better by TIMESYNC must refuse its messages first.
+//! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
+//! that would be more than [`LATE_MAX`] late. A clock that was set back, or stood still, or begins anew, goes on from
+//! frame to frame as the vehicle's does. After [`STEADY`] such frames it is believed, and o is found anew. A line that
+//! is that late from some time on looks the same; who knows better by TIMESYNC must refuse its messages first.
 
 /// Frames in a row that prove a clock that is not where it was: 50 ms at 100 Hz.
 pub const STEADY: u8 = 5;
@@ -74,8 +75,8 @@ impl SenderClock {
         time > self.last.0
     }
 
-    /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time is not a new
-    /// one.
+    /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time
+    /// is not a new one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
         let drifted = self.offset + i128::from(arrived.saturating_sub(self.last.1) / DRIFT);
         let late = difference(arrived, time) - drifted;

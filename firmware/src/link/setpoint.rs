@@ -8,8 +8,8 @@
 //! | position on some axes, velocity on the others, or both | go there on those, move like that on these |
 //! | anything else: acceleration alone or with some axes only, nothing on an axis, forces | refused |
 //!
-//! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not looked
-//! at. Ranges are the governor's business: everything from here goes through it.
+//! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not
+//! looked at. Ranges are the governor's business: everything from here goes through it.
 //!
 //! | frame | position | velocity, acceleration | yaw |
 //! |---|---|---|---|
@@ -17,8 +17,8 @@
 //! | LOCAL_OFFSET_NED | from where the vehicle is | north, east, down | from where it points |
 //! | BODY_NED, BODY_OFFSET_NED, BODY_FRD | from where it is, ahead, right, down | ahead, right, down | from where it points |
 //!
-//! Ahead is where the vehicle points, level: it does not matter how it leans. Axes that turn with the vehicle are none of the world's:
-//! there, what is asked ahead must be asked across too.
+//! Ahead is where the vehicle points, level: it does not matter how it leans. Axes that turn with the vehicle are none
+//! of the world's: there, what is asked ahead must be asked across too.
 
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};

@@ -13,7 +13,8 @@ pub enum Rate {
     Telemetry,
 }
 
-/// The messages, those first that matter most. At the default rates they take 4 KB/s of a line's 5.7 KB/s at 57,600 baud.
+/// The messages, those first that matter most. At the default rates they take 4 KB/s of a line's 5.7 KB/s at 57,600
+/// baud.
 #[rustfmt::skip]
 pub const STREAMS: [(Kind, Rate); 18] = [
     (Kind::Heartbeat,          Rate::Every(1_000_000)),
@@ -78,8 +79,8 @@ impl Schedule {
         Self(STREAMS.map(|(kind, rate)| Stream { kind, rate, asked: None, due: now }))
     }
 
-    /// The first message that is due at `now`, us, where telemetry goes out every `telemetry` us; it is then due an interval later, or
-    /// an interval from now if that has passed as well.
+    /// The first message that is due at `now`, us, where telemetry goes out every `telemetry` us; it is then due an
+    /// interval later, or an interval from now if that has passed as well.
     pub fn next_due(&mut self, telemetry: u64, now: u64) -> Option<Kind> {
         self.0.iter_mut().filter(|stream| now >= stream.due).find_map(|stream| {
             let interval = stream.interval(telemetry)?;
@@ -96,7 +97,8 @@ impl Schedule {
         running.map(|stream| stream.due).min().unwrap_or(u64::MAX)
     }
 
-    /// Sends a message every `interval` us from now on, as SET_MESSAGE_INTERVAL says it: 0 is the table's rate, below that never.
+    /// Sends a message every `interval` us from now on, as SET_MESSAGE_INTERVAL says it: 0 is the table's rate, below
+    /// that never.
     pub fn ask(&mut self, kind: Kind, interval: i64, now: u64) {
         for stream in self.0.iter_mut().filter(|stream| stream.kind == kind) {
             stream.asked = match u64::try_from(interval) {
@@ -115,7 +117,8 @@ impl Schedule {
     }
 }
 
-/// The interval of a rate, Hz, us. Parameters lie within their ranges, [`crate::parameters::table::Name::TelemetryRate`] above zero.
+/// The interval of a rate, Hz, us. Parameters lie within their ranges,
+/// [`crate::parameters::table::Name::TelemetryRate`] above zero.
 #[must_use]
 pub fn interval_of_rate(rate: f32) -> u64 {
     (1e6 / rate) as u64

@@ -1,14 +1,14 @@
 //! TIMESYNC: what a sender's clock and the vehicle's differ by, from questions and answers.
 //!
-//! The vehicle asks at t_1 (its clock), the sender answers at s (its own), the answer is here at t_2. If the ways there and back take
-//! as long,
+//! The vehicle asks at t_1 (its clock), the sender answers at s (its own), the answer is here at t_2. If the ways there
+//! and back take as long,
 //!
 //! ```text
 //! o = (t_1 + t_2) / 2 - s          and if they do not, |error| <= (t_2 - t_1) / 2
 //! ```
 //!
-//! The answer with the least error counts. An old one's error grows by what two clocks part. Where two answers in a row cannot be of
-//! the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
+//! The answer with the least error counts. An old one's error grows by what two clocks part. Where two answers in a row
+//! cannot be of the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
 //! [`SenderClock`](super::sender_clock::SenderClock) cannot tell from a clock that is behind.
 
 use super::sender_clock::DRIFT;
@@ -17,8 +17,8 @@ use mavlink::dialects::common::TIMESYNC_DATA;
 /// The longest that an answer may take, us.
 pub const ANSWER_MAX: u64 = 100_000;
 
-/// Answers in a row that contradict the best one and prove that the clock was set: a single one may be of another clock in the same
-/// system.
+/// Answers in a row that contradict the best one and prove that the clock was set: a single one may be of another clock
+/// in the same system.
 const SET: u8 = 2;
 
 /// How long ago an answer may be that still speaks for what is known, us: three questions' time.
@@ -68,7 +68,8 @@ impl TimeSync {
         Self { best: Some((Offset { value, error: ANSWER_MAX }, now)), ..Self::default() }
     }
 
-    /// Takes an answer that arrived at `arrived`, us. One to a question of a time to come, or of long ago, says nothing.
+    /// Takes an answer that arrived at `arrived`, us. One to a question of a time to come, or of long ago, says
+    /// nothing.
     pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
         let asked = u64::try_from(message.ts1 / 1_000).ok();
         let Some(took) = asked.and_then(|asked| arrived.checked_sub(asked)).filter(|&took| took <= ANSWER_MAX) else {

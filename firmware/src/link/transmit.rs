@@ -32,8 +32,8 @@ const LIST_INTERVAL: u64 = 20_000;
 /// The greatest age of a report that is still sent, and of a voltage, us.
 const REPORT_AGE_MAX: u64 = 1_000_000;
 
-/// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other from
-/// being sent, however slow the line.
+/// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
+/// from being sent, however slow the line.
 pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: &Shared<M>) -> ! {
     let mut speaker = Speaker::new(shared, clock.now());
     loop {

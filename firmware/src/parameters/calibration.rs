@@ -1,7 +1,7 @@
 //! The calibration of each inertial sensor as it is kept among the parameters: eleven rows of the table each.
 //!
-//! The level is kept as the direction that was up when the level vehicle stood still, in the sensor's corrected axes, divided by its z:
-//! two numbers, and no rounding can make them anything but a rotation.
+//! The level is kept as the direction that was up when the level vehicle stood still, in the sensor's corrected axes,
+//! divided by its z: two numbers, and no rounding can make them anything but a rotation.
 
 use super::table::{Name, PARAMETERS};
 use super::{NotTaken, Parameters};

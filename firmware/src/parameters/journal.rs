@@ -7,11 +7,11 @@
 //! | 2 to 62 | values, the rest of them blank |
 //! | 63 | CRC-32 of the others |
 //!
-//! Records fill one sector; then the other is erased and takes the next ones. Power may fail at any point. The sector of the
-//! newest record is never erased, so that record is lost by nothing. One that was cut short fails its checksum and is left
-//! where it is: what was programmed once cannot be programmed again. An erasure that was cut short is done again, because
-//! only the sector of the newest record is ever continued. Reading back after writing finds a place that looked blank
-//! and was not.
+//! Records fill one sector; then the other is erased and takes the next ones. Power may fail at any point. The sector
+//! of the newest record is never erased, so that record is lost by nothing. One that was cut short fails its checksum
+//! and is left where it is: what was programmed once cannot be programmed again. An erasure that was cut short is done
+//! again, because only the sector of the newest record is ever continued. Reading back after writing finds a place that
+//! looked blank and was not.
 
 use crate::hardware::{Fault, Flash, Record};
 

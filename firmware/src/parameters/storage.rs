@@ -3,8 +3,8 @@
 //! All values are one record of a [`journal`](super::journal), each known by its place in the table, so a firmware with
 //! more parameters reads what an older one wrote.
 //!
-//! Erasing a sector of internal flash can stall the whole processor for seconds on some boards. So nothing is written while a motor
-//! turns, and while something is, none begins to: control refuses.
+//! Erasing a sector of internal flash can stall the whole processor for seconds on some boards. So nothing is written
+//! while a motor turns, and while something is, none begins to: control refuses.
 
 use super::journal::{Journal, VALUES_MAX};
 use super::table::PARAMETERS;
@@ -30,8 +30,8 @@ pub struct Storage<F> {
 }
 
 impl<F: Flash> Storage<F> {
-    /// Reads every parameter, once, before the first tick. What is missing, damaged or out of range stays at its default;
-    /// all but the first is announced.
+    /// Reads every parameter, once, before the first tick. What is missing, damaged or out of range stays at its
+    /// default; all but the first is announced.
     pub fn load<M: RawMutex>(flash: F, shared: &Shared<M>) -> Self {
         let mut values = DEFAULTS;
         let (journal, found) = Journal::open(flash, &mut values);

@@ -63,10 +63,11 @@ pub enum Name {
     Imu2LevelY,
     /// a of the motors' thrust curve a u + (1 - a) u^2 over the command u. Taken over at the next boot.
     ThrustCurve,
-    /// The voltage at which the rotors' greatest thrust was measured; commands are corrected by the voltage there is. 0 for never.
-    /// Taken over at once.
+    /// The voltage at which the rotors' greatest thrust was measured; commands are corrected by the voltage there is. 0
+    /// for never. Taken over at once.
     BatteryNominal,
-    /// What a pose takes at least from the camera to the vehicle, where its sender does not answer TIMESYNC. Taken over at once.
+    /// What a pose takes at least from the camera to the vehicle, where its sender does not answer TIMESYNC. Taken over
+    /// at once.
     PoseDelay,
     /// Below this voltage the vehicle lands, whoever would like to fly on; 0 never does. Taken over at once.
     BatteryCritical,
@@ -86,7 +87,8 @@ pub enum Name {
     TrackingErrorMax,
     /// The configuration that the following rows were tuned on. Told, never set.
     TunedOn,
-    /// Mass. The rows from here on are certified when they are set, and taken over at the next boot: see [`super::tuned`].
+    /// Mass. The rows from here on are certified when they are set, and taken over at the next boot: see
+    /// [`super::tuned`].
     Mass,
     /// Limit of the thrust.
     ThrustMax,

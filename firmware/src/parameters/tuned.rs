@@ -4,11 +4,12 @@
 //! built configuration, parameters -> Tuning -> constructors -> loops judged by the build? -> Certified
 //! ```
 //!
-//! It runs twice: when one of them is set, on all of them as they would be then; and at boot, on what was stored. What flies is the
-//! second one's, so a change counts from the next boot. A parameter that nobody set is as built, whatever was built.
+//! It runs twice: when one of them is set, on all of them as they would be then; and at boot, on what was stored. What
+//! flies is the second one's, so a change counts from the next boot. A parameter that nobody set is as built, whatever
+//! was built.
 //!
-//! Certifying takes long (`docs/firmware.md`), and a stack like that of booting. It runs in the link's task, below control, which keeps its
-//! time; and while it does nobody arms.
+//! Certifying takes long (`docs/firmware.md`), and a stack like that of booting. It runs in the link's task, below
+//! control, which keeps its time; and while it does nobody arms.
 
 use super::table::Name;
 use controller_core::certificate::Certificate;

@@ -4,9 +4,9 @@
 //! slot = record | number, 4 bytes | flight, 2 bytes | checksum of all that, 2 bytes
 //! ```
 //!
-//! Numbers go on for ever, one a record. What can be read is the run that ends with the greatest number of a slot whose checksum is right and
-//! goes back while numbers follow one another within one flight. So a write that a reset cut short loses that record and the oldest
-//! one, which was there before; and memory that was never written holds nothing.
+//! Numbers go on for ever, one a record. What can be read is the run that ends with the greatest number of a slot whose
+//! checksum is right and goes back while numbers follow one another within one flight. So a write that a reset cut
+//! short loses that record and the oldest one, which was there before; and memory that was never written holds nothing.
 
 use super::tick;
 use mavlink::calculate_crc;

@@ -1,6 +1,7 @@
 //! What is recorded of a control tick, and how ULog is told.
 //!
-//! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is NaN.
+//! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is
+//! NaN.
 
 use crate::hardware::MotorCommand;
 use controller_core::flight::Mode;

@@ -6,8 +6,8 @@
 //! data    = message of kind D: number of the subscription, 2 bytes | record
 //! ```
 //!
-//! Everything before the data is of constant length and every record is as long as the next, so any part of the file can be
-//! read without the rest.
+//! Everything before the data is of constant length and every record is as long as the next, so any part of the file
+//! can be read without the rest.
 
 use super::ring::Ring;
 use super::tick;

@@ -1,7 +1,8 @@
-//! The recovery's states once more, as an IMU and a late camera see them: the same samples, hence the same bits, of the estimate.
+//! The recovery's states once more, as an IMU and a late camera see them: the same samples, hence the same bits, of the
+//! estimate.
 //!
-//! Between two recorded states, a control period apart, lie ten samples: the body rate goes straight from one to the other, the
-//! force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
+//! Between two recorded states, a control period apart, lie ten samples: the body rate goes straight from one to the
+//! other, the force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
 
 use super::{PERIOD_US, RECORD, digest, state};
 use controller_core::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};

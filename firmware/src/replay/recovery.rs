@@ -1,5 +1,5 @@
-//! A recovery from upside down under the law of the embedded scenario, replayed: the same states, hence the same bits, of the
-//! wrench and of everything the law remembers, its estimates among it.
+//! A recovery from upside down under the law of the embedded scenario, replayed: the same states, hence the same bits,
+//! of the wrench and of everything the law remembers, its estimates among it.
 
 use super::{PERIOD_US, RECORD, digest, state};
 use crate::configuration;

@@ -1,6 +1,8 @@
-//! What the link asks of the logs there are, and what it gets: the card's task reads its files, the link never waits for it.
+//! What the link asks of the logs there are, and what it gets: the card's task reads its files, the link never waits
+//! for it.
 //!
-//! One question is open at a time, and a new one replaces it. An answer names its question, so that a late one is known for what it is.
+//! One question is open at a time, and a new one replaces it. An answer names its question, so that a late one is known
+//! for what it is.
 
 use super::latest::Latest;
 use super::queue::Queue;

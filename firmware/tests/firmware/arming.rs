@@ -1,5 +1,5 @@
-//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody measures, motors that
-//! are not reached.
+//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody
+//! measures, motors that are not reached.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
@@ -15,7 +15,8 @@ use firmware::parameters::table::Name;
 use firmware::shared::Asked;
 use nalgebra::{Quaternion, Vector3};
 
-/// A vehicle at rest: what its accelerometer says at a time, us, what its battery's, and whether its motors' frames go out.
+/// A vehicle at rest: what its accelerometer says at a time, us, what its battery's, and whether its motors' frames go
+/// out.
 struct Vehicle {
     force: fn(u64) -> Option<Vector3<f32>>,
     voltage: fn(u64) -> Option<f32>,
@@ -59,7 +60,8 @@ fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, n
     }
 }
 
-/// Each of these is asked for at its time, us, of four seconds: the mode then, and what was said since the first of them.
+/// Each of these is asked for at its time, us, of four seconds: the mode then, and what was said since the first of
+/// them.
 fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mode, Vec<String>) {
     let clock = Simulated::default();
     let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();

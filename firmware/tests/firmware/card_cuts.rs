@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 
 const SECOND: u64 = 1_000_000;
 
-/// Bytes of a torn sector that are new: in a name, a first cluster and a length of the directory's entries, in numbers of tables, in records.
+/// Bytes of a torn sector that are new: in a name, a first cluster and a length of the directory's entries, in numbers
+/// of tables, in records.
 const TEARS: [usize; 5] = [1, 62, 131, 430, SECTOR - 1];
 
 /// Records in a sector: what a cut may lose of those that were written before.
@@ -23,7 +24,8 @@ const SECTOR_RECORDS: usize = 3;
 /// A log as it was before: its name and bytes.
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Flies two flights, the second longer than a chunk; what is on the card then, and the times of its ticks when each write began.
+/// Flies two flights, the second longer than a chunk; what is on the card then, and the times of its ticks when each
+/// write began.
 fn flown(card: &Simulation, clock: &Simulated, shared: &Local) {
     let mut ticks = Ticks::new(shared);
     clock.run(12 * SECOND, run(card.clone(), CHUNK, clock, shared), |now| {
@@ -110,7 +112,8 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     let log = parsed(newest.1);
     assert_eq!((log.ticks.len(), log.is_whole), (204, true), "{what}: {}", newest.0);
     assert!(texts(&shared).iter().any(|text| text.ends_with("204 ticks, 0 missed")), "{what}");
-    // Where it had records before, they were not overwritten: the flight is in another file, and the torn sector is gone.
+    // Where it had records before, they were not overwritten: the flight is in another file, and the torn sector is
+    // gone.
     for (name, bytes) in before.iter().filter(|(_, bytes)| bytes.len() > 2 * SECTOR) {
         let (old, new) = (parsed(bytes), parsed(&after[name]));
         let untouched = old.ticks.is_empty() || name != newest.0;

@@ -1,4 +1,5 @@
-//! The card's files over the link, by the requests that ground stations send, while the card's task logs and the link does its other work.
+//! The card's files over the link, by the requests that ground stations send, while the card's task logs and the link
+//! does its other work.
 
 use crate::card::{Ticks, shared, times};
 use crate::support::card::{Simulation, files, parsed, small};
@@ -27,7 +28,8 @@ use std::collections::BTreeMap;
 /// A second, us.
 const SECOND: u64 = 1_000_000;
 
-/// A vehicle with a card, and a ground station on its line: the tasks of both, and control as far as the recorder knows it.
+/// A vehicle with a card, and a ground station on its line: the tasks of both, and control as far as the recorder knows
+/// it.
 struct Bench {
     card: Simulation<'static>,
     clock: &'static Simulated,

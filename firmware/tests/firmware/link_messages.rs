@@ -1,5 +1,5 @@
-//! What the messages hold, with the `mavlink` crate as the other end of the line: every field that is read, every frame that is
-//! written.
+//! What the messages hold, with the `mavlink` crate as the other end of the line: every field that is read, every frame
+//! that is written.
 
 use crate::support::receiver::{Fed, Local};
 use crate::support::{v1, v2};

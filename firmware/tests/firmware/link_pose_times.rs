@@ -70,8 +70,8 @@ fn a_sender_whose_clock_comes_and_goes_does_not_go_back_in_time() {
     assert_eq!(stamps, [0, 10_000, 30_000]);
 }
 
-/// When poses of a sender were true that is `ahead` us ahead and 30 to 50 ms late, and answers TIMESYNC by a clock that is
-/// `answers` us ahead: the error of each stamp, us.
+/// When poses of a sender were true that is `ahead` us ahead and 30 to 50 ms late, and answers TIMESYNC by a clock that
+/// is `answers` us ahead: the error of each stamp, us.
 fn late_by_30_ms(shared: &Local, ahead: u64, answers: Option<u64>) -> Vec<i64> {
     let mut fed = Fed::new(shared);
     let truths = (0..100).map(|count| 1_000_000 + 10_000 * count);
@@ -95,7 +95,8 @@ fn a_sender_that_answers_timesync_has_no_delay() {
         let shared = Local::new();
         let errors = late_by_30_ms(&shared, ahead, Some(ahead));
         assert_eq!(errors[0], 30_000);
-        // While the stamps are set back nothing goes back in time, and the sender, who did nothing wrong, is not scolded.
+        // While the stamps are set back nothing goes back in time, and the sender, who did nothing wrong, is not
+        // scolded.
         assert_eq!(texts(&shared), [] as [&str; 0]);
         assert!((95..99).contains(&errors.len()), "{}", errors.len());
         assert!(errors[1..].iter().all(|error| error.abs() <= 1_050), "{errors:?}");
@@ -119,8 +120,9 @@ fn timesync_of_another_clock_says_nothing_and_a_delay_that_was_measured_does() {
     assert_eq!(newest(&shared).unwrap().time, 70_000);
 }
 
-/// A sender that answers TIMESYNC once a second, the first time more quickly than ever again; a pose each 10 ms for as long as there are
-/// `ticks`; what its clock says of a true time and how late its poses are is `line`'s to say. What became of each.
+/// A sender that answers TIMESYNC once a second, the first time more quickly than ever again; a pose each 10 ms for as
+/// long as there are `ticks`; what its clock says of a true time and how late its poses are is `line`'s to say. What
+/// became of each.
 fn synchronised(shared: &Local, ticks: u64, line: impl Fn(u64) -> (u64, u64)) -> Vec<(u64, Option<u64>)> {
     let mut fed = Fed::new(shared);
     let mut answered = 0;

@@ -81,7 +81,8 @@ fn the_link_is_on_the_serial_line_until_the_port_is_opened_and_again_when_it_is_
     });
     let (serial, port) = bench.heartbeats();
     assert!((19..=21).contains(&serial) && (9..=11).contains(&port), "{serial} {port}");
-    // What came over the port while it was closed waits in this bench's line, not in a port's; it is all heard in the end.
+    // What came over the port while it was closed waits in this bench's line, not in a port's; it is all heard in the
+    // end.
     assert!((39..=61).contains(&bench.frames()), "{}", bench.frames());
 }
 

@@ -1,9 +1,10 @@
-//! What the paper claims of its design against others, beside what a simulation shows: `cargo run --release -p host-sim --example
-//! paper_claims -- [DIR]`. A table of claims, each confirmed or refuted by a figure; two pictures in DIR (default flights/paper-claims).
+//! What the paper claims of its design against others, beside what a simulation shows:
+//! `cargo run --release -p host-sim --example paper_claims -- [DIR]`. A table of claims, each confirmed or refuted by a
+//! figure; two pictures in DIR (default flights/paper-claims).
 //!
-//! All on the paper's vehicle with Table I. The nested-saturation design ([`host_sim::rivals::nested`]) has the same attitude law with the
-//! same gains and the same level, 2 m/s^2; and either the same small motions (k_p, k_v), or those of 64 pairs that are quickest in
-//! Section VI: where there are two figures of it, they are of these two.
+//! All on the paper's vehicle with Table I. The nested-saturation design ([`host_sim::rivals::nested`]) has the same
+//! attitude law with the same gains and the same level, 2 m/s^2; and either the same small motions (k_p, k_v), or those
+//! of 64 pairs that are quickest in Section VI: where there are two figures of it, they are of these two.
 
 mod claims;
 mod half_turns;

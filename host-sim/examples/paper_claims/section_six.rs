@@ -10,7 +10,8 @@ use scenario::Scenario;
 use scenario::reality::sensors::Sensors;
 use std::error::Error;
 
-/// Table I in the names of [`host_sim::rivals::nested`]; the integral is as good as none, since the paper's law has none.
+/// Table I in the names of [`host_sim::rivals::nested`]; the integral is as good as none, since the paper's law has
+/// none.
 pub const MATCHED: [f64; 10] = [6.0, 9.0, 1e-6, 2.0, 0.499, 1e-3, 100.0, 0.206, 0.1, 0.045];
 /// What the actuators are drawn for, s.
 const FIRST: f64 = 4.0;
@@ -100,7 +101,8 @@ impl SectionSix {
     }
 }
 
-/// What Section VI shows of the paper's design, of nested saturations with the same small motions, and of the quickest of them.
+/// What Section VI shows of the paper's design, of nested saturations with the same small motions, and of the quickest
+/// of them.
 pub fn claim(claims: &mut Claims, filtered: &SectionSix, others: [&SectionSix; 2]) {
     let of = |get: &dyn Fn(&SectionSix) -> f64| others.map(get);
     let interval = |shown: &SectionSix| format!("{:.2} to {:.2}", shown.thrust.0, shown.thrust.1);

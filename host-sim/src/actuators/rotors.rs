@@ -1,8 +1,8 @@
 //! Rotors in motion: speeds that follow their commands with a first-order lag.
 //!
-//! speed' = (command - speed) / lag is solved exactly over each plant step; the body feels the thrusts of the step's middle,
-//! so the error against a continuous solution is of second order in step / lag. There is no air flow through the rotors,
-//! and a motor that starts from standstill follows like any other.
+//! speed' = (command - speed) / lag is solved exactly over each plant step; the body feels the thrusts of the step's
+//! middle, so the error against a continuous solution is of second order in step / lag. There is no air flow through
+//! the rotors, and a motor that starts from standstill follows like any other.
 
 use controller_core::allocation::{Rotor, Rotors};
 use nalgebra::{Vector3, Vector4};

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 pub struct IdentifyArguments {
     /// log.csv of a flight, or the ULog that the firmware recorded
     pub log: PathBuf,
-    /// Scenario file whose vehicle is the model: rotors, mass and inertia as they are believed to be [default: vehicles/study.toml, built in]
+    /// Scenario file whose vehicle is the model: rotors, mass and inertia as they are believed to be [default:
+    /// vehicles/study.toml, built in]
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
     /// Bench data: weighing, bifilar swings, thrust stand (docs/identify.md)

@@ -1,4 +1,5 @@
-//! What a session with somebody else's program is asked to be: `sitl` and `hil`, in clap's terms, and what of it is refused.
+//! What a session with somebody else's program is asked to be: `sitl` and `hil`, in clap's terms, and what of it is
+//! refused.
 
 use clap::{ArgGroup, Args};
 use host_sim::hil::Session;
@@ -12,7 +13,8 @@ use std::time::Duration;
 /// What a session with MAVLink clients is asked to be.
 #[derive(Args)]
 pub struct SitlArguments {
-    /// Scenario file: vehicle, rotors, gains, delay, [estimator], wind and the like [default: vehicles/study.toml, built in]
+    /// Scenario file: vehicle, rotors, gains, delay, [estimator], wind and the like [default: vehicles/study.toml,
+    /// built in]
     pub file: Option<PathBuf>,
     /// How many times as fast as the desk's the vehicle's time passes, 0.1 to 100
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
@@ -26,7 +28,8 @@ pub struct SitlArguments {
     /// Keep parameters in this file from one session to the next
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
-    /// Record the session for Foxglove, 100 moments a second of the vehicle's time, 1.7 KB each at most; the file shows up at the end
+    /// Record the session for Foxglove, 100 moments a second of the vehicle's time, 1.7 KB each at most; the file shows
+    /// up at the end
     #[arg(long, value_name = "FILE.mcap")]
     mcap: Option<PathBuf>,
     #[command(flatten)]
@@ -75,10 +78,12 @@ pub struct HilArguments {
     /// Write a row for each command: state a period later, commands, thrust, the command's own time in us
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
-    /// Let the vehicle's time pass at most so many times as fast as the desk's, 0.1 to 100 [default: as fast as both sides go]
+    /// Let the vehicle's time pass at most so many times as fast as the desk's, 0.1 to 100 [default: as fast as both
+    /// sides go]
     #[arg(long, value_name = "FACTOR")]
     speed: Option<f64>,
-    /// Find the flight controller's line for ground stations at this address, and hand it to MAVLink clients by UDP, as sitl does
+    /// Find the flight controller's line for ground stations at this address, and hand it to MAVLink clients by UDP, as
+    /// sitl does
     #[arg(long, value_name = "HOST:PORT")]
     ground: Option<String>,
     #[command(flatten)]

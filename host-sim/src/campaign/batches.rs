@@ -1,7 +1,7 @@
 //! Files of record batches: written whole, and read only if they hold what was written.
 //!
-//! A campaign's result has its SHA-256 in the manifest; a part has it after the Arrow file, as its last 32 bytes. Files of campaigns that
-//! knew neither are read as they are.
+//! A campaign's result has its SHA-256 in the manifest; a part has it after the Arrow file, as its last 32 bytes. Files
+//! of campaigns that knew neither are read as they are.
 
 use crate::whole_file::WholeFile;
 use arrow_array::RecordBatch;
@@ -82,8 +82,8 @@ thread_local! {
     static READING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What `bytes` hold. Arrow's reader takes a file's word for where its buffers lie, and panics where they lie outside: a damaged file
-/// without a SHA-256 must be one that cannot be read, no more, and silently.
+/// What `bytes` hold. Arrow's reader takes a file's word for where its buffers lie, and panics where they lie outside:
+/// a damaged file without a SHA-256 must be one that cannot be read, no more, and silently.
 fn decoded(bytes: &[u8]) -> Option<Vec<RecordBatch>> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {

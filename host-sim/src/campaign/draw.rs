@@ -1,7 +1,9 @@
-//! The circumstances of a campaign's flights: where each starts, how the air moves, what is measured, what the vehicle really is.
+//! The circumstances of a campaign's flights: where each starts, how the air moves, what is measured, what the vehicle
+//! really is.
 //!
-//! Everything is drawn from (seed, number) alone: the number is the key of a ChaCha8 generator, the seed its stream. Each quantity is
-//! drawn whatever its range, in the order of this table, and scaled after that: a range that changes leaves the other draws as they are.
+//! Everything is drawn from (seed, number) alone: the number is the key of a ChaCha8 generator, the seed its stream.
+//! Each quantity is drawn whatever its range, in the order of this table, and scaled after that: a range that changes
+//! leaves the other draws as they are.
 //!
 //! | drawn | how |
 //! |---|---|
@@ -13,8 +15,9 @@
 //! | turbulence, noises, delay | evenly from zero up |
 //! | errors of the model | evenly on both sides; the centre of mass in a ball |
 //!
-//! A wind needs air: a vehicle whose file has no `[drag]` is given one of 0.5 1/s. Where the file has `[sensors]` or `[estimator]`, that
-//! stands, and only its seed is drawn. Of the file's own `[initial]` the attitude stands if none is drawn, of its `[wind]` nothing.
+//! A wind needs air: a vehicle whose file has no `[drag]` is given one of 0.5 1/s. Where the file has `[sensors]` or
+//! `[estimator]`, that stands, and only its seed is drawn. Of the file's own `[initial]` the attitude stands if none is
+//! drawn, of its `[wind]` nothing.
 
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::reference::hover::Hover;
@@ -39,14 +42,15 @@ const DRAG: f64 = 0.5;
 const ALTITUDE: f64 = 10.0;
 /// The least airspeed that turbulence drifts past with, m/s.
 const LEAST_AIRSPEED: f64 = 1.0;
-/// How velocity is made of noisy poses: bandwidth, rad/s, and the accelerometer's noise, m/s^2, as for the trials of a search.
+/// How velocity is made of noisy poses: bandwidth, rad/s, and the accelerometer's noise, m/s^2, as for the trials of a
+/// search.
 const VELOCITY: VelocitySource =
     VelocitySource::Observer { bandwidth: 8.0, noise: 0.05, bias: Vector3::new(0.0, 0.0, 0.0) };
 /// Durations are decimal fractions: how far their quotient by the period may be below a whole number, relative.
 const WHOLE: f64 = 1e-9;
 
-/// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it is: what is
-/// certified for the scenario is certified for all of its flights.
+/// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it
+/// is: what is certified for the scenario is certified for all of its flights.
 #[must_use]
 pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u64) -> Scenario {
     let mut drawn = Drawn(ChaCha8Rng::seed_from_u64(number));

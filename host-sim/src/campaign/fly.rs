@@ -1,7 +1,7 @@
 //! The `campaign` and `merge` commands: flights by the chunk on all cores, and shards put together.
 //!
-//! Which flights there are, and what each is, comes from the manifest; which core flies a chunk, and when, changes nothing. Chunks that
-//! are already there are not flown again.
+//! Which flights there are, and what each is, comes from the manifest; which core flies a chunk, and when, changes
+//! nothing. Chunks that are already there are not flown again.
 
 use super::CampaignError;
 use super::manifest::{CHUNK, Manifest};

@@ -1,4 +1,5 @@
-//! Hours of flight: ten-minute missions, one after the other, on one pilot that never reboots, with faults sprinkled in.
+//! Hours of flight: ten-minute missions, one after the other, on one pilot that never reboots, with faults sprinkled
+//! in.
 //!
 //! | a mission, s | what happens | what must follow |
 //! |---|---|---|
@@ -11,11 +12,13 @@
 //! | 360 | a command to land; in one mission of four the battery is low instead, and changed on the ground | lands |
 //! | 500, 550 | the frame moves on the ground; no poses for 2 s | ready to arm again |
 //!
-//! Where the scenario has no `[estimator]`, the IMU has half the noise and half the walk of a BMI088 as the filter assumes it: with all of its walk an
-//! accelerometer is off by a tenth of g after nine hours, which is not plausible, and the vehicle rightly refuses to arm.
+//! Where the scenario has no `[estimator]`, the IMU has half the noise and half the walk of a BMI088 as the filter
+//! assumes it: with all of its walk an accelerometer is off by a tenth of g after nine hours, which is not plausible,
+//! and the vehicle rightly refuses to arm.
 //!
-//! Each time is up to two seconds later, by the seed. A mission is judged by the transitions it took, in order, and by how long each took. The
-//! vehicle's clock starts where the caller says: a counter of it with 32 bits overflows on the way, if there is one.
+//! Each time is up to two seconds later, by the seed. A mission is judged by the transitions it took, in order, and by
+//! how long each took. The vehicle's clock starts where the caller says: a counter of it with 32 bits overflows on the
+//! way, if there is one.
 
 mod script;
 mod shown;

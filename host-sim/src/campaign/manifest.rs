@@ -1,5 +1,5 @@
-//! campaign.json: of what a directory holds the flights. Two directories belong together, and a campaign goes on where it was, only
-//! if these agree.
+//! campaign.json: of what a directory holds the flights. Two directories belong together, and a campaign goes on where
+//! it was, only if these agree.
 
 use super::CampaignError;
 use super::batches::sha256;
@@ -39,7 +39,8 @@ pub struct Manifest {
     pub shard: (u64, u64),
     /// Which law flies.
     pub law: LawChoice,
-    /// What the file of all flights hashes to, hexadecimal, once it is written. It says nothing of which campaign this is.
+    /// What the file of all flights hashes to, hexadecimal, once it is written. It says nothing of which campaign this
+    /// is.
     pub result: Option<String>,
 }
 

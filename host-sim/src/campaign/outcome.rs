@@ -9,8 +9,8 @@
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
-//! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that of a torque,
-//! whose bound is on both sides, |tau| over the bound.
+//! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that
+//! of a torque, whose bound is on both sides, |tau| over the bound.
 
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
@@ -69,8 +69,8 @@ impl Shares {
 }
 
 impl Outcome {
-    /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to its end, the
-    /// height lost and the final error are infinite.
+    /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to
+    /// its end, the height lost and the final error are infinite.
     #[must_use]
     pub fn of(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
         let start = scenario.initial.position.z;

@@ -1,8 +1,8 @@
 //! A campaign of recoveries: a certified vehicle thrown into the air in every way, in wind, its state known.
 //!
-//! Each flight starts anywhere within 10 m of where it is to be, at any attitude (uniform), with up to 5 m/s, 15 rad/s across and
-//! 6 rad/s about its thrust axis, in wind of up to 5 m/s from any side (2.5 m/s^2 on a Hummingbird), and is to hover or, every
-//! other one, to fly its file's own reference.
+//! Each flight starts anywhere within 10 m of where it is to be, at any attitude (uniform), with up to 5 m/s, 15 rad/s
+//! across and 6 rad/s about its thrust axis, in wind of up to 5 m/s from any side (2.5 m/s^2 on a Hummingbird), and is
+//! to hover or, every other one, to fly its file's own reference.
 
 use super::draw::circumstances;
 use super::fly_all;

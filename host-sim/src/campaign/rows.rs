@@ -1,7 +1,9 @@
-//! A campaign's flights as columns, in Apache Arrow's file format: one record batch for each chunk of flights, nothing compressed.
+//! A campaign's flights as columns, in Apache Arrow's file format: one record batch for each chunk of flights, nothing
+//! compressed.
 //!
-//! Arrow and not Parquet, for two reasons. The bytes of a file depend on its rows alone: nothing is compressed, no encoder chooses, and no
-//! library writes its version into it. And readers map it as it lies: pyarrow, polars, pandas, R and DuckDB open it.
+//! Arrow and not Parquet, for two reasons. The bytes of a file depend on its rows alone: nothing is compressed, no
+//! encoder chooses, and no library writes its version into it. And readers map it as it lies: pyarrow, polars, pandas,
+//! R and DuckDB open it.
 //!
 //! | column | unit | |
 //! |---|---|---|

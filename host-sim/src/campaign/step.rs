@@ -1,9 +1,10 @@
 //! The plant step of a campaign's flights: no shorter than accuracy asks for.
 //!
-//! A scenario's step is chosen for a single flight, whose log is read tick by tick. A campaign asks each of its flights for a verdict
-//! and for metres and seconds; it takes the longest step of at most [`LONGEST`] that still fits. The error of the method of fourth
-//! order is then 5^4 times that of 1 ms; of the paper's flight it is 0.33 um. Rotors that lag, filters and wind are advanced exactly at
-//! any step. `cargo run --release -p host-sim --example halved_steps` shows that no verdict changes with half of it.
+//! A scenario's step is chosen for a single flight, whose log is read tick by tick. A campaign asks each of its flights
+//! for a verdict and for metres and seconds; it takes the longest step of at most [`LONGEST`] that still fits. The
+//! error of the method of fourth order is then 5^4 times that of 1 ms; of the paper's flight it is 0.33 um. Rotors that
+//! lag, filters and wind are advanced exactly at any step. `cargo run --release -p host-sim --example halved_steps`
+//! shows that no verdict changes with half of it.
 
 use scenario::Scenario;
 use scenario::body::GREATEST_TURN_PER_STEP;
@@ -13,8 +14,8 @@ pub const LONGEST: f64 = 5e-3;
 /// A quotient this near a whole number is one.
 const WHOLE: f64 = 1e-6;
 
-/// `scenario` with the longest plant step that fits: the control period, the delay of commands and, with an estimator, the IMU's
-/// millisecond are whole numbers of it. A file's own step stays where it is longer.
+/// `scenario` with the longest plant step that fits: the control period, the delay of commands and, with an estimator,
+/// the IMU's millisecond are whole numbers of it. A file's own step stays where it is longer.
 #[must_use]
 pub fn longest(scenario: &Scenario) -> Scenario {
     let own = scenario.timing.steps_per_tick;

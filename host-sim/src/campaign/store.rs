@@ -8,11 +8,12 @@
 //! | `campaign.arrow` | all flights, one record batch a chunk, in the order of their numbers ([`super::rows`]) |
 //! | `summary.txt`, `report.html` | what they showed |
 //!
-//! Each file appears whole or not at all, and is on the disk before it has its name. So whatever ends a campaign, chunks that were
-//! finished are there when it goes on. A part that cannot be read is flown again, and so is a result that is not the one that was written.
+//! Each file appears whole or not at all, and is on the disk before it has its name. So whatever ends a campaign,
+//! chunks that were finished are there when it goes on. A part that cannot be read is flown again, and so is a result
+//! that is not the one that was written.
 //!
-//! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there is touched. Whoever
-//! writes into a directory holds a lock on it, which ends with the process, however that ends.
+//! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there
+//! is touched. Whoever writes into a directory holds a lock on it, which ends with the process, however that ends.
 
 use super::CampaignError;
 use super::batches;
@@ -52,7 +53,8 @@ impl Store {
     /// Begins a campaign in `directory`, or goes on with the same one.
     ///
     /// # Errors
-    /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot be written.
+    /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot
+    /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
         fs::create_dir_all(directory).map_err(unwritable(directory))?;
         let lock = lock(directory)?;
@@ -176,7 +178,8 @@ impl Store {
         self.remove_parts(&parts).map_err(unwritable(&parts))
     }
 
-    /// Removes the files of its chunks, what a killed campaign left of one, and their directory if nothing else is in it.
+    /// Removes the files of its chunks, what a killed campaign left of one, and their directory if nothing else is in
+    /// it.
     fn remove_parts(&self, parts: &Path) -> io::Result<()> {
         let chunks = self.manifest.chunks();
         let entries = match fs::read_dir(parts) {

@@ -35,7 +35,8 @@ pub struct Summary {
     pub net: u64,
     /// Why the scenario may not fly, if so.
     pub refusal: Option<String>,
-    /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight tracks.
+    /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight
+    /// tracks.
     pub holds: bool,
     quantiles: String,
     worst: Vec<(&'static str, String)>,

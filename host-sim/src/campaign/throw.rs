@@ -1,4 +1,5 @@
-//! One flight of a campaign, under whatever law: the only way in which random flights are flown, by `campaign` and by `compare`.
+//! One flight of a campaign, under whatever law: the only way in which random flights are flown, by `campaign` and by
+//! `compare`.
 
 use super::draw::circumstances;
 use super::outcome::Outcome;
@@ -8,8 +9,8 @@ use controller_core::certificate::Certificate;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 
-/// Flight `number` of the campaign of `scenario`, with the plant step that it has, from `seed`. The circumstances are the same for every
-/// law; what `certificate` proves of our commands, those of any law are held against.
+/// Flight `number` of the campaign of `scenario`, with the plant step that it has, from `seed`. The circumstances are
+/// the same for every law; what `certificate` proves of our commands, those of any law are held against.
 ///
 /// # Errors
 /// As [`Flier::flight`]'s.

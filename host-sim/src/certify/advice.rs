@@ -1,9 +1,11 @@
-//! What limits a vehicle under the extended law, in plain words: for each inequality and each loop what it means and what to change.
+//! What limits a vehicle under the extended law, in plain words: for each inequality and each loop what it means and
+//! what to change.
 
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
-/// What an inequality means, and which number to change in which direction; empty for a name that is none of the extended law's.
+/// What an inequality means, and which number to change in which direction; empty for a name that is none of the
+/// extended law's.
 #[must_use]
 pub fn of_inequality(name: &str) -> &'static str {
     match name {

@@ -1,11 +1,11 @@
 //! Whom to blame where the rotors are short of room: the certificate's numbers for the tightest rotor, in a sentence.
 //!
-//! From its share of the middle thrust a rotor is displaced by half the thrust's interval and by the law's torque terms; these
-//! add up to its extreme. The one that displaces it most towards the limit it comes closest to is named; where
-//! the share alone is beyond the limit, it is the thrust. Which axis costs most is a separate question: how much less the
-//! rotor would have to do if the law asked for no torque about that axis. For real quadrotors it is yaw: a newton
-//! metre of it costs several times the thrust that one of roll does (k_eta / k_m against 1 / arm; 4.9 times for the
-//! Hummingbird).
+//! From its share of the middle thrust a rotor is displaced by half the thrust's interval and by the law's torque
+//! terms; these add up to its extreme. The one that displaces it most towards the limit it comes closest to is named;
+//! where the share alone is beyond the limit, it is the thrust. Which axis costs most is a separate question: how much
+//! less the rotor would have to do if the law asked for no torque about that axis. For real quadrotors it is yaw: a
+//! newton metre of it costs several times the thrust that one of roll does (k_eta / k_m against 1 / arm; 4.9 times for
+//! the Hummingbird).
 
 use controller_core::allocation::TorqueTerm;
 use controller_core::allocation::support::torque_part;

@@ -41,7 +41,8 @@ fn budget(configuration: &Configuration, parameters: &ExtendedParameters) -> Tor
     TorqueBudget::new(parameters, configuration.vehicle(), configuration.limits(), configuration.rotors())
 }
 
-/// Who takes how much of the torque: of roll's and pitch's limit or of the rotors' range, whichever leaves the tilt less.
+/// Who takes how much of the torque: of roll's and pitch's limit or of the rotors' range, whichever leaves the tilt
+/// less.
 fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     let unbiased = ExtendedParameters { torque_tilt: 0.0, torque_yaw: 0.0, ..*p };
     let idle =

@@ -1,5 +1,5 @@
-//! The page of a comparison: what every law showed, row by row, with a star where ours loses; the scenes' courses over time; how the random
-//! flights are spread; and with which gains.
+//! The page of a comparison: what every law showed, row by row, with a star where ours loses; the scenes' courses over
+//! time; how the random flights are spread; and with which gains.
 
 use super::rows::{Row, cell};
 use super::scenes::Scene;
@@ -18,8 +18,8 @@ use crate::rivals::kind::Kind;
 use crate::table::short;
 use scenario::Scenario;
 
-/// Ours, then the rivals in their order. Curves whose colours look alike to people who confuse red and green are drawn with different patterns:
-/// green, purple and grey; vermilion and orange; blue and sky.
+/// Ours, then the rivals in their order. Curves whose colours look alike to people who confuse red and green are drawn
+/// with different patterns: green, purple and grey; vermilion and orange; blue and sky.
 pub const LOOKS: [(Color, Line); 8] = [
     (Color::Ink, Line::Solid),
     (Color::Blue, Line::Solid),

@@ -72,7 +72,8 @@ fn clipped(shown: &Shown) -> f64 {
 /// How a figure of the rotors begins: a vehicle without has none.
 const OF_ROTORS: &str = "rotor";
 
-/// All rows of a vehicle with or without `rotors`: of `scenes`, each with what every law showed there, and of what every law showed in the random flights.
+/// All rows of a vehicle with or without `rotors`: of `scenes`, each with what every law showed there, and of what
+/// every law showed in the random flights.
 #[must_use]
 pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>], rotors: bool) -> Vec<Row> {
     let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {

@@ -97,8 +97,8 @@ pub struct Thrown {
     pub outcomes: Vec<Outcome>,
 }
 
-/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with the plant step that it has: those of `campaign --law`. None
-/// once somebody has interrupted them.
+/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with the plant step that it has: those of
+/// `campaign --law`. None once somebody has interrupted them.
 #[must_use]
 pub fn throw_all(
     flier: &Flier,
@@ -129,7 +129,8 @@ impl Thrown {
         quantile(&heights, part).unwrap_or(f64::INFINITY)
     }
 
-    /// The time until within 0.2 m for good that so large a part of the flights do not exceed, s; infinite where it is never.
+    /// The time until within 0.2 m for good that so large a part of the flights do not exceed, s; infinite where it is
+    /// never.
     #[must_use]
     pub fn settled(&self, part: f64) -> f64 {
         let times: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.settled.unwrap_or(f64::INFINITY)).collect();

@@ -1,7 +1,8 @@
 //! A vehicle that leans on one foot and falls back onto all of them.
 //!
-//! The foot stays where it is, so the vehicle turns in the vertical plane it leans in. With w = [`SPREAD`] the distance of the feet from
-//! its axis and h = [`LENGTH`] that of its origin above them, leaning by theta towards d (horizontal; z is up, and a = z x d is the axis),
+//! The foot stays where it is, so the vehicle turns in the vertical plane it leans in. With w = [`SPREAD`] the distance
+//! of the feet from its axis and h = [`LENGTH`] that of its origin above them, leaning by theta towards d (horizontal;
+//! z is up, and a = z x d is the axis),
 //!
 //! ```text
 //! r = d (h sin theta - w cos theta) + z (h cos theta + w sin theta)      from the foot to the origin, m
@@ -9,12 +10,12 @@
 //! r'' = a x r theta'' - r theta'^2
 //! ```
 //!
-//! The foot carries m r'' . z - F . z. Where it would have to pull, it lets go. Upright again, the other feet take all motion from it; beyond
-//! [`TILT_MAX`] it has fallen over, and lies there. Within a step theta'' stays what it is at its start: without rotors it pulls more the
-//! nearer it is to upright, so that no energy comes from that.
+//! The foot carries m r'' . z - F . z. Where it would have to pull, it lets go. Upright again, the other feet take all
+//! motion from it; beyond [`TILT_MAX`] it has fallen over, and lies there. Within a step theta'' stays what it is at
+//! its start: without rotors it pulls more the nearer it is to upright, so that no energy comes from that.
 //!
-//! Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes*, 1963: a block that rocks; here with rotors, and
-//! at rest after each impact.
+//! Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes*, 1963: a block that rocks;
+//! here with rotors, and at rest after each impact.
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use scenario::body::BodyState;

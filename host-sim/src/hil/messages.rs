@@ -41,7 +41,8 @@ impl Controls {
     }
 }
 
-/// The message in a frame, if it is of this type and its enumerations are known ones. Version 1 does not cut fields off.
+/// The message in a frame, if it is of this type and its enumerations are known ones. Version 1 does not cut fields
+/// off.
 pub(super) fn decode<D: MessageData>(frame: &Frame<'_>) -> Option<D> {
     let whole = frame.version == Version::V2 || frame.payload.len() >= D::ENCODED_LEN;
     if frame.message == D::ID && whole { D::deser(MavlinkVersion::V2, frame.payload).ok() } else { None }

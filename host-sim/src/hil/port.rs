@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 /// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// The longest attempt to connect: the system itself would try for minutes where nobody answers at all. Long enough for any line.
+/// The longest attempt to connect: the system itself would try for minutes where nobody answers at all. Long enough for
+/// any line.
 const ATTEMPT: Duration = Duration::from_millis(500);
 
 /// Where the other side is to be found.

@@ -1,8 +1,9 @@
 //! What the vehicle's sensors say of the period that a command began.
 //!
-//! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses that arrive
-//! within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end. `[sensors]`
-//! is not for here: it describes what a law is told that has no estimator.
+//! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses
+//! that arrive within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are
+//! true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end.
+//! `[sensors]` is not for here: it describes what a law is told that has no estimator.
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 
@@ -36,8 +37,8 @@ impl Senses {
         Self { period: scenario.timing.period_us, instruments }
     }
 
-    /// How many states of a period they must be shown, evenly spaced. With `[estimator]` a scenario's plant steps fall on
-    /// every millisecond: its file is refused otherwise.
+    /// How many states of a period they must be shown, evenly spaced. With `[estimator]` a scenario's plant steps fall
+    /// on every millisecond: its file is refused otherwise.
     #[must_use]
     pub fn instants(&self) -> u64 {
         if self.instruments.is_some() { self.period / SAMPLE } else { 1 }

@@ -1,7 +1,7 @@
 //! The vehicle of a session: delay, rotors, body and ground, moved by motor commands one control period at a time.
 //!
-//! It starts on the ground, below where the scenario starts, level, with its rotors standing still. A command u of a rotor
-//! means u^2 of its greatest thrust, as the firmware's thrust curve has it.
+//! It starts on the ground, below where the scenario starts, level, with its rotors standing still. A command u of a
+//! rotor means u^2 of its greatest thrust, as the firmware's thrust curve has it.
 
 use super::messages::{Controls, MOTORS};
 use crate::actuators::rotors::SpinningRotors;
@@ -85,8 +85,8 @@ impl HilVehicle {
         self.plant.state()
     }
 
-    /// Takes one command and moves on by one control period, noting where the vehicle is at `instants` of it: that number
-    /// divides the period's plant steps.
+    /// Takes one command and moves on by one control period, noting where the vehicle is at `instants` of it: that
+    /// number divides the period's plant steps.
     ///
     /// # Errors
     /// In words, if a command is not from 0 to 1, or the motion is not finite afterwards.

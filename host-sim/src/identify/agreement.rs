@@ -1,23 +1,25 @@
 //! Whether bench and flight can be of one vehicle.
 //!
-//! Put together they leave something over: of each bench entry its distance from what all the rest says, and of the flight its own. Squared, over
-//! their variances and summed, that is chi-square with as many degrees of freedom as there are statements more than unknowns. Beyond
-//! what chance leaves in 999 of 1,000 no combination is worth its uncertainty: a number was mistyped, or another vehicle weighed, and least squares would
-//! share the error out among all numbers, with tight intervals around the wrong values.
+//! Put together they leave something over: of each bench entry its distance from what all the rest says, and of the
+//! flight its own. Squared, over their variances and summed, that is chi-square with as many degrees of freedom as
+//! there are statements more than unknowns. Beyond what chance leaves in 999 of 1,000 no combination is worth its
+//! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
+//! all numbers, with tight intervals around the wrong values.
 
 use crate::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
-/// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by Student's t with 15 degrees of freedom,
-/// which is how well the flight's uncertainty is itself known ([`super::fit::BLOCKS`]).
+/// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by
+/// Student's t with 15 degrees of freedom, which is how well the flight's uncertainty is itself known
+/// ([`super::fit::BLOCKS`]).
 const DEVIATIONS: f64 = 4.073;
 /// The same of a normal distribution.
 const NORMAL: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
 const ONE_SIDED: f64 = 3.090;
 
-/// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two say something of the same, nothing tells
-/// which of them errs.
+/// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two
+/// say something of the same, nothing tells which of them errs.
 const ALIKE: f64 = 0.9;
 
 /// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
@@ -42,8 +44,8 @@ pub struct Entry {
     pub deviation: f64,
 }
 
-/// Says which entry contradicts the rest, if all together leave more over than chance does. `flight` is the flight's own part of chi-square, `freedom`
-/// how many statements there are more than unknowns.
+/// Says which entry contradicts the rest, if all together leave more over than chance does. `flight` is the flight's
+/// own part of chi-square, `freedom` how many statements there are more than unknowns.
 #[must_use]
 pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usize) -> Option<String> {
     let left = |entry: &Entry| entry.value - entry.row.dot(&known.values);
@@ -80,7 +82,8 @@ fn spread(covariance: &SMatrix<f64, 5, 5>, row: &SVector<f64, 5>) -> f64 {
     row.dot(&(covariance * row))
 }
 
-/// The quantile of chi-square at 99.9 % (E. B. Wilson and M. M. Hilferty, 1931), as much greater as one statement too many has it.
+/// The quantile of chi-square at 99.9 % (E. B. Wilson and M. M. Hilferty, 1931), as much greater as one statement too
+/// many has it.
 fn greatest(freedom: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
     freedom as f64 * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3) * (DEVIATIONS / NORMAL).powi(2)

@@ -6,44 +6,46 @@
 //! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton          velocities: Z = J of the flight that was *asked for*
 //! ```
 //!
-//! Gusts move the vehicle, and the law answers them: thrust and speed then go along with what is left, and least squares would take too little
-//! drag and thrust from it. What was asked for knows nothing of gusts: instrumental variables (L. Ljung, section 7.6), without bias whatever
-//! the gusts' spectrum.
+//! Gusts move the vehicle, and the law answers them: thrust and speed then go along with what is left, and least
+//! squares would take too little drag and thrust from it. What was asked for knows nothing of gusts: instrumental
+//! variables (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
-//! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are not white is the
-//! jackknife's: by how much the unknowns move if a block b, a [`BLOCKS`]-th of the log, is left out, (A - A_b)^-1 sum_b Z' e, squared and
-//! summed over G blocks, times (G - 1) / G. It counts in full what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because
-//! a block pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
+//! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
+//! not white is the jackknife's: by how much the unknowns move if a block b, a [`BLOCKS`]-th of the log, is left out,
+//! (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full what rests on a few
+//! blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block pulls the fit to
+//! itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
 //!
-//! Body rates are looked at as what their low-passes leave that is new at each tick ([`super::low_passes`]).
-//! Velocities are looked at ten times a second only. What they know, thrust over mass, drag and wind, is slow, and an estimator that carries
-//! them on between its own updates leaves marks from tick to tick that are no motion.
+//! Body rates are looked at as what their low-passes leave that is new at each tick ([`super::low_passes`]). Velocities
+//! are looked at ten times a second only. What they know, thrust over mass, drag and wind, is slow, and an estimator
+//! that carries them on between its own updates leaves marks from tick to tick that are no motion.
 
 use super::model::{CHANNELS, Channels, DRAG, Model, SQUARED_LAG, STRENGTH, UNKNOWNS, Unknowns, WHOLE_DELAY, prior};
 use super::noise::{Noise, Whitening};
 use nalgebra::SMatrix;
 use std::array::from_fn;
 
-/// Parts of the log that the jackknife leaves out in turn: in a flight of 80 s each is 5 s long, longer than the memory of what is left once
-/// the noise is made white. Turbulence is not quite of first order, nor does an estimator's error in its gyro's bias come and go as the
-/// model has it.
+/// Parts of the log that the jackknife leaves out in turn: in a flight of 80 s each is 5 s long, longer than the memory
+/// of what is left once the noise is made white. Turbulence is not quite of first order, nor does an estimator's error
+/// in its gyro's bias come and go as the model has it.
 pub const BLOCKS: usize = 16;
 /// Between two looks at the velocities, s.
 const LOOK: f64 = 0.1;
-/// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are longer than a standard
-/// uncertainty.
+/// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are
+/// longer than a standard uncertainty.
 const STEPS: usize = 40;
 const NOISE_STEPS: usize = 8;
 const MORE_NOISE_STEPS: usize = 20;
 /// The least part of a step that is taken.
 const SHORTEST_SHARE: f64 = 0.125;
-/// The longest step for an unknown, in what it may be off at the start: longer ones, from a start that is far off, end where no vehicle is.
+/// The longest step for an unknown, in what it may be off at the start: longer ones, from a start that is far off, end
+/// where no vehicle is.
 const LONGEST: f64 = 0.5;
 /// A step that ends the search, in standard uncertainties.
 const SETTLED: f64 = 0.1;
 
-/// Which uncertainties come out too small even so, and by what factor: errors over uncertainties of 300 trials of each of two vehicles
-/// (the example `identify_coverage`), root mean square.
+/// Which uncertainties come out too small even so, and by what factor: errors over uncertainties of 300 trials of each
+/// of two vehicles (the example `identify_coverage`), root mean square.
 pub const UNDERSTATED: [(usize, f64); 3] = [(WHOLE_DELAY, 1.4), (SQUARED_LAG, 1.2), (DRAG, 1.3)];
 
 /// Whitened series, a channel each.
@@ -129,7 +131,8 @@ pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String>
         if step >= NOISE_STEPS && is_near && within(SETTLED) {
             return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)? });
         }
-        // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones are taken.
+        // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones
+        // are taken.
         let turned = (0..UNKNOWNS).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
         share = if turned { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
         (last, is_near) = (moved, within(1.0));
@@ -163,7 +166,8 @@ struct Block {
     pull: Unknowns,
 }
 
-/// sum Z' Z, and what each part of the log adds to A and to sum Z' e; each unknown has the slopes of the model and of what was asked for.
+/// sum Z' Z, and what each part of the log adds to A and to sum Z' e; each unknown has the slopes of the model and of
+/// what was asked for.
 fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Block>) {
     let mut spread = Covariance::zeros();
     let mut blocks = vec![Block::default(); BLOCKS];

@@ -1,7 +1,8 @@
 //! What a vehicle knew in flight: the state it was told and what it asked for, at each control tick.
 //!
-//! From log.csv, the state is `est_…` where there is an estimator, `measured_…` where there are sensors, and the true state only
-//! where the vehicle itself was told that. From the firmware's recorder, it is what the estimator said ([`super::ulog`]).
+//! From log.csv, the state is `est_…` where there is an estimator, `measured_…` where there are sensors, and the true
+//! state only where the vehicle itself was told that. From the firmware's recorder, it is what the estimator said
+//! ([`super::ulog`]).
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units.
 
@@ -132,7 +133,8 @@ impl FlightLog {
         Self::longest(source, &moments)
     }
 
-    /// The same flight as it was asked for: velocities without what gusts and noise did to them, level, and not turning but in heading.
+    /// The same flight as it was asked for: velocities without what gusts and noise did to them, level, and not turning
+    /// but in heading.
     #[must_use]
     pub fn asked_for(&self) -> Self {
         let asked = |moment: &Moment| Moment {
@@ -158,8 +160,8 @@ fn differentiate(moments: &mut [Option<Moment>]) {
     }
 }
 
-/// A moment from time, velocity, attitude, rates, thrust and torque asked for by the law, the reference's velocity, and what the rotors
-/// were believed to give of what they were asked for; none if that is no state.
+/// A moment from time, velocity, attitude, rates, thrust and torque asked for by the law, the reference's velocity, and
+/// what the rotors were believed to give of what they were asked for; none if that is no state.
 #[must_use]
 pub fn moment(numbers: &[f64], scale: f64) -> Option<Moment> {
     let &[time, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz, thrust, tau_x, tau_y, tau_z, rx, ry, rz] = numbers else {

@@ -1,21 +1,22 @@
 //! What the air does at the rotors' hubs, as far as a flight near hover shows it.
 //!
-//! With tau_xy the rotors' torque about x and y, F their thrust over the mass, A what the air does of the acceleration, body, V_b the velocity in it, c and m
-//! scale and mass, rotor i at p_i:
+//! With tau_xy the rotors' torque about x and y, F their thrust over the mass, A what the air does of the acceleration,
+//! body, V_b the velocity in it, c and m scale and mass, rotor i at p_i:
 //!
 //! ```text
 //! a = (kappa_z A_z tau_xy - kappa_d (tau_xy . A) e3) / (2 F) - 2 (lambda m/c) omega_z sum (e3 x p_i)(e3 x p_i)' V_b        torque over c
 //! l = n lambda (V_bx^2 + V_by^2)                                                       acceleration along e3
 //! ```
 //!
-//! *kappa*: a rotor's drag -w_i diag(k_d, k_d, k_z) V goes with its own speed, and rotors that tilt the vehicle, or hold a centre of mass that
-//! is beside the origin, turn unlike each other. With w_i = w + T_i/(2 c k w) for what it gives beyond the mean and n c k w^2 = m F, all
-//! drag at the rotors makes kappa 1, and drag of the frame makes it less. A is used, not V_b: a gust pulls at the rotors
-//! as a moving vehicle's own speed does, and what it does is known ([`super::noise`]) where its speed is not. If gusts are left out of it, a centre of
-//! mass is told up to 40 % too near; if F is g, as in a hover, by a sixth in winds that press the vehicle down.
+//! *kappa*: a rotor's drag -w_i diag(k_d, k_d, k_z) V goes with its own speed, and rotors that tilt the vehicle, or
+//! hold a centre of mass that is beside the origin, turn unlike each other. With w_i = w + T_i/(2 c k w) for what it
+//! gives beyond the mean and n c k w^2 = m F, all drag at the rotors makes kappa 1, and drag of the frame makes it
+//! less. A is used, not V_b: a gust pulls at the rotors as a moving vehicle's own speed does, and what it does is known
+//! ([`super::noise`]) where its speed is not. If gusts are left out of it, a centre of mass is told up to 40 % too
+//! near; if F is g, as in a hover, by a sixth in winds that press the vehicle down.
 //!
-//! *lambda*, k_h/m: translational lift, k_h times the square of each hub's speed across. It carries the vehicle as thrust does, and a rotor that moves
-//! into the wind as the vehicle yaws is lifted more than the one across from it.
+//! *lambda*, k_h/m: translational lift, k_h times the square of each hub's speed across. It carries the vehicle as
+//! thrust does, and a rotor that moves into the wind as the vehicle yaws is lifted more than the one across from it.
 //!
 //! The forces are those of [`crate::reality::air`].
 
@@ -70,7 +71,8 @@ impl Hubs {
         Vector3::new(across.x, across.y, 0.0)
     }
 
-    /// kappa's part of a over the time of an impulse, N m s, where the rotors carry the vehicle with `carried`, F, and the air makes `air`, m/s^2.
+    /// kappa's part of a over the time of an impulse, N m s, where the rotors carry the vehicle with `carried`, F, and
+    /// the air makes `air`, m/s^2.
     #[must_use]
     pub fn unlike(&self, impulse: &Impulse, carried: f64, air: &Vector3<f64>) -> Vector3<f64> {
         let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE));

@@ -7,12 +7,14 @@
 //! integral of w^2 over L = c^2 L + 2 c (w_0 - c) tau (1 - E) + (w_0 - c)^2 tau / 2 (1 - E^2),   E = e^(-L/tau)
 //! ```
 //!
-//! exactly. Slow commands show the *whole* delay S = D + tau to first order, and lag apart from delay only to second order, by
-//! tau^2. So the unknowns are S, s, and u = tau^2, s^2. Noise may ask for u < 0: there the response is the reflection
-//! 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it afterwards.
+//! exactly. Slow commands show the *whole* delay S = D + tau to first order, and lag apart from delay only to second
+//! order, by tau^2. So the unknowns are S, s, and u = tau^2, s^2. Noise may ask for u < 0: there the response is the
+//! reflection 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it
+//! afterwards.
 //!
-//! Body rates that [`LowPasses`] told are the integral of torques that went through the same: all are linear, so torques are passed through them here,
-//! and S is without their delay. Counted as a delay alone, their shape would be taken for lag.
+//! Body rates that [`LowPasses`] told are the integral of torques that went through the same: all are linear, so
+//! torques are passed through them here, and S is without their delay. Counted as a delay alone, their shape would be
+//! taken for lag.
 
 use super::flight_log::FlightLog;
 use super::low_passes::LowPasses;

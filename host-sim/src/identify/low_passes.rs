@@ -1,16 +1,19 @@
-//! What the body rates of a log went through before they were told: the gyro's own low-pass and the firmware's, at the IMU's rate.
+//! What the body rates of a log went through before they were told: the gyro's own low-pass and the firmware's, at the
+//! IMU's rate.
 //!
-//! All of it is linear, so the model's torques are passed through the same two ([`super::impulses`]). The gyro's noise went through them
-//! as well. It was white before; afterwards samples next to each other go together by a sixteenth. A law that answers one sample acts before the next, where
-//! commands are not late: what is left of a rate would then go along with what the model's rotors do, and of a vehicle that acts at once the lag would
-//! come out a third of a millisecond too small. So of each sample what those before it foretell is taken away:
+//! All of it is linear, so the model's torques are passed through the same two ([`super::impulses`]). The gyro's noise
+//! went through them as well. It was white before; afterwards samples next to each other go together by a sixteenth. A
+//! law that answers one sample acts before the next, where commands are not late: what is left of a rate would then go
+//! along with what the model's rotors do, and of a vehicle that acts at once the lag would come out a third of a
+//! millisecond too small. So of each sample what those before it foretell is taken away:
 //!
 //! ```text
 //! rho_j = sum h_i h_i+jN / sum h_i^2                      h: response to an impulse, N samples of the IMU to a tick
 //! n_k - sum a_j n_k-j,   sum_j a_j rho_|i-j| = rho_i      i, j = 1 to 3: G. U. Yule, G. Walker
 //! ```
 //!
-//! The motion that the rates show besides passes the same filter. It is slow, and [`super::noise`] takes it for a random walk before and after.
+//! The motion that the rates show besides passes the same filter. It is slow, and [`super::noise`] takes it for a
+//! random walk before and after.
 
 use super::flight_log::{FlightLog, Source};
 use crate::instruments::gyro_filter;

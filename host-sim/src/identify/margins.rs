@@ -1,8 +1,8 @@
 //! What the uncertainty of a vehicle's numbers eats of its certificate and of its sampled loops.
 //!
-//! Every margin three times: with the file's numbers, with those identified, and in the worst corner of the intervals, linearised: from the
-//! identified margin, what it loses from one end or the other of each interval alone, all of it together. Corners are far out:
-//! not every number is at its worst end at once.
+//! Every margin three times: with the file's numbers, with those identified, and in the worst corner of the intervals,
+//! linearised: from the identified margin, what it loses from one end or the other of each interval alone, all of it
+//! together. Corners are far out: not every number is at its worst end at once.
 
 use super::output::{Values, rewritten};
 use super::quantities::{Quantities, Quantity};

@@ -1,8 +1,8 @@
 //! The rigid body that a log is held against, and what is left between the two.
 //!
-//! A flight shows accelerations, never forces: thrust scale c, mass m and inertia J appear as c/m and c/J_i only. With f and tau
-//! the thrust and torque of the model's rotors ([`super::impulses`]), r_c the centre of mass (x, y), V = v - w the velocity in an air
-//! that moves steadily with w across:
+//! A flight shows accelerations, never forces: thrust scale c, mass m and inertia J appear as c/m and c/J_i only. With
+//! f and tau the thrust and torque of the model's rotors ([`super::impulses`]), r_c the centre of mass (x, y), V = v -
+//! w the velocity in an air that moves steadily with w across:
 //!
 //! ```text
 //! v_c' = ((c/m) f + l) R e3 - g e3 - R diag(D/m) R' V + b             v_c = v + R (omega x r_c)
@@ -11,10 +11,12 @@
 //! A = R' b - diag(D/m) R' V                                            but what the air does, for which a makes up
 //! ```
 //!
-//! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever share of it drag has: in h it
-//! is held while the unknowns move, and torques tell nothing of drag or thrust that forces do not. beta, and e about z alone, are what rotors in the air and unequal
-//! rotors may add: found, not reported. So are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is a centre of mass beside the origin: no flight near
-//! hover tells them apart. A steady vertical force is thrust: none is supposed.
+//! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever
+//! share of it drag has: in h it is held while the unknowns move, and torques tell nothing of drag or thrust that
+//! forces do not. beta, and e about z alone, are what rotors in the air and unequal rotors may add: found, not
+//! reported. So are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is
+//! a centre of mass beside the origin: no flight near hover tells them apart. A steady vertical force is thrust: none
+//! is supposed.
 //!
 //! Both sides are integrated from tick to tick, never differentiated. What is left is the state told less the integral.
 
@@ -28,7 +30,8 @@ use nalgebra::{SVector, Vector3};
 /// How many unknowns there are.
 pub const UNKNOWNS: usize = 20;
 
-/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z, rad/s^2; kappa_z, kappa_d; lambda, 1/m.
+/// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z,
+/// rad/s^2; kappa_z, kappa_d; lambda, 1/m.
 pub const STRENGTH: usize = 0;
 /// About x; y and z follow.
 pub const TURNING: usize = 1;
@@ -71,8 +74,8 @@ pub struct Model<'a> {
     first: usize,
 }
 
-/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that a flight which can tell
-/// does not feel it; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are great.
+/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that a flight which
+/// can tell does not feel it; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are great.
 #[must_use]
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -148,7 +151,8 @@ impl<'a> Model<'a> {
         left
     }
 
-    /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's axes.
+    /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's
+    /// axes.
     #[must_use]
     pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Felt> {
         let Numbers { strength, drag, wind, hubs, .. } = self.numbers(unknowns);

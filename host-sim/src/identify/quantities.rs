@@ -1,14 +1,16 @@
 //! What is known of a vehicle in the end: a flight and a bench together, each number with its uncertainty.
 //!
-//! A flight knows c/m and c/J_i; a scale knows m; a bifilar swing knows J_i/m; a thrust stand knows c. In logarithms all of these are
-//! linear, so they are combined by least squares, each with its weight, unless they contradict each other ([`super::agreement`]). Without a scale or a stand nothing tells m and c
-//! apart: then the mass is taken from the file as it stands.
+//! A flight knows c/m and c/J_i; a scale knows m; a bifilar swing knows J_i/m; a thrust stand knows c. In logarithms
+//! all of these are linear, so they are combined by least squares, each with its weight, unless they contradict each
+//! other ([`super::agreement`]). Without a scale or a stand nothing tells m and c apart: then the mass is taken from
+//! the file as it stands.
 //!
-//! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen quantities at once, and all
-//! true values together are to be in their intervals in 95 of 100 flights. Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever
-//! their correlation. An uncertainty from [`BLOCKS`] parts of a flight is itself uncertain: errors over uncertainties follow Student's t
-//! with one degree of freedom less than there are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay
-//! and that of the lag, so it misses only where one of them does.
+//! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen
+//! quantities at once, and all true values together are to be in their intervals in 95 of 100 flights. Bonferroni's
+//! inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from [`BLOCKS`] parts of a
+//! flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less than there
+//! are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay and
+//! that of the lag, so it misses only where one of them does.
 
 use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
@@ -17,7 +19,8 @@ use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
 
-/// Standard uncertainties to either side of an estimate: the quantile of Student's t with 15 degrees of freedom at 1 - 0.05 / (2 x 16).
+/// Standard uncertainties to either side of an estimate: the quantile of Student's t with 15 degrees of freedom at 1 -
+/// 0.05 / (2 x 16).
 pub const COVERAGE: f64 = 3.515;
 const _: () = assert!(BLOCKS == 16);
 
@@ -128,8 +131,9 @@ impl Quantities {
     }
 }
 
-/// Between what the squared lag allows; there is none below zero, and none above the whole. That is the whole as it was flown: rates are late by
-/// what is counted for them or less, so without that the lag of a vehicle that acts at once would be cut short.
+/// Between what the squared lag allows; there is none below zero, and none above the whole. That is the whole as it was
+/// flown: rates are late by what is counted for them or less, so without that the lag of a vehicle that acts at once
+/// would be cut short.
 fn lag(squared: &Quantity, whole: &Quantity) -> Quantity {
     let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
     let interval = squared.interval.map(root);

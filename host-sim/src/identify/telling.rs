@@ -1,8 +1,9 @@
 //! What a log cannot tell, and what to fly to learn it.
 //!
-//! Three ways to be refused. A vehicle that was not *moved* is moved by its own noise alone, and noise that feeds back passes for knowledge:
-//! so body rates and speeds must have been there to begin with. A quantity whose interval is too wide is not known. And numbers that no one vehicle has
-//! are of none: bench and flight that contradict each other, rotors that are nothing like the file's or answer before they are asked.
+//! Three ways to be refused. A vehicle that was not *moved* is moved by its own noise alone, and noise that feeds back
+//! passes for knowledge: so body rates and speeds must have been there to begin with. A quantity whose interval is too
+//! wide is not known. And numbers that no one vehicle has are of none: bench and flight that contradict each other,
+//! rotors that are nothing like the file's or answer before they are asked.
 
 use super::flight_log::FlightLog;
 use super::quantities::{COVERAGE, Quantities, Quantity};
@@ -10,12 +11,14 @@ use crate::table::short;
 
 /// The shortest flight, s.
 const SHORTEST: f64 = 20.0;
-/// Body rates that a manoeuvre has and hovering has not, root mean square, rad/s: twice what noise alone turns a hovering vehicle by.
+/// Body rates that a manoeuvre has and hovering has not, root mean square, rad/s: twice what noise alone turns a
+/// hovering vehicle by.
 const TURNING: f64 = 0.025;
 /// Speeds asked for that show drag, across and along the vertical, root mean square about their mean, m/s.
 const MOVING: [f64; 3] = [0.25, 0.25, 0.08];
 
-/// What rotors may deliver of what the file says: beyond that they are others, or the log's thrust is not what was asked of them.
+/// What rotors may deliver of what the file says: beyond that they are others, or the log's thrust is not what was
+/// asked of them.
 const SCALES: [f64; 2] = [0.3, 3.0];
 
 /// What is missing of a flight, a line each; empty for a flight that can tell.

@@ -1,8 +1,8 @@
 //! Flights of vehicles that are not what their file says, for asking how often identification is right.
 //!
-//! Each trial draws a vehicle: mass, inertia by 20 %, thrust by 5 %, lag by 30 %, delay, centre of mass by 5 mm, drag; and its air:
-//! steady wind, turbulence, a gust. It flies the manoeuvre of `scenarios/identify.toml` on the estimator, with a BMI088 and poses 20 ms late,
-//! and leaves what `fly` leaves: log.csv.
+//! Each trial draws a vehicle: mass, inertia by 20 %, thrust by 5 %, lag by 30 %, delay, centre of mass by 5 mm, drag;
+//! and its air: steady wind, turbulence, a gust. It flies the manoeuvre of `scenarios/identify.toml` on the estimator,
+//! with a BMI088 and poses 20 ms late, and leaves what `fly` leaves: log.csv.
 
 use super::bench::{Bench, Measured};
 use super::quantities::Quantities;
@@ -17,8 +17,8 @@ use toml_edit::{Array, DocumentMut, Table, value};
 /// The manoeuvre.
 pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
 
-/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most, s: the last sample of the
-/// IMU came now, not a millisecond ago.
+/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most,
+/// s: the last sample of the IMU came now, not a millisecond ago.
 pub const RATES_YOUNGER: f64 = 0.001;
 
 /// What RotorPy says of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
@@ -33,7 +33,8 @@ const SCALE: f64 = 1e-3;
 pub enum Drag {
     /// As a whole, and linearly: what is found is what is.
     Whole,
-    /// At the frame and at each rotor's hub, as RotorPy has it for the Hummingbird, each number drawn by 50 %. Nothing that is reported is its drag.
+    /// At the frame and at each rotor's hub, as RotorPy has it for the Hummingbird, each number drawn by 50 %. Nothing
+    /// that is reported is its drag.
     AtHubs,
 }
 
@@ -63,7 +64,8 @@ struct Truths {
 }
 
 impl Trial {
-    /// Number `seed` of the vehicles like `file`'s, in an air that pulls at it like `drag`; `delay`, s, in place of the one drawn.
+    /// Number `seed` of the vehicles like `file`'s, in an air that pulls at it like `drag`; `delay`, s, in place of the
+    /// one drawn.
     ///
     /// # Errors
     /// If `file` is no scenario with rotors, or the flight fails.

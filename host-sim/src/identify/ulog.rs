@@ -1,8 +1,8 @@
 //! The recorder's ULog, read back ([`firmware::recorder`]): messages of 2 bytes of length, 1 of kind, and what follows.
 //!
-//! F says which fields a record has, A which number records of `tick` have, D is one record. Fields are found by the file's own
-//! format, so a recorder that comes to record more is read as well. Ticks on the ground, without a state, or with motors that
-//! stand are no flight.
+//! F says which fields a record has, A which number records of `tick` have, D is one record. Fields are found by the
+//! file's own format, so a recorder that comes to record more is read as well. Ticks on the ground, without a state, or
+//! with motors that stand are no flight.
 
 use super::flight_log::{FlightLog, Moment, Source, moment};
 

@@ -31,7 +31,8 @@ fn filtered(feels: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     shown
 }
 
-/// The last of the unfiltered samples of a vehicle that is at these velocities, m/s, up, a millisecond after each other, and turns, rad/s.
+/// The last of the unfiltered samples of a vehicle that is at these velocities, m/s, up, a millisecond after each
+/// other, and turns, rad/s.
 fn shown(velocities: &[f64], turning: f64) -> ImuSample {
     let mut instruments = noiseless().prompt();
     let mut state = BodyState { angular_velocity: Vector3::x() * turning, ..STILL };

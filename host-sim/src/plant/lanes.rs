@@ -1,7 +1,7 @@
 //! Numbers of several vehicles side by side, in a vector register of the processor: one number of each.
 //!
-//! Every operation is IEEE 754's, on each number by itself: a vehicle has the same bits whatever flies beside it and however many a
-//! register holds. No multiplication is fused with an addition.
+//! Every operation is IEEE 754's, on each number by itself: a vehicle has the same bits whatever flies beside it and
+//! however many a register holds. No multiplication is fused with an addition.
 
 use pulp::Simd;
 use std::ops::{Add, Div, Index, Mul, Neg, Sub};

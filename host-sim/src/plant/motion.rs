@@ -1,8 +1,8 @@
 //! The motion of rigid bodies under held commands, written once for any number of them side by side.
 //!
-//! The equations of [`super`] form a cascade (omega' needs omega only; q' needs q and omega; v' needs q; p' needs v), so a
-//! Runge-Kutta step runs the four stages of each level before the next level and folds the factors and the position's stages
-//! together: the same method, half the work.
+//! The equations of [`super`] form a cascade (omega' needs omega only; q' needs q and omega; v' needs q; p' needs v),
+//! so a Runge-Kutta step runs the four stages of each level before the next level and folds the factors and the
+//! position's stages together: the same method, half the work.
 
 use super::body::Body;
 use super::lanes::{Lanes, Vectors};
@@ -49,7 +49,8 @@ struct Motion<S: Simd> {
     torque: Vectors<S, 3>,
     /// h.
     step: f64,
-    /// Change of velocity in one step per unit of the summed thrust directions, and the same in free fall with T along z.
+    /// Change of velocity in one step per unit of the summed thrust directions, and the same in free fall with T along
+    /// z.
     velocity: (Lanes<S>, Vectors<S, 3>),
     /// Change of position beyond h v, likewise.
     position: (Lanes<S>, Vectors<S, 3>),

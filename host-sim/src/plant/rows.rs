@@ -1,8 +1,9 @@
 //! Many bodies that move at the same time, in the widest registers that the processor has.
 //!
-//! The numbers of each kind stand side by side in a row, one of each body. A register takes as many neighbours as it holds: eight with
-//! AVX-512, four with AVX2, found out at run time. Those left over at the end of a row, and all of them on any other processor, go one by
-//! one. The equations are written once ([`super::motion`]), so the bits are always the same.
+//! The numbers of each kind stand side by side in a row, one of each body. A register takes as many neighbours as it
+//! holds: eight with AVX-512, four with AVX2, found out at run time. Those left over at the end of a row, and all of
+//! them on any other processor, go one by one. The equations are written once ([`super::motion`]), so the bits are
+//! always the same.
 
 use super::body::Body;
 use super::lanes::{Lanes, Vectors};

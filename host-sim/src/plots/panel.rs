@@ -1,6 +1,7 @@
 //! One panel: curves over time, bounds as labelled dashed lines, and a legend above the data.
 //!
-//! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also dashed.
+//! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also
+//! dashed.
 
 use super::canvas::{DrawingResult, FINE};
 use plotters::coord::Shift;
@@ -36,7 +37,8 @@ pub enum Scale {
 pub enum Line {
     /// Without gaps.
     Solid,
-    /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them apart.
+    /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them
+    /// apart.
     Dashed,
     /// In dots: a second such pattern.
     Dotted,

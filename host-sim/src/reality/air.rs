@@ -1,7 +1,8 @@
 //! What rotors and frame do in air that moves past them.
 //!
-//! Body frame (x forward, y left, z up). V is the velocity of the body's *centre of mass* relative to the air, omega the body
-//! rate, w_i the speed of rotor i at p_i, r_c the centre of mass, both from the body's origin; d_i = p_i - r_c.
+//! Body frame (x forward, y left, z up). V is the velocity of the body's *centre of mass* relative to the air, omega
+//! the body rate, w_i the speed of rotor i at p_i, r_c the centre of mass, both from the body's origin; d_i = p_i -
+//! r_c.
 //!
 //! ```text
 //! V_i = V + omega x d_i                                                     at rotor i
@@ -13,11 +14,11 @@
 //! F = sum (T_i e3 + H_i) + D,   tau = sum tau_i + tau_D
 //! ```
 //!
-//! c_i is what the rotor delivers of its model. With r_c = 0 and c = 0 these are the equations of RotorPy's multirotor, so its
-//! parameters give its forces: S. Folk, J. Paulos, V. Kumar, *RotorPy*, 2023, arXiv:2306.04485, section III. Its rotor drag is
-//! that of P. Martin, E. Salaun, *The True Role of Accelerometer Feedback in Quadrotor Control*, ICRA 2010; linear drag of
-//! the whole vehicle, the same at hover with c = (sum w_i) k_d, is that of M. Faessler, A. Franchi, D. Scaramuzza, *Differential
-//! Flatness of Quadrotor Dynamics Subject to Rotor Drag*, RA-L 3(2), 2018.
+//! c_i is what the rotor delivers of its model. With r_c = 0 and c = 0 these are the equations of RotorPy's multirotor,
+//! so its parameters give its forces: S. Folk, J. Paulos, V. Kumar, *RotorPy*, 2023, arXiv:2306.04485, section III. Its
+//! rotor drag is that of P. Martin, E. Salaun, *The True Role of Accelerometer Feedback in Quadrotor Control*, ICRA
+//! 2010; linear drag of the whole vehicle, the same at hover with c = (sum w_i) k_d, is that of M. Faessler, A.
+//! Franchi, D. Scaramuzza, *Differential Flatness of Quadrotor Dynamics Subject to Rotor Drag*, RA-L 3(2), 2018.
 //!
 //! Without rotors thrust and torque act at the origin. There is no ground effect, and no vortex ring in a fast descent.
 

@@ -1,7 +1,7 @@
 //! The voltage that the motors have.
 //!
-//! An open-circuit voltage that falls with the charge, behind a resistance; motors and controllers of a constant efficiency
-//! draw the electrical power P that the rotors' shafts need:
+//! An open-circuit voltage that falls with the charge, behind a resistance; motors and controllers of a constant
+//! efficiency draw the electrical power P that the rotors' shafts need:
 //!
 //! ```text
 //! E = E_empty + (E_full - E_empty) q / Q                    open circuit, V; zero once q = 0
@@ -10,12 +10,13 @@
 //! q' = -I                                                   A s
 //! ```
 //!
-//! Where 4 R P > E^2 the battery cannot deliver P: it gives all it can, I = E / 2R, V = E / 2. The voltage is held over each
-//! plant step.
+//! Where 4 R P > E^2 the battery cannot deliver P: it gives all it can, I = E / 2R, V = E / 2. The voltage is held over
+//! each plant step.
 //!
-//! Sources: the battery, Gazebo's LinearBatteryPlugin (V = e_0 + e_1 (1 - q / Q) - R I), a Rint model as in H. He, R. Xiong, J. Fan,
-//! *Evaluation of Lithium-Ion Battery Equivalent Circuit Models*, Energies 4(4), 2011; power per rotor, D. Shi, X. Dai, X. Zhang,
-//! Q. Quan, *A Practical Performance Evaluation Method for Electric Multicopters*, IEEE/ASME T. Mech. 22(3), 2017.
+//! Sources: the battery, Gazebo's LinearBatteryPlugin (V = e_0 + e_1 (1 - q / Q) - R I), a Rint model as in H. He, R.
+//! Xiong, J. Fan, *Evaluation of Lithium-Ion Battery Equivalent Circuit Models*, Energies 4(4), 2011; power per rotor,
+//! D. Shi, X. Dai, X. Zhang, Q. Quan, *A Practical Performance Evaluation Method for Electric Multicopters*, IEEE/ASME
+//! T. Mech. 22(3), 2017.
 
 use scenario::reality::battery::Battery;
 

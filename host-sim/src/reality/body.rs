@@ -5,13 +5,13 @@
 //! q' = q (0, omega) / 2      J omega' = (J omega) x omega + tau      body frame
 //! ```
 //!
-//! with F, N, and tau, N m, about the centre of mass, both in the body frame and evaluated at every stage of the classical
-//! fourth-order Runge-Kutta method. q is brought back to unit length after each step.
+//! with F, N, and tau, N m, about the centre of mass, both in the body frame and evaluated at every stage of the
+//! classical fourth-order Runge-Kutta method. q is brought back to unit length after each step.
 //!
 //! The centre of mass c is at r_c from the body's origin o: p_o = p_c - R r_c, v_o = v_c - R (omega x r_c).
 //!
-//! Source: L. Martins, C. Cardeira, P. Oliveira, eq. (2); E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential
-//! Equations I*, section II.1.
+//! Source: L. Martins, C. Cardeira, P. Oliveira, eq. (2); E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary
+//! Differential Equations I*, section II.1.
 
 use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
 use scenario::body::BodyState;

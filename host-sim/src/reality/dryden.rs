@@ -7,8 +7,9 @@
 //! sigma_w = 0.1 W_20,   sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4
 //! ```
 //!
-//! u is along the mean wind's horizontal direction (along world x where it has none), v across it to the left, w up. The
-//! spectra belong to white noise n of unit two-sided density that went through the filters (T = L / V, V the airspeed)
+//! u is along the mean wind's horizontal direction (along world x where it has none), v across it to the left, w up.
+//! The spectra belong to white noise n of unit two-sided density that went through the filters (T = L / V, V the
+//! airspeed)
 //!
 //! ```text
 //! u = sigma sqrt(2 T) / (1 + T s) n                         autocorrelation sigma^2 e^-t

@@ -1,7 +1,7 @@
 //! From the thrusts asked of the rotors to the speeds they turn with.
 //!
-//! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u = w_c / w_max.
-//! What a real one settles at, and how it gets there:
+//! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u =
+//! w_c / w_max. What a real one settles at, and how it gets there:
 //!
 //! ```text
 //! u' = u V / V_0                                            a motor sees the command times the voltage
@@ -10,13 +10,13 @@
 //! w' = (w_s - w) / lag                                      first order; no lag: at once
 //! ```
 //!
-//! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's equation
-//! is linear with w_s held over a plant step, so the speeds are exact at the beginning, the middle and the end of the step:
-//! what the body's method asks for. It is today's lag of `[rotors]`, which the body otherwise feels at the middle of each
-//! step only.
+//! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's
+//! equation is linear with w_s held over a plant step, so the speeds are exact at the beginning, the middle and the end
+//! of the step: what the body's method asks for. It is today's lag of `[rotors]`, which the body otherwise feels at the
+//! middle of each step only.
 //!
-//! Sources: the first-order lag, R. Mahony, V. Kumar, P. Corke, *Multirotor Aerial Vehicles*, IEEE RAM 19(3), 2012; the curve and
-//! the voltage, [`controller_core::allocation::curve`] and PX4's THR_MDL_FAC.
+//! Sources: the first-order lag, R. Mahony, V. Kumar, P. Corke, *Multirotor Aerial Vehicles*, IEEE RAM 19(3), 2012; the
+//! curve and the voltage, [`controller_core::allocation::curve`] and PX4's THR_MDL_FAC.
 //!
 //! Without rotors, thrust and torque are the wrench, clipped to the limits.
 

@@ -1,4 +1,5 @@
-//! The whole vehicle against closed forms, against RotorPy, and against the model's own vehicle where reality is the model.
+//! The whole vehicle against closed forms, against RotorPy, and against the model's own vehicle where reality is the
+//! model.
 
 use super::*;
 use crate::vehicle::SimulatedVehicle;

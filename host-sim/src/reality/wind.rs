@@ -6,8 +6,8 @@
 //! pulse       v = V/2 (1 - cos(2 pi (t - t_0) / d)) for t_0 <= t <= t_0 + d, 0 after it
 //! ```
 //!
-//! Sources: MIL-F-8785C, section 3.7.1.3 (the discrete gust, here by time instead of by distance); CS-25.341(a) (the pulse);
-//! turbulence, [`super::dryden`].
+//! Sources: MIL-F-8785C, section 3.7.1.3 (the discrete gust, here by time instead of by distance); CS-25.341(a) (the
+//! pulse); turbulence, [`super::dryden`].
 
 use super::dryden::Turbulence;
 use nalgebra::Vector3;

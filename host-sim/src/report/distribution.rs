@@ -1,7 +1,8 @@
-//! How a quantity is spread over many flights: a histogram, the share of flights up to each value, a table of quantiles.
+//! How a quantity is spread over many flights: a histogram, the share of flights up to each value, a table of
+//! quantiles.
 //!
-//! A page holds no flight's value by itself but [`BINS`] counts and [`QUANTILES`] + 1 evenly spaced quantiles for each group,
-//! the least and the greatest among them, whether a hundred flights were flown or a million.
+//! A page holds no flight's value by itself but [`BINS`] counts and [`QUANTILES`] + 1 evenly spaced quantiles for each
+//! group, the least and the greatest among them, whether a hundred flights were flown or a million.
 
 use super::plot::Color;
 use super::prose::{Cell, Table};
@@ -26,8 +27,8 @@ pub struct Distribution {
     pub logarithmic: bool,
     /// What no flight may exceed.
     pub bound: Option<f64>,
-    /// A name and each flight's value: one group, or one for each law or vehicle. A value that is not finite is a flight
-    /// that never came so far; it is counted and not drawn.
+    /// A name and each flight's value: one group, or one for each law or vehicle. A value that is not finite is a
+    /// flight that never came so far; it is counted and not drawn.
     pub groups: Vec<(String, Vec<f64>)>,
     /// The colour of each group, and how its line is drawn; beyond the last come the colours of [`Color::CYCLE`].
     pub looks: Vec<(Color, Line)>,

@@ -6,7 +6,8 @@ use crate::plots::panel::Line;
 use crate::table::short;
 use serde_json::{Value, json};
 
-/// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies; the style sheet has their values.
+/// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies; the style sheet has their
+/// values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Color {
     /// The first axis, or the only curve.

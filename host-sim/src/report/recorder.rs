@@ -1,8 +1,9 @@
 //! A track gathered tick by tick, so long as it may be.
 //!
 //! Up to [`MOST_ROWS`] ticks each row is a tick. Of a longer flight two rows stand for a stretch of ticks: a column of
-//! *extremes* keeps the least and the greatest value of the stretch, in order of time, so that no peak is lost; a column of
-//! *samples* keeps the values at the stretch's start and at its middle, which belong together across columns: a pose.
+//! *extremes* keeps the least and the greatest value of the stretch, in order of time, so that no peak is lost; a
+//! column of *samples* keeps the values at the stretch's start and at its middle, which belong together across columns:
+//! a pose.
 
 use super::track::Track;
 use crate::flight::Tick;

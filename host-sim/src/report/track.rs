@@ -1,7 +1,7 @@
 //! Columns over one time axis.
 //!
-//! Numbers travel as base64 of little-endian single precision: five and a third bytes each, and the bits that the law itself
-//! works with. Times are not stored: rows are evenly spaced.
+//! Numbers travel as base64 of little-endian single precision: five and a third bytes each, and the bits that the law
+//! itself works with. Times are not stored: rows are evenly spaced.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

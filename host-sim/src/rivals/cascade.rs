@@ -1,6 +1,6 @@
-//! A cascade of P and PID loops as PX4's multicopter control flies it (its documentation's controller diagrams), with the attitude law of
-//! D. Brescianini, M. Hehn, R. D'Andrea: *Nonlinear quadrocopter attitude control*, technical report, ETH Zurich, 2013. Written from
-//! those descriptions.
+//! A cascade of P and PID loops as PX4's multicopter control flies it (its documentation's controller diagrams), with
+//! the attitude law of D. Brescianini, M. Hehn, R. D'Andrea: *Nonlinear quadrocopter attitude control*, technical
+//! report, ETH Zurich, 2013. Written from those descriptions.
 //!
 //! ```text
 //! position   v_s = v_d + K_p (p_d - p), limited across and along the vertical
@@ -12,9 +12,10 @@
 //! rate       tau = J (K_w e + int(K_j e) - K_e w_f') + w x J w
 //! ```
 //!
-//! The rate integral is held while a rotor saturates, and taken in the less the faster the error. Thrust is |a_s| along z_d, as body z
-//! sees it, so that it does not push down while the vehicle is upside down. Added, since ours has it: the angular velocity of the
-//! reference as feed-forward, and its acceleration in the velocity's D. Gains stand before accelerations.
+//! The rate integral is held while a rotor saturates, and taken in the less the faster the error. Thrust is |a_s| along
+//! z_d, as body z sees it, so that it does not push down while the vehicle is upside down. Added, since ours has it:
+//! the angular velocity of the reference as feed-forward, and its acceleration in the velocity's D. Gains stand before
+//! accelerations.
 //!
 //! Home: setpoints from a pilot or a planner, moderate attitudes; it also recovers.
 
@@ -71,7 +72,8 @@ pub const PACES: [Pace; 18] = [
     Pace::Kept,
 ];
 
-/// Greatest tilt asked for, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and `MC_YAWRATE_MAX`.
+/// Greatest tilt asked for, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
+/// `MC_YAWRATE_MAX`.
 const TILT_MAX: f64 = 0.785;
 const RATES_MAX: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
 /// Level of the rate's integral, rad/s^2.
@@ -219,7 +221,8 @@ fn limited(vector: Vector2<f64>, length: f64) -> Vector2<f64> {
     if norm > length { vector * (length / norm) } else { vector }
 }
 
-/// The shortest turn, world, that takes the unit vector `from` to `to`; half a turn about x or y where they are opposite.
+/// The shortest turn, world, that takes the unit vector `from` to `to`; half a turn about x or y where they are
+/// opposite.
 fn shortest(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(from, to).unwrap_or_else(|| {
         let axis = if from.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };

@@ -1,9 +1,10 @@
 //! A continuous attitude law: the error's quaternion follows its own path, whichever of the two it becomes.
 //!
-//! The law of [`quaternion_feedback`](super::quaternion_feedback) with q chosen next to the q of the tick before. It is continuous along every
-//! motion, and so what S. P. Bhat, D. S. Bernstein: *A topological obstruction to continuous global stabilization of rotational motion and the
-//! unwinding phenomenon*, Systems & Control Letters 39, 2000, say of such laws holds: q and -q are one attitude, but only q = +1 is
-//! its goal. Past half a turn it goes on for the whole of it, or back all the way it came.
+//! The law of [`quaternion_feedback`](super::quaternion_feedback) with q chosen next to the q of the tick before. It is
+//! continuous along every motion, and so what S. P. Bhat, D. S. Bernstein: *A topological obstruction to continuous
+//! global stabilization of rotational motion and the unwinding phenomenon*, Systems & Control Letters 39, 2000, say of
+//! such laws holds: q and -q are one attitude, but only q = +1 is its goal. Past half a turn it goes on for the whole
+//! of it, or back all the way it came.
 //!
 //! Home: errors that never pass half a turn.
 

@@ -7,8 +7,8 @@
 //! | [`HeadingRule::Projected`] | y = z x nu / \|z x nu\|, x = y x z | Lee (2010), Mellinger (2011), Martins (2024) |
 //! | [`HeadingRule::Horizontal`] | x = c x z / \|c x z\| with c = e3 x nu, y = z x x | PX4's `bodyzToAttitude`; the paper, after Basso (2022) |
 //!
-//! The first projects the heading onto the plane across z: the nose's compass direction is nu in level flight only. The second keeps the
-//! nose's horizontal part on nu. R_d' = R_d \[omega_d\]x gives
+//! The first projects the heading onto the plane across z: the nose's compass direction is nu in level flight only. The
+//! second keeps the nose's horizontal part on nu. R_d' = R_d \[omega_d\]x gives
 //!
 //! ```text
 //! omega_d = (z . y', x . z', y . x')      each of them differentiated once more for omega_d'
@@ -73,8 +73,8 @@ impl Frame {
     }
 }
 
-/// The rotation nearest to three axes across each other, of which the first two are equally long, and shorter than one where the heading
-/// hardly says where they point.
+/// The rotation nearest to three axes across each other, of which the first two are equally long, and shorter than one
+/// where the heading hardly says where they point.
 fn nearest(x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Rotation3<f64> {
     let length = x.norm();
     if length > LEAST_LENGTH {
@@ -139,7 +139,8 @@ mod tests {
     #[test]
     fn axes_without_a_direction_become_a_rotation_all_the_same() {
         let forward = Jet::constant(Vector3::x());
-        // Along the heading, where nothing says where the nose should point; next to it, where it is said faintly; and far from it.
+        // Along the heading, where nothing says where the nose should point; next to it, where it is said faintly; and
+        // far from it.
         for across in [0.0, 1e-12, 1e-6, 1e-3, 0.1, 5.0] {
             for rule in [HeadingRule::Projected, HeadingRule::Horizontal] {
                 let force = Vector3::new(9.0, across, 0.0);

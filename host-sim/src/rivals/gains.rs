@@ -17,8 +17,8 @@
 //! cost = inf                  # a search found no gains that fly every trial to its end: it is left out of comparisons
 //! ```
 //!
-//! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle that its table
-//! describes and no other. A table that leaves out lag, delay, thrust or period serves any.
+//! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle
+//! that its table describes and no other. A table that leaves out lag, delay, thrust or period serves any.
 
 use super::kind::Kind;
 use super::pilot::model;

@@ -1,11 +1,12 @@
-//! What an attitude law does about the half turn: whether it goes the long way round, and whether small noise can hold it there.
+//! What an attitude law does about the half turn: whether it goes the long way round, and whether small noise can hold
+//! it there.
 //!
-//! The paper's vehicle, exact and without rotors, hovers with Table I; the law's torque about body x is watched, and the roll counted on
-//! past half a turn.
+//! The paper's vehicle, exact and without rotors, hovers with Table I; the law's torque about body x is watched, and
+//! the roll counted on past half a turn.
 //!
 //! - [`Trial::unwinding`]: at rest, 30 degrees of roll. How far does it turn?
-//! - [`Trial::held`]: at rest at half a turn. The measured roll is off by a constant angle, always to the side that makes the law push back to half a turn: the worst noise of
-//!   that size.
+//! - [`Trial::held`]: at rest at half a turn. The measured roll is off by a constant angle, always to the side that
+//!   makes the law push back to half a turn: the worst noise of that size.
 //! - [`Trial::noisy`]: the same, but the error is drawn anew each tick, normal.
 
 use crate::controller::Controller;
@@ -123,7 +124,8 @@ fn about_x(angle: f64) -> Quaternion<f64> {
     Quaternion::new(cos, sin, 0.0, 0.0)
 }
 
-/// Gains of [quaternion feedback](super::quaternion_feedback) that push as hard at half a turn as Table I, and damp as well.
+/// Gains of [quaternion feedback](super::quaternion_feedback) that push as hard at half a turn as Table I, and damp as
+/// well.
 pub const LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
-//! Incremental nonlinear dynamic inversion: E. J. J. Smeur, Q. Chu, G. C. H. E. de Croon: *Adaptive incremental nonlinear dynamic inversion
-//! for attitude control of micro air vehicles*, Journal of Guidance, Control, and Dynamics 39, 2016; outer loop and feed-forward after
-//! E. Tal, S. Karaman: *Accurate tracking of aggressive quadrotor trajectories using incremental nonlinear dynamic inversion and
-//! differential flatness*, IEEE Transactions on Control Systems Technology 29, 2021.
+//! Incremental nonlinear dynamic inversion: E. J. J. Smeur, Q. Chu, G. C. H. E. de Croon: *Adaptive incremental
+//! nonlinear dynamic inversion for attitude control of micro air vehicles*, Journal of Guidance, Control, and Dynamics
+//! 39, 2016; outer loop and feed-forward after E. Tal, S. Karaman: *Accurate tracking of aggressive quadrotor
+//! trajectories using incremental nonlinear dynamic inversion and differential flatness*, IEEE Transactions on Control
+//! Systems Technology 29, 2021.
 //!
 //! ```text
 //! tau = tau_f + J (alpha_c - w_f')                                     both: what acts now, and what is missing
@@ -10,9 +11,10 @@
 //! a_c = a_d + K_p (p_d - p) + K_v (v_d - v)                            Tal, without its K_a
 //! ```
 //!
-//! _f is one low-pass for measurement and actuators alike, so that both are late alike (Smeur). What acts now is the command that the rotors could
-//! deliver, through the model's delay and lag, as the mean over the last period. Linear acceleration is differenced from the velocity:
-//! ours estimates forces from the same. w_ref and w_ref' are the reference's, by flatness. Gains stand before accelerations.
+//! _f is one low-pass for measurement and actuators alike, so that both are late alike (Smeur). What acts now is the
+//! command that the rotors could deliver, through the model's delay and lag, as the mean over the last period. Linear
+//! acceleration is differenced from the velocity: ours estimates forces from the same. w_ref and w_ref' are the
+//! reference's, by flatness. Gains stand before accelerations.
 //!
 //! Home: known actuators, unknown forces and torques; wind, drag and a shifted centre of mass leave no offset.
 
@@ -82,7 +84,8 @@ impl Indi {
         }
     }
 
-    /// After the filters: w', rad/s^2; the torque that acts, N m; v', m/s^2; the force per mass that acts, m/s^2, world.
+    /// After the filters: w', rad/s^2; the torque that acts, N m; v', m/s^2; the force per mass that acts, m/s^2,
+    /// world.
     fn measured(&mut self, seen: &Seen) -> [Vector3<f64>; 4] {
         let acted = self.actuators.mean;
         let before = self.before.replace(*seen).unwrap_or(*seen);

@@ -1,7 +1,7 @@
 //! Quantities with their first two derivatives with respect to time.
 //!
-//! The laws of the [rivals](super) need the angular velocity and acceleration of an attitude that they build from a force. Product and
-//! chain rule over (x, x', x'') give them without a formula of their own for each law:
+//! The laws of the [rivals](super) need the angular velocity and acceleration of an attitude that they build from a
+//! force. Product and chain rule over (x, x', x'') give them without a formula of their own for each law:
 //!
 //! ```text
 //! (a b)'' = a'' b + 2 a' b' + a b''      f(x)'' = f'' x'^2 + f' x''
@@ -81,7 +81,8 @@ impl Jet {
         Self(products(self, other, |a, b| a.cross(b)))
     }
 
-    /// Along it, of length one. A vector shorter than `least` is taken to be `least` long, so that the rates stay finite.
+    /// Along it, of length one. A vector shorter than `least` is taken to be `least` long, so that the rates stay
+    /// finite.
     #[must_use]
     pub fn unit(&self, least: f64) -> Self {
         let square = self.dot(self);

@@ -1,5 +1,6 @@
-//! T. Lee, M. Leok, N. H. McClamroch: *Geometric tracking control of a quadrotor UAV on SE(3)*, 49th IEEE Conference on Decision and
-//! Control, 2010. Below in this project's frames (world z up; theirs is down, which turns the signs of f and g).
+//! T. Lee, M. Leok, N. H. McClamroch: *Geometric tracking control of a quadrotor UAV on SE(3)*, 49th IEEE Conference on
+//! Decision and Control, 2010. Below in this project's frames (world z up; theirs is down, which turns the signs of f
+//! and g).
 //!
 //! ```text
 //! e_x = x - x_d, e_v = v - v_d
@@ -9,9 +10,10 @@
 //! R_d: z along u, x along the heading's projection across it                        the attitude asked for
 //! ```
 //!
-//! W_d and its derivative are those of R_d itself: u is differentiated along the motion, its v' and v'' those of the model under the
-//! thrust f. Gains stand before accelerations here (k_x / m, k_R / J, in 1/s^2 and 1/s), so that they carry from one vehicle to
-//! another, and tilt and yaw, across and vertical have their own: the paper's are scalars, which would tie all to the weakest axis.
+//! W_d and its derivative are those of R_d itself: u is differentiated along the motion, its v' and v'' those of the
+//! model under the thrust f. Gains stand before accelerations here (k_x / m, k_R / J, in 1/s^2 and 1/s), so that they
+//! carry from one vehicle to another, and tilt and yaw, across and vertical have their own: the paper's are scalars,
+//! which would tie all to the weakest axis.
 //!
 //! Home: attitude error below 90 degrees (almost global: below 180) and thrust to spare. It saturates nothing.
 

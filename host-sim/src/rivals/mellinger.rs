@@ -1,5 +1,5 @@
-//! D. Mellinger, V. Kumar: *Minimum snap trajectory generation and control for quadrotors*, IEEE International Conference on Robotics and
-//! Automation, 2011, Section IV.
+//! D. Mellinger, V. Kumar: *Minimum snap trajectory generation and control for quadrotors*, IEEE International
+//! Conference on Robotics and Automation, 2011, Section IV.
 //!
 //! ```text
 //! F = -K_p e_p - K_v e_v + m g z_W + m r_T'',  u_1 = F . z_B
@@ -8,9 +8,10 @@
 //! (u_2, u_3, u_4) = -K_R e_R - K_w e_w
 //! ```
 //!
-//! w_T and its derivative are the *reference's* (differential flatness: the frame that the reference's own acceleration asks for), not
-//! those of R_des: that is what sets it apart from [Lee's](super::lee). Added here, since ours has it: the torque of the reference's
-//! angular acceleration and of the spin. Gains stand before accelerations, in 1/s^2 and 1/s.
+//! w_T and its derivative are the *reference's* (differential flatness: the frame that the reference's own acceleration
+//! asks for), not those of R_des: that is what sets it apart from [Lee's](super::lee). Added here, since ours has it:
+//! the torque of the reference's angular acceleration and of the spin. Gains stand before accelerations, in 1/s^2 and
+//! 1/s.
 //!
 //! Home: trajectories near their reference, moderate attitudes.
 

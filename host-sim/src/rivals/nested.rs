@@ -1,18 +1,21 @@
-//! The design that the paper argues against: an outer loop of nested saturations around the same saturated hybrid attitude law.
+//! The design that the paper argues against: an outer loop of nested saturations around the same saturated hybrid
+//! attitude law.
 //!
-//! L. Martins, C. Cardeira, P. Oliveira: *Global trajectory tracking for quadrotors: An MRP-based hybrid strategy with input saturation*,
-//! Automatica 162, 2024, after A. R. Teel: *Global stabilization and restricted tracking for multiple integrators with bounded controls*,
-//! Systems & Control Letters 18, 1992. The article's own formula was not at hand: what is here is the structure that its abstract and the
-//! paper's Section I tell of, in the paper's saturation.
+//! L. Martins, C. Cardeira, P. Oliveira: *Global trajectory tracking for quadrotors: An MRP-based hybrid strategy with
+//! input saturation*, Automatica 162, 2024, after A. R. Teel: *Global stabilization and restricted tracking for
+//! multiple integrators with bounded controls*, Systems & Control Letters 18, 1992. The article's own formula was not
+//! at hand: what is here is the structure that its abstract and the paper's Section I tell of, in the paper's
+//! saturation.
 //!
 //! ```text
 //! u = -s_v(k_v v~ + s_p(k_p p~ + s_i(k_i xi))) + g e3 + p_d'',  xi' = p~,  T = m |u|
 //! s(x) = M tanh(x / M), each axis for itself;  M_v outermost, M_p < M_v / 2, M_i < M_p / 2
 //! ```
 //!
-//! omega_d and omega_d' need u' and u'', and these v~' and v~'': the model's under the thrust commanded. R_d keeps the nose to the
-//! heading's projection. The attitude law is the paper's, with its path lifting, from the core. xi is held while a command is cut, and
-//! its level is part of the law: it winds up no further than `INTEGRAL_SPAN` times it. The article's integral in the attitude loop is left out.
+//! omega_d and omega_d' need u' and u'', and these v~' and v~'': the model's under the thrust commanded. R_d keeps the
+//! nose to the heading's projection. The attitude law is the paper's, with its path lifting, from the core. xi is held
+//! while a command is cut, and its level is part of the law: it winds up no further than `INTEGRAL_SPAN` times it. The
+//! article's integral in the attitude loop is left out.
 //!
 //! Home: limits on thrust and torque that must be promised; any attitude.
 

@@ -5,9 +5,9 @@
 //! tau = J (w_ref' - 2 k_q q_v - k_w (w - w_ref)) + w x J w
 //! ```
 //!
-//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part: which of the two is all that the two laws
-//! differ in. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis: *Quaternion feedback regulator for
-//! spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12, 1989.
+//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part: which of the two is all that
+//! the two laws differ in. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis: *Quaternion
+//! feedback regulator for spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12, 1989.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;

@@ -46,7 +46,8 @@ pub struct Wanted {
     pub velocity: Vector3<f64>,
     /// The reference's own acceleration, m/s^2.
     pub motion: Vector3<f64>,
-    /// The same with the known drag of the reference's velocity added, and its derivatives: what the rotors must make besides gravity.
+    /// The same with the known drag of the reference's velocity added, and its derivatives: what the rotors must make
+    /// besides gravity.
     pub acceleration: Jet,
     /// Unit vector of the heading, its z zero.
     pub heading: Jet,
@@ -70,7 +71,8 @@ pub trait Rival: std::fmt::Debug + Send + Sync {
     /// One tick.
     fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded;
 
-    /// What of the tick's command the rotors can deliver: thrust, N, and torque, N m. Laws without memory of it ignore it.
+    /// What of the tick's command the rotors can deliver: thrust, N, and torque, N m. Laws without memory of it ignore
+    /// it.
     fn delivered(&mut self, _thrust: f64, _torque: &Vector3<f64>, _cut: bool) {}
 
     /// Itself, elsewhere.

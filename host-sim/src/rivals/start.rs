@@ -1,10 +1,10 @@
 //! Where the search for a rival's gains starts on a vehicle.
 //!
-//! A rival's `START` serves a vehicle like the Hummingbird, with little lag. Slow rotors bear a slower attitude loop only; a
-//! small vehicle turns, and is turned by an off-centre mass, far more quickly. Which speeds suit is tried out with the trials
-//! of the search: START itself; START with its attitude loops made faster or slower ([`Start::attitudes`]); the best of these
-//! with its position loops made faster or slower ([`Speed::positions`]). The search starts at the best of all, so never at
-//! worse gains than START.
+//! A rival's `START` serves a vehicle like the Hummingbird, with little lag. Slow rotors bear a slower attitude loop
+//! only; a small vehicle turns, and is turned by an off-centre mass, far more quickly. Which speeds suit is tried out
+//! with the trials of the search: START itself; START with its attitude loops made faster or slower
+//! ([`Start::attitudes`]); the best of these with its position loops made faster or slower ([`Speed::positions`]). The
+//! search starts at the best of all, so never at worse gains than START.
 
 /// Which loop a gain belongs to, and by which power of that loop's speed it grows: one in 1/s^n by the n-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,5 @@
-//! Each rival in its home conditions, with the gains that were found for it: a step, a circle in drag, moderate attitudes. And the
-//! file of gains.
+//! Each rival in its home conditions, with the gains that were found for it: a step, a circle in drag, moderate
+//! attitudes. And the file of gains.
 
 use super::gains::{BUILT_IN, Set};
 use super::kind::Kind;

@@ -1,8 +1,10 @@
-//! The search for a rival's gains: by the trials and the cost that ours are found by ([`crate::tune::trials`]), and the same search.
+//! The search for a rival's gains: by the trials and the cost that ours are found by ([`crate::tune::trials`]), and the
+//! same search.
 //!
-//! Less is asked of rivals than of ours: no certificate, no margins of sampled loops, no flight without a clipped command, no vanishing offset in a gust. What stays is that every trial
-//! on every model is flown to its end, and that the recovery from upside down ends in time on the file's own model. A law that meets
-//! only the first of these is taken all the same, and its cost says so: what does not end counts as long as its trial.
+//! Less is asked of rivals than of ours: no certificate, no margins of sampled loops, no flight without a clipped
+//! command, no vanishing offset in a gust. What stays is that every trial on every model is flown to its end, and that
+//! the recovery from upside down ends in time on the file's own model. A law that meets only the first of these is
+//! taken all the same, and its cost says so: what does not end counts as long as its trial.
 
 use super::gains::Set;
 use super::kind::Kind;
@@ -87,9 +89,9 @@ impl Judging for RivalJudge<'_> {
     }
 }
 
-/// Searches gains of every rival for the vehicle of `scenario`, with the same `effort` for each. The continuous law takes the
-/// memoryless one's, so that the two differ in nothing but their choice of quaternion. A rival of which no gains fly all
-/// trials to their end is left out of the set, and named there.
+/// Searches gains of every rival for the vehicle of `scenario`, with the same `effort` for each. The continuous law
+/// takes the memoryless one's, so that the two differ in nothing but their choice of quaternion. A rival of which no
+/// gains fly all trials to their end is left out of the set, and named there.
 ///
 /// # Errors
 /// Names the signal that came.

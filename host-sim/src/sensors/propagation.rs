@@ -6,9 +6,10 @@
 //! q(t + h) = q(t) * (cos |phi|/2, sin(|phi|/2) phi/|phi|),   phi = h omega
 //! ```
 //!
-//! with omega the mean of the rates at both ends (the trapezoid: over a manoeuvre its errors cancel to second order, where
-//! either end alone would leave h/2 times the change of rate). Rounding is normalised away at each step. The gyro's bias is
-//! not known here: 0.5 degrees a second, large for a calibrated one, is half a degree in the second that this must last.
+//! with omega the mean of the rates at both ends (the trapezoid: over a manoeuvre its errors cancel to second order,
+//! where either end alone would leave h/2 times the change of rate). Rounding is normalised away at each step. The
+//! gyro's bias is not known here: 0.5 degrees a second, large for a calibrated one, is half a degree in the second that
+//! this must last.
 //!
 //! Every new pose starts afresh at the time it was true, so the age of a pose on arrival is made up for too.
 

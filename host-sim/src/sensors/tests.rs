@@ -158,7 +158,8 @@ fn an_observer_that_feels_the_acceleration_does_not_lag() {
         errors.skip(200).fold(0.0, f64::max)
     };
     let (without, with) = (worst("alpha-beta"), worst("observer"));
-    // A lag of 2 / bandwidth would be 0.8 m/s; what the filter leaves of a ramp in v is T (1 + rho) / (1 - rho) about that.
+    // A lag of 2 / bandwidth would be 0.8 m/s; what the filter leaves of a ramp in v is T (1 + rho) / (1 - rho) about
+    // that.
     assert!(without > 0.5 && with < 0.01, "{without} {with}");
 }
 

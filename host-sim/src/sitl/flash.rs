@@ -26,7 +26,8 @@ impl DeskFlash {
     /// What `file` holds, or blank flash where there is none yet.
     ///
     /// # Errors
-    /// In words, if the file cannot be read, is something else, or could not be written later: what is set in a session is to outlast it.
+    /// In words, if the file cannot be read, is something else, or could not be written later: what is set in a session
+    /// is to outlast it.
     pub fn open(file: Option<PathBuf>) -> Result<Self, String> {
         let flash = Self { records: Rc::new(RefCell::new(vec![BLANK; 2 * RECORDS])), file };
         let Some(path) = &flash.file else { return Ok(flash) };

@@ -1,7 +1,7 @@
 //! The clients: MAVLink over UDP on this machine's loopback, a frame a datagram.
 //!
-//! Everything goes to two addresses, whether anybody is there or not, and to whoever has spoken within the last `REMEMBERED` from
-//! another. Nothing from outside this machine gets in.
+//! Everything goes to two addresses, whether anybody is there or not, and to whoever has spoken within the last
+//! `REMEMBERED` from another. Nothing from outside this machine gets in.
 
 use std::fmt;
 use std::io;

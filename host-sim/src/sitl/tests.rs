@@ -145,8 +145,8 @@ fn wind_blows_in_it() {
     assert!(lean(&still).abs() < 0.01 && lean(&windy) < -0.02, "{} {}", lean(&still), lean(&windy));
 }
 
-/// Set down by setpoints while it leans into the wind: the legs it falls back onto turn it as its gyro feels, and its poses go on being
-/// believed.
+/// Set down by setpoints while it leans into the wind: the legs it falls back onto turn it as its gyro feels, and its
+/// poses go on being believed.
 #[test]
 fn set_down_at_a_lean_it_keeps_its_pose() {
     let mut flown = Flown::in_the_air(&format!("{STUDY}\n[wind]\nsteady = [6.0, 0.0, 0.0]\n"), &[]);

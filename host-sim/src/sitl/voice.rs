@@ -1,6 +1,7 @@
 //! What the vehicle says: to clients, to its camera, and to whoever watches this program.
 //!
-//! Frames go to the port as they are. A TIMESYNC question is answered by the camera's clock too, and texts are kept to be shown.
+//! Frames go to the port as they are. A TIMESYNC question is answered by the camera's clock too, and texts are kept to
+//! be shown.
 
 use super::clock::SimClock;
 use super::faults::{Faults, Part};

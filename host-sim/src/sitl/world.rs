@@ -5,9 +5,10 @@
 //!                                                '-> poses -> (late) -> ODOMETRY, on the line into the vehicle
 //! ```
 //!
-//! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go the way that poses
-//! of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC. The world moves when
-//! somebody looks: to that moment, a millisecond at a time, so nobody can see it too early or too late.
+//! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
+//! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
+//! The world moves when somebody looks: to that moment, a millisecond at a time, so nobody can see it too early or too
+//! late.
 
 use super::clock::SimClock;
 use super::faults::{Faults, Part};
@@ -29,7 +30,8 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// What the camera's clock is ahead of the vehicle's, us. It is never zero: an answer to TIMESYNC that says zero is a question.
+/// What the camera's clock is ahead of the vehicle's, us. It is never zero: an answer to TIMESYNC that says zero is a
+/// question.
 const CAMERA_AHEAD: u64 = 1_000_000_000;
 
 /// The world of one vehicle; clones are the same world.

@@ -1,8 +1,8 @@
 //! One candidate: a point of the search space, and a verdict on it.
 //!
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
-//! radii, margins, the trials of [`super::trials`], the file's own flight. A verdict that fails says how far it got and by how
-//! much it missed, so that the search has a slope to follow.
+//! radii, margins, the trials of [`super::trials`], the file's own flight. A verdict that fails says how far it got and
+//! by how much it missed, so that the search has a slope to follow.
 //!
 //! The gain margin is asked for twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
 //! there the attitude loop's own gain dominates, and the position loop's hardly counts: alone, it would let the search
@@ -29,8 +29,8 @@ const OFFSET: f64 = 0.01;
 /// What a candidate showed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// How far from acceptable: the number of the test that failed counted from the end, plus how much it missed by. Zero
-    /// for an accepted candidate.
+    /// How far from acceptable: the number of the test that failed counted from the end, plus how much it missed by.
+    /// Zero for an accepted candidate.
     pub violation: f64,
     /// Which test failed, in words.
     pub failed: Option<String>,
@@ -45,8 +45,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Of a candidate that passed every test, or the one that it failed: how many tests it had left, by how much it missed, and
-    /// which it was.
+    /// Of a candidate that passed every test, or the one that it failed: how many tests it had left, by how much it
+    /// missed, and which it was.
     #[must_use]
     pub fn after(self, tests: Result<(), (u8, f64, String)>) -> Self {
         let Err((tests_left, missed, what)) = tests else {

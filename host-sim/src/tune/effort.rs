@@ -12,7 +12,8 @@ pub struct Effort {
 }
 
 impl Default for Effort {
-    /// What `host-sim tune` spends on our law and `host-sim compare` on each rival, unless they are asked for another effort.
+    /// What `host-sim tune` spends on our law and `host-sim compare` on each rival, unless they are asked for another
+    /// effort.
     fn default() -> Self {
         Self { generations: 60, population: 24, seed: 1 }
     }

@@ -1,5 +1,5 @@
-//! The tuned scenario as a file: the original text with its constants, thrust floor and name replaced, comments kept. Of the extended law only
-//! what does not follow from the vehicle's numbers is written.
+//! The tuned scenario as a file: the original text with its constants, thrust floor and name replaced, comments kept.
+//! Of the extended law only what does not follow from the vehicle's numbers is written.
 
 use super::Tuned;
 use super::chosen::chosen;

@@ -4,7 +4,8 @@ use scenario::stability::LoopMargin;
 
 /// Longest recovery that a search may fly thousands of times, s.
 pub const GREATEST_RECOVERY: f64 = 3600.0;
-/// Shortest recovery, s: in less a vehicle that is upside down has hardly begun to fall, and has not been brought back by anything.
+/// Shortest recovery, s: in less a vehicle that is upside down has hardly begun to fall, and has not been brought back
+/// by anything.
 pub const LEAST_RECOVERY: f64 = 2.0;
 
 /// What every accepted candidate meets.

@@ -1,11 +1,12 @@
 //! The search space: which constants of a law are searched, and a point of it as a configuration.
 //!
-//! Under the paper's law a point holds natural logarithms: of nine gains, and of the thrust floor as a fraction of its greatest
-//! admissible value; delta and alpha stay as the file has them: they are about noise.
+//! Under the paper's law a point holds natural logarithms: of nine gains, and of the thrust floor as a fraction of its
+//! greatest admissible value; delta and alpha stay as the file has them: they are about noise.
 //!
-//! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`] marks; those of `ALONG`
-//! move with them, and all others follow by the formulas, unless the file chose them. So a candidate spends no more than
-//! there is. A factor of one leaves a constant to the formulas as well: the start is the file's law to the bit.
+//! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`]
+//! marks; those of `ALONG` move with them, and all others follow by the formulas, unless the file chose them. So a
+//! candidate spends no more than there is. A factor of one leaves a constant to the formulas as well: the start is the
+//! file's law to the bit.
 
 use super::chosen::chosen;
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
@@ -17,7 +18,8 @@ use scenario::Scenario;
 /// A point of the search space.
 pub type Point = Vec<f64>;
 
-/// Constants that move with a searched one: with which power of its factor. w, k_t and r_0 together are the stiffness of the tilt.
+/// Constants that move with a searched one: with which power of its factor. w, k_t and r_0 together are the stiffness
+/// of the tilt.
 const ALONG: [(&str, &str, f64); 4] = [
     ("k_v_vertical", "k_p_vertical", 2.0),
     ("w", "k_t", 1.0),
@@ -36,7 +38,8 @@ pub struct Space {
 }
 
 impl Space {
-    /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of what is admissible, or none.
+    /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of what is
+    /// admissible, or none.
     #[must_use]
     pub fn new(scenario: &Scenario, floor: Option<f32>) -> Self {
         let own = match (scenario.configuration.law(), scenario.airframe()) {

@@ -11,8 +11,9 @@
 //! | weak rotors | 1 m step with rotors that deliver 60 % | time until within 0.1 m for good, s |
 //! | heavy | the recovery with 1.6 times the mass | height lost, m; time until within 0.1 m for good, s |
 //!
-//! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`MODELS`]: the vehicle as the file says, and as
-//! it may really be. The last four are beyond what a law is made for; they are flown on the file's own model only.
+//! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`MODELS`]: the vehicle as the file
+//! says, and as it may really be. The last four are beyond what a law is made for; they are flown on the file's own
+//! model only.
 
 use crate::course::Course;
 use crate::flight::Flight;
@@ -49,8 +50,8 @@ const REST: f64 = 2.0;
 const WEAK: f64 = 0.6;
 const HEAVY: f64 = 1.6;
 
-/// How far off the centre of mass may be, as a share of the longest arm: 5 mm are little on the Hummingbird, and turn over a
-/// vehicle of a hand's size.
+/// How far off the centre of mass may be, as a share of the longest arm: 5 mm are little on the Hummingbird, and turn
+/// over a vehicle of a hand's size.
 const OFF_CENTRE_MAX: f64 = 0.03;
 
 /// A vehicle as it may really be, relative to the file's model.
@@ -140,7 +141,8 @@ pub const BEYOND: [Figure; 5] = [
     ("upside down, heavy: back after", "s", 8.0, 0.5),
 ];
 
-/// No figure counts more than so many times what a pilot would be content with: a vehicle that cannot is judged by the rest.
+/// No figure counts more than so many times what a pilot would be content with: a vehicle that cannot is judged by the
+/// rest.
 const MOST: f64 = 10.0;
 
 /// The weighted sum of `values`.
@@ -172,8 +174,8 @@ impl Shown {
     }
 }
 
-/// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a flight of what is
-/// judged in the circumstances that it is given. None if one of them cannot be flown to its end.
+/// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a
+/// flight of what is judged in the circumstances that it is given. None if one of them cannot be flown to its end.
 #[must_use]
 pub fn show(
     scenario: &Scenario,
@@ -247,8 +249,8 @@ fn hovering_thrust(scenario: &Scenario) -> f64 {
     f64::from(vehicle.mass * vehicle.gravity) / rotors as f64
 }
 
-/// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off the
-/// heading asked for), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
+/// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off
+/// the heading asked for), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
 ///
 /// # Errors
 /// None for a hover at the origin.

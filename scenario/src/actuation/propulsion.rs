@@ -16,8 +16,8 @@
 //!
 //! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED`]
 //! at its greatest thrust: k_eta = thrust_max / [`NOMINAL_SPEED`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
-//! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power that it
-//! draws from a `[battery]` do.
+//! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power
+//! that it draws from a `[battery]` do.
 
 use crate::section::{FieldError, Section, in_line};
 use controller_core::error::{ParameterError, Reason};

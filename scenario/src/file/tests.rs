@@ -151,7 +151,8 @@ fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     }
 }
 
-/// What the law's generators are not defined for at this rate is refused when the file is read, not when it is first flown.
+/// What the law's generators are not defined for at this rate is refused when the file is read, not when it is first
+/// flown.
 #[test]
 fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
     for (line, field) in [("c_1 = 900.0", "gains.c_1"), ("c_2 = 101.0", "gains.c_2")] {
@@ -161,8 +162,8 @@ fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
     }
 }
 
-/// The extended law models commands on their way for three ticks; a delay beyond that is refused here as well, and not by `fly` what
-/// `certify` has certified.
+/// The extended law models commands on their way for three ticks; a delay beyond that is refused here as well, and not
+/// by `fly` what `certify` has certified.
 #[test]
 fn a_delay_that_the_extended_law_has_no_memory_for_is_refused_by_name() {
     const STUDY_DELAY: &str = "delay = 0.010 ";

@@ -12,8 +12,8 @@
 //! seed = 0
 //! ```
 //!
-//! Every key may be left out; these are the defaults, without the outage. The estimator believes a BMI088 and the poses' noise
-//! as given. Instead of `[sensors]`, which has no estimator: a file has one of the two.
+//! Every key may be left out; these are the defaults, without the outage. The estimator believes a BMI088 and the
+//! poses' noise as given. Instead of `[sensors]`, which has no estimator: a file has one of the two.
 
 use super::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};

@@ -12,9 +12,9 @@
 //! - `"one-cosine"`: rises to it within `duration` (s) and stays, MIL-F-8785C's discrete gust;
 //! - `"pulse"`: rises to it and falls back to nothing within `duration`, the shape of CS-25.341.
 //!
-//! Turbulence is MIL-F-8785C's in Dryden's form for low altitudes, at one `altitude` (m above ground, 3.048 to 304.8) and
-//! for the wind at 20 feet (m/s) that states its strength. The pattern of the air drifts past the vehicle with `airspeed`
-//! (m/s; left out: the steady wind's, which is what a hovering vehicle feels).
+//! Turbulence is MIL-F-8785C's in Dryden's form for low altitudes, at one `altitude` (m above ground, 3.048 to 304.8)
+//! and for the wind at 20 feet (m/s) that states its strength. The pattern of the air drifts past the vehicle with
+//! `airspeed` (m/s; left out: the steady wind's, which is what a hovering vehicle feels).
 
 use super::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};

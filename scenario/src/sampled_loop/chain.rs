@@ -3,8 +3,9 @@
 //! A command computed at tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1). So between two ticks
 //! the actuator sees w_(k-n-1) for a time f and w_(k-n) for the rest: [`Arrival`].
 //!
-//! The state of the closed loop is (y_1 .. y_M, a = y_0, the law's states, w_(k-1), w_(k-2), ..): its matrix gives the spectral
-//! radius. The same recurrence on the unit circle, without the delay line, gives the loop's frequency response.
+//! The state of the closed loop is (y_1 .. y_M, a = y_0, the law's states, w_(k-1), w_(k-2), ..): its matrix gives the
+//! spectral radius. The same recurrence on the unit circle, without the delay line, gives the loop's frequency
+//! response.
 
 use super::compensator::{Compensator, Response};
 use super::lag::{Arrival, INTEGRATORS, INVERSE_FACTORIAL};
@@ -21,7 +22,8 @@ pub(super) struct SampledLoop<'a> {
 }
 
 impl<'a> SampledLoop<'a> {
-    /// Closes `law` through an actuator of the given lag >= 0, its commands `delay` >= 0 late, and so many `integrators`.
+    /// Closes `law` through an actuator of the given lag >= 0, its commands `delay` >= 0 late, and so many
+    /// `integrators`.
     pub fn new(law: &'a Compensator, integrators: usize, lag: f64, delay: f64) -> Self {
         Self { law, integrators, lag, arrival: Arrival::new(lag, delay) }
     }
@@ -85,8 +87,8 @@ impl<'a> SampledLoop<'a> {
         self.law.response(Complex::new(cos, sin))
     }
 
-    /// The loop's frequency response L at `angle`, broken at the actuator's command, with the sign that makes -1 the critical
-    /// point.
+    /// The loop's frequency response L at `angle`, broken at the actuator's command, with the sign that makes -1 the
+    /// critical point.
     pub fn response(&self, angle: f64) -> Complex<f64> {
         self.response_with(angle, &self.law_response(angle))
     }

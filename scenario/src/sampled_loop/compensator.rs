@@ -4,11 +4,12 @@
 //! x+ = A x + B y,   w = C x + D y
 //! ```
 //!
-//! y are the integrals of the actuator's command that an axis has (see [`super::lag`]), w the command, x whatever the law
-//! remembers. What it remembers of its own commands is closed inside: w = C x + D y is inserted before A and B are formed.
+//! y are the integrals of the actuator's command that an axis has (see [`super::lag`]), w the command, x whatever the
+//! law remembers. What it remembers of its own commands is closed inside: w = C x + D y is inserted before A and B are
+//! formed.
 //!
-//! For responses A is kept in upper Hessenberg form as well, to which an orthogonal change of x takes it: z - A is then solved by one elimination per
-//! column, for every frequency that is looked at.
+//! For responses A is kept in upper Hessenberg form as well, to which an orthogonal change of x takes it: z - A is then
+//! solved by one elimination per column, for every frequency that is looked at.
 
 use super::lag::INTEGRATORS;
 use nalgebra::linalg::Hessenberg;
@@ -31,8 +32,8 @@ pub(super) struct Compensator {
     reduced: Reduced,
 }
 
-/// A in upper Hessenberg form, with the B and C that belong to it. The turn rounds relative to A's largest entries, so the closed loop is
-/// not made of it.
+/// A in upper Hessenberg form, with the B and C that belong to it. The turn rounds relative to A's largest entries, so
+/// the closed loop is not made of it.
 #[derive(Debug, Clone)]
 struct Reduced {
     transition: DMatrix<f64>,
@@ -51,8 +52,8 @@ impl Reduced {
 }
 
 impl Compensator {
-    /// The system that `tick` steps: it takes x and y, puts the next x in x's place and returns w. It must be linear. `size` is
-    /// the number of its states.
+    /// The system that `tick` steps: it takes x and y, puts the next x in x's place and returns w. It must be linear.
+    /// `size` is the number of its states.
     pub fn of(size: usize, tick: impl Fn(&mut [f64], &[f64; INTEGRATORS]) -> f64) -> Self {
         let mut transition = DMatrix::zeros(size, size);
         let mut input = DMatrix::zeros(size, INTEGRATORS);

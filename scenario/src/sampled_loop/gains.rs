@@ -1,7 +1,7 @@
 //! The gains of a law near hover, as each axis has them.
 //!
-//! In [`super::slopes`] they are in SI units, in [`super::law`] in samples: times the powers of the period h that make them
-//! dimensionless, torques over the axis' inertia.
+//! In [`super::slopes`] they are in SI units, in [`super::law`] in samples: times the powers of the period h that make
+//! them dimensionless, torques over the axis' inertia.
 
 /// Gains of the position law.
 #[derive(Debug, Clone, Copy, PartialEq)]

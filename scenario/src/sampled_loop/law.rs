@@ -10,12 +10,14 @@
 //! | vertical | thrust / m - g | velocity | position | | | as they are |
 //! | lateral | tau_i / J_i | body rate | tilt | velocity / g | position / g | divided by g |
 //!
-//! Slopes at the origin: every saturation has slope one, the MRP of a small angle is angle / 4 and (1 + |theta|^2) / 4 is 1/4.
-//! Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and B = k_omega / J_i under the paper's law;
-//! laterally the desired tilt is u_f, with omega_d and omega_d' its derivatives. The extended law sees the attitude's errors projected over the
-//! lag and delay of its actuators, T: angle~ + T rate~, and rate~ + (what is under way + T bias) - T omega_d' of the last tick.
+//! Slopes at the origin: every saturation has slope one, the MRP of a small angle is angle / 4 and (1 + |theta|^2) / 4
+//! is 1/4. Hence tau_i / J_i = -A angle~ - B rate~ + omega_d' with A = k_theta / (16 J_i) and B = k_omega / J_i under
+//! the paper's law; laterally the desired tilt is u_f, with omega_d and omega_d' its derivatives. The extended law sees
+//! the attitude's errors projected over the lag and delay of its actuators, T: angle~ + T rate~, and rate~ + (what is
+//! under way + T bias) - T omega_d' of the last tick.
 //!
-//! Where the velocity comes from the positions, by an alpha-beta filter with a double pole ([`Tracker`]), the law sees the filter's.
+//! Where the velocity comes from the positions, by an alpha-beta filter with a double pole ([`Tracker`]), the law sees
+//! the filter's.
 //!
 //! [`Law::tick`] is one tick in the flight code's order, estimates first; the matrices are its columns.
 
@@ -31,7 +33,8 @@ enum Chain {
     Lateral(PositionGains, TorqueGains),
 }
 
-/// An alpha-beta filter with the double pole rho: x += v; then, with r = position - x, x += (1 - rho^2) r and v += (1 - rho)^2 r.
+/// An alpha-beta filter with the double pole rho: x += v; then, with r = position - x, x += (1 - rho^2) r and v += (1 -
+/// rho)^2 r.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tracker {
     position: f64,
@@ -65,8 +68,8 @@ struct Moving {
     acceleration: f64,
 }
 
-/// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is remembered as
-/// (1 - share) x + share past, to which the next tick adds share now.
+/// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is
+/// remembered as (1 - share) x + share past, to which the next tick adds share now.
 #[derive(Debug, Clone, Default)]
 struct Memory {
     /// The tracker's x and v.

@@ -1,16 +1,17 @@
 //! How much gain or delay a stable loop can take before an eigenvalue reaches the unit circle.
 //!
-//! An eigenvalue e^(i angle) appears where the loop's response passes through -1. Scaling the loop's gain by kappa moves
-//! every point of the response along its ray, so the critical kappa are -1 / L at the crossings of the negative real
-//! axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held command
-//! makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is left.
+//! An eigenvalue e^(i angle) appears where the loop's response passes through -1. Scaling the loop's gain by kappa
+//! moves every point of the response along its ray, so the critical kappa are -1 / L at the crossings of the negative
+//! real axis. More delay turns it clockwise: at a frequency where |L| = 1, D samples take angle D of its phase. A held
+//! command makes that exact for whole samples only, so the delay is found by steps, each of which takes what phase is
+//! left.
 //!
-//! Two kinds of crossings no step leads to. A fraction of a sample may make one that was not there without it. And at the Nyquist frequency
-//! there is no phase to take: the response is real, and further delay carries it along the axis. So the eigenvalues themselves are asked, up to
-//! two samples of further delay.
+//! Two kinds of crossings no step leads to. A fraction of a sample may make one that was not there without it. And at
+//! the Nyquist frequency there is no phase to take: the response is real, and further delay carries it along the axis.
+//! So the eigenvalues themselves are asked, up to two samples of further delay.
 //!
-//! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at more closely: it may
-//! cross twice between neighbours.
+//! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at
+//! more closely: it may cross twice between neighbours.
 
 use super::chain::SampledLoop;
 use super::compensator::Response;
@@ -109,8 +110,8 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
 
 /// What of `margin`, samples, the eigenvalues bear out.
 fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
-    /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist frequency is
-    /// farthest along the axis.
+    /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist
+    /// frequency is farthest along the axis.
     const PARTS: f64 = 4.0;
     /// So many of them: from there on a fraction of a sample changes little.
     const TRIED: u32 = 8;

@@ -111,7 +111,8 @@ impl Slopes {
         })
     }
 
-    /// What is estimated along and about the vertical. The thrust scale is learnt from what varies alone: near hover it stands still.
+    /// What is estimated along and about the vertical. The thrust scale is learnt from what varies alone: near hover it
+    /// stands still.
     pub fn estimated_vertical(&self, period: f64) -> EstimateGains {
         self.estimates.map_or_else(EstimateGains::default, |estimates| {
             let p = &estimates.parameters;

@@ -32,9 +32,9 @@ pub(super) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
     logarithm.exp()
 }
 
-/// Scales the states by powers of two, which costs no digit, until each one's row and column are about as large as each other: a square's
-/// rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is far below them. (nalgebra's balancing
-/// does not end where an entry is infinite.)
+/// Scales the states by powers of two, which costs no digit, until each one's row and column are about as large as each
+/// other: a square's rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is
+/// far below them. (nalgebra's balancing does not end where an entry is infinite.)
 fn balance(matrix: &mut DMatrix<f64>) {
     /// Enough for any file's; each sweep takes time as one column of a square does.
     const SWEEPS: usize = 20;
@@ -84,7 +84,8 @@ mod tests {
         assert!((radius([[0.5, 3.0], [0.0, -1.25]]) - 1.25).abs() < 1e-9);
     }
 
-    /// Small errors die out at the same rate per second, to what a sample of 0.1 ms delays, however much faster the ticks are.
+    /// Small errors die out at the same rate per second, to what a sample of 0.1 ms delays, however much faster the
+    /// ticks are.
     #[test]
     fn faster_ticks_do_not_change_how_fast_small_errors_die_out() {
         const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");

@@ -31,8 +31,8 @@ pub fn paper() -> Configuration {
     Scenario::paper().unwrap().configuration
 }
 
-/// A vehicle of 0.1 to 10 times the paper's mass, gains within a factor of `spread` of Table I, and a reference that asks
-/// for much, for little or for nothing of each kind. Without limits.
+/// A vehicle of 0.1 to 10 times the paper's mass, gains within a factor of `spread` of Table I, and a reference that
+/// asks for much, for little or for nothing of each kind. Without limits.
 pub fn around_table_1(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
     let mass = 0.46 * random::log_uniform(rng, 0.1, 10.0);
     let [a, b, c] = [(); 3].map(|()| mass * random::log_uniform(rng, 2e-3, 8e-3));

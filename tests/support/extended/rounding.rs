@@ -1,8 +1,8 @@
 //! What single precision may do to one tick of the extended law.
 //!
-//! As for the paper's law (`support::oracle::rounding`): the oracle is asked how far its own answer moves when each quantity the
-//! law reads or forms moves by one rounding of the magnitudes that were added up to form it, one at a time; the sum of these
-//! movements is what one rounding everywhere can do.
+//! As for the paper's law (`support::oracle::rounding`): the oracle is asked how far its own answer moves when each
+//! quantity the law reads or forms moves by one rounding of the magnitudes that were added up to form it, one at a
+//! time; the sum of these movements is what one rounding everywhere can do.
 
 use super::oracle::Law;
 use super::oracle::estimates::Averages;
@@ -47,7 +47,8 @@ fn apart(a: Option<[Vector3<f64>; 2]>, b: Option<[Vector3<f64>; 2]>) -> f64 {
     }
 }
 
-/// What positions and velocities were subtracted from, m and m/s, and what omega_d' of the last tick is known to, rad/s^2.
+/// What positions and velocities were subtracted from, m and m/s, and what omega_d' of the last tick is known to,
+/// rad/s^2.
 #[derive(Debug, Clone, Copy)]
 pub struct Scales {
     pub far: f64,

@@ -137,7 +137,8 @@ fn noise_adds_its_density_times_the_time() {
     let mut covariance = Covariance::diagonal([0.0; 5]);
     let motion = Nominal { velocity: Vector3::zeros(), ..somewhere() }.advance(&increment(), 9.81);
     (0..200).for_each(|_| covariance.advance(&motion, &EstimatorParameters::BMI088));
-    // After 1 s; the accelerometer's noise goes into the velocity alone where the attitude is exact: not here, so it is more.
+    // After 1 s; the accelerometer's noise goes into the velocity alone where the attitude is exact: not here, so it is
+    // more.
     let p = EstimatorParameters::BMI088;
     assert!((covariance.gg.m11 / (p.gyro_walk * p.gyro_walk) - 1.0).abs() < 1e-4);
     assert!((covariance.aa.m33 / (p.accelerometer_walk * p.accelerometer_walk) - 1.0).abs() < 1e-4);

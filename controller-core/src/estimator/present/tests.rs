@@ -12,7 +12,8 @@ fn increment(start: u64, delta_velocity: Vector3<f32>, delta_angle: Vector3<f32>
     Increment { start, end, delta_angle, delta_velocity, clipped }
 }
 
-/// The greatest velocity that is left, and f, of a body that is shaken across with this frequency, Hz, over those of the motion itself.
+/// The greatest velocity that is left, and f, of a body that is shaken across with this frequency, Hz, over those of
+/// the motion itself.
 fn shaken(frequency: f32) -> (f32, f32) {
     let speed = |time: u64| libm::sinf(TAU * frequency * time as f32 * 1e-6);
     let along = |start: u64| increment(start, Vector3::x() * (speed(start + H) - speed(start)), Vector3::zeros());

@@ -1,11 +1,13 @@
-//! Shocks beyond the sensors' ranges: what they left out is soon known again, from poses that are believed all the while.
+//! Shocks beyond the sensors' ranges: what they left out is soon known again, from poses that are believed all the
+//! while.
 
 use super::motion::{self, Path, Rig, increment, rest, tumble};
 use crate::estimator::{Clipped, Increment, Rejected, Taken};
 use crate::flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// How many of the poses of the second after a shock are refused, whose increment lacks these, m/s and rad; late by 20 ms.
+/// How many of the poses of the second after a shock are refused, whose increment lacks these, m/s and rad; late by 20
+/// ms.
 fn refused_after(path: Path, clipped: Clipped, push: &Vector3<f32>, turn: &Vector3<f32>) -> usize {
     let mut rig = Rig::new(path);
     rig.fly(3_000_000, 20_000);

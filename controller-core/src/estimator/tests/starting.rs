@@ -38,7 +38,8 @@ fn it_does_not_begin_where_accelerometer_and_poses_disagree_on_up() {
                 assert_eq!(rig.state(), None, "{angle} degrees");
             }
             assert!(!rig.estimator.health(rig.now).is_good());
-            // At rest one pose tells. In motion the candidate does, and may do so by a position before it does by its bias.
+            // At rest one pose tells. In motion the candidate does, and may do so by a position before it does by its
+            // bias.
             assert!(refused > 0 && (gravity > 0 || path(0.0).velocity != Vector3::zeros()), "{angle} degrees");
         }
     }

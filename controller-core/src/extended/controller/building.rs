@@ -1,4 +1,5 @@
-//! How a controller is built: every part's constants from the configuration and the period, and again where the period changes.
+//! How a controller is built: every part's constants from the configuration and the period, and again where the period
+//! changes.
 
 use super::Controller;
 use crate::allocation::Rotors;
@@ -20,12 +21,12 @@ use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
 impl Controller {
-    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s, in
-    /// (0, 0.1].
+    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s,
+    /// in (0, 0.1].
     ///
     /// # Errors
-    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if the period does not allow
-    /// them, `control.law` if the configuration is for another law.
+    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if the period does not
+    /// allow them, `control.law` if the configuration is for another law.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
         let LawParameters::Extended(law) = configuration.law() else {

@@ -35,8 +35,8 @@ impl<'m> Pilot<'m> {
         chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(field(error)))
     }
 
-    /// Setpoints are no longer wanted where anything else is asked for but arming, or somebody stops the motors, or they have been
-    /// wanted on the ground for too long.
+    /// Setpoints are no longer wanted where anything else is asked for but arming, or somebody stops the motors, or
+    /// they have been wanted on the ground for too long.
     pub(super) fn take_back(&mut self, inputs: &Inputs) {
         let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
         let stops = inputs.disarm || inputs.killed;
@@ -142,8 +142,8 @@ impl<'m> Pilot<'m> {
         setpoint.check().map_err(|error| Refusal::Setpoint(field(error)))
     }
 
-    /// Whether a setpoint is one to remember: what is refused does not keep a stream alive. The fence is placed by arming, so
-    /// before that it is not asked.
+    /// Whether a setpoint is one to remember: what is refused does not keep a stream alive. The fence is placed by
+    /// arming, so before that it is not asked.
     pub(super) fn may_come(&self, setpoint: &Setpoint) -> bool {
         if self.mode.is_armed() { self.check(setpoint).is_ok() } else { setpoint.check().is_ok() }
     }

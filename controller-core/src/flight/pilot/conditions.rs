@@ -86,7 +86,8 @@ impl Pilot<'_> {
             .with(Condition::Overrun, seen.overrun)
     }
 
-    /// Remembers from when on poses have been refused for what they say, and until when, none having been believed since.
+    /// Remembers from when on poses have been refused for what they say, and until when, none having been believed
+    /// since.
     fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {
         match pose {
             Ok(taken) if taken.is_believed() => self.lies = None,
@@ -95,7 +96,8 @@ impl Pilot<'_> {
         }
     }
 
-    /// Whether poses lied for a while before the vehicle had levelled, or still did then: what they agree on later is no better.
+    /// Whether poses lied for a while before the vehicle had levelled, or still did then: what they agree on later is
+    /// no better.
     fn poses_lie(&self) -> bool {
         let levelled = self.since.saturating_add(LEVELLING_MAX);
         self.lies.is_some_and(|(first, last)| {

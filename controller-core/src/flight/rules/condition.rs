@@ -45,7 +45,8 @@ listed! {
         ThrustsRefused,
         /// No pose has been believed for [`super::COASTING_MAX`], or the estimate is too uncertain.
         EstimateLost,
-        /// Going down by the IMU alone, the vehicle does not do what is commanded, as far as the IMU says: one of them is wrong.
+        /// Going down by the IMU alone, the vehicle does not do what is commanded, as far as the IMU says: one of them
+        /// is wrong.
         ImuDoubtful,
         /// Poses are believed again, and the governor has started from the estimate.
         PoseRegained,
@@ -65,7 +66,8 @@ listed! {
         BatteryCritical,
         /// The vehicle is outside the fence.
         FenceBreached,
-        /// The vehicle has been too far from its reference for [`super::TRACKING_LASTING`], or was struck and thrown out of its place.
+        /// The vehicle has been too far from its reference for [`super::TRACKING_LASTING`], or was struck and thrown
+        /// out of its place.
         TrackingLost,
         /// The rotors have not given what the law asked for during [`super::SATURATION_LASTING`].
         Saturated,

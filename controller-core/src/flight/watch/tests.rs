@@ -1,4 +1,5 @@
-//! Each thing that is looked for, just where it begins and just before; each ends where any of what makes it up is missing.
+//! Each thing that is looked for, just where it begins and just before; each ends where any of what makes it up is
+//! missing.
 
 extern crate std;
 use super::*;

@@ -1,11 +1,11 @@
 //! Counts instructions with SysTick, in an emulator whose clock advances by a fixed time for every instruction.
 //!
 //! `qemu-system-arm -icount shift=6` lets one instruction take 64 ns; the board's SysTick counts at 25 MHz, so one
-//! instruction is 1.6 ticks. The counter finds that out by itself, on a loop whose instructions are known, and so serves
-//! any shift. A difference of two readings is off by less than a tick, 0.6 instructions.
+//! instruction is 1.6 ticks. The counter finds that out by itself, on a loop whose instructions are known, and so
+//! serves any shift. A difference of two readings is off by less than a tick, 0.6 instructions.
 //!
-//! The register holds 24 bits, 10 million instructions. [`Counter::long`] reads the board's timer 1 instead, which counts at
-//! the same rate, holds 32 bits, 2.7 thousand million, and stands still when it has run down.
+//! The register holds 24 bits, 10 million instructions. [`Counter::long`] reads the board's timer 1 instead, which
+//! counts at the same rate, holds 32 bits, 2.7 thousand million, and stands still when it has run down.
 
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};

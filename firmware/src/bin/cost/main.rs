@@ -4,8 +4,8 @@
 //! configuration. Every figure is that of one call through a pointer, the window's own instructions taken off. The body
 //! that the law flies moves between the windows.
 //!
-//! The times beside the figures assume one instruction a cycle. That is a convention, not a measurement: divisions, square
-//! roots, loads and flash take a Cortex-M4 longer, and a Cortex-M7 may do two instructions in one cycle.
+//! The times beside the figures assume one instruction a cycle. That is a convention, not a measurement: divisions,
+//! square roots, loads and flash take a Cortex-M4 longer, and a Cortex-M7 may do two instructions in one cycle.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -183,7 +183,8 @@ const TUMBLING: State = State {
     angular_velocity: Vector3::new(10.0, -8.0, 6.0),
 };
 
-/// Half a minute of the governor following a circle inside the bounds, sent 20 times a second; the last ten seconds count.
+/// Half a minute of the governor following a circle inside the bounds, sent 20 times a second; the last ten seconds
+/// count.
 fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
     static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
     const RATE: f32 = 1.0;

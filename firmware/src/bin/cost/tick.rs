@@ -1,7 +1,7 @@
 //! What a whole control tick costs: the firmware's own, from what waits in the queues to the motors' commands.
 //!
-//! The vehicle stands for a while, arms, goes up and flies a circle by setpoints of position and velocity, ten a second. Its poses
-//! come 20 ms late, a hundred a second.
+//! The vehicle stands for a while, arms, goes up and flies a circle by setpoints of position and velocity, ten a
+//! second. Its poses come 20 ms late, a hundred a second.
 
 use crate::body;
 use crate::count::Cost;

@@ -1,8 +1,8 @@
 //! Time for embassy-time: SysTick counts, timer 0 wakes.
 //!
-//! SysTick runs freely, once round in half a second, and is never written again: what it has counted is the time. An alarm
-//! runs timer 0 down from exactly the cycles that are left, so the processor sleeps from alarm to alarm, and an alarm is a
-//! cycle late at most, 40 ns.
+//! SysTick runs freely, once round in half a second, and is never written again: what it has counted is the time. An
+//! alarm runs timer 0 down from exactly the cycles that are left, so the processor sleeps from alarm to alarm, and an
+//! alarm is a cycle late at most, 40 ns.
 
 use super::lines::CLOCK;
 use core::cell::{Cell, RefCell};
@@ -34,7 +34,8 @@ mod timer {
     const INTERRUPT_ENABLE: u32 = 1 << 3;
 
     /// Interrupts once after `cycles`, at least one. Nothing is to be reloaded then: QEMU 7.2 sets a timer that reloads
-    /// before it raises the interrupt, and a processor that is still asleep at that moment sleeps through to the next one.
+    /// before it raises the interrupt, and a processor that is still asleep at that moment sleeps through to the next
+    /// one.
     pub fn start(cycles: u32) {
         // SAFETY: these are the timer's registers, and only this module touches them.
         unsafe {

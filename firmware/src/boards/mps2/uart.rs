@@ -12,7 +12,8 @@ use embassy_sync::pipe::Pipe;
 use embassy_sync::waitqueue::AtomicWaker;
 use embedded_io_async::{ErrorType, Read, Write};
 
-/// Received bytes that wait to be read: more than two answers of the simulator, each of two poses and ten samples of its sensors.
+/// Received bytes that wait to be read: more than two answers of the simulator, each of two poses and ten samples of
+/// its sensors.
 const BUFFER: usize = 4096;
 
 /// Cycles a bit: 25 MHz / 27 = 926 kBd. The emulator sends bytes at once, but wants a rate that a UART could have.

@@ -1,7 +1,8 @@
 //! The chip's own bootloader, which takes an image over USB (DFU): asked for before a restart, entered right after it.
 //!
-//! It has to begin as after a reset: clocks as they come up, no peripheral at work, the watchdog, which nothing but a reset stops, not
-//! started. So the wish is kept in memory that no start clears, behind the flight recorder's, and looked at first of all.
+//! It has to begin as after a reset: clocks as they come up, no peripheral at work, the watchdog, which nothing but a
+//! reset stops, not started. So the wish is kept in memory that no start clears, behind the flight recorder's, and
+//! looked at first of all.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{Ordering, fence};
@@ -11,8 +12,8 @@ unsafe extern "C" {
     static _bootloader_wish: UnsafeCell<[u64; 4]>;
 }
 
-/// The wish. Said four times: a write to memory that has error-correcting codes may wait in the chip for the next one, and be lost if a reset
-/// comes first.
+/// The wish. Said four times: a write to memory that has error-correcting codes may wait in the chip for the next one,
+/// and be lost if a reset comes first.
 const WISH: [u64; 4] = [0x4446_5520_706C_6561; 4];
 
 /// Where the bootloader's vector table is.
@@ -28,11 +29,13 @@ pub fn wish() {
     set(WISH);
 }
 
-/// Enters the bootloader if that was wished for before the restart, which was the firmware's own or not. Before anything is turned on.
+/// Enters the bootloader if that was wished for before the restart, which was the firmware's own or not. Before
+/// anything is turned on.
 pub fn enter_if_wished(is_own_restart: bool) {
     // After another start the memory may have been without power, and hold nothing that may be read.
     let is_wished = is_own_restart && {
-        // SAFETY: this part of the memory is nobody else's, has been written to since power came, and any bits are numbers.
+        // SAFETY: this part of the memory is nobody else's, has been written to since power came, and any bits are
+        // numbers.
         let wish = unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).read_volatile() };
         wish.iter().zip(&WISH).filter(|(wish, expected)| wish == expected).count() >= WISH.len() - 1
     };
@@ -58,8 +61,8 @@ fn enter() -> ! {
         cortex_m::asm::dsb();
         SYSCFG.memrm().modify(|w| w.set_mem_mode(1));
     }
-    // SAFETY: one register, nothing else runs; the address is that of ST's bootloader in this chip's system memory, where a
-    // valid vector table is (application note AN2606), and nothing of this firmware is in use any more.
+    // SAFETY: one register, nothing else runs; the address is that of ST's bootloader in this chip's system memory,
+    // where a valid vector table is (application note AN2606), and nothing of this firmware is in use any more.
     unsafe {
         (*cortex_m::peripheral::SCB::PTR).vtor.write(BOOTLOADER);
         cortex_m::asm::dsb();

@@ -1,7 +1,8 @@
 //! A microSD card on SDMMC1 in four bits, at 25 MHz.
 //!
-//! The driver waits for a card's answers, and for it to be done with a sector, without giving way: a card at odds with itself can keep
-//! it for minutes. So its task has the thread, below everything else. What the driver does give way in is bounded here.
+//! The driver waits for a card's answers, and for it to be done with a sector, without giving way: a card at odds with
+//! itself can keep it for minutes. So its task has the thread, below everything else. What the driver does give way in
+//! is bounded here.
 //!
 //! Its DMA does not reach the stack, which lies in the DTCM: sectors go through a buffer of their own.
 
@@ -20,7 +21,8 @@ const FREQUENCY: Hertz = Hertz(25_000_000);
 /// The longest a transfer may take.
 const TRANSFER: Duration = Duration::from_millis(1_000);
 
-/// The longest the card may be busy in one, cycles of the bus: 0.8 s. The standard lets large cards take half a second to write.
+/// The longest the card may be busy in one, cycles of the bus: 0.8 s. The standard lets large cards take half a second
+/// to write.
 pub const TIMEOUT: u32 = 20_000_000;
 
 /// The slot.

@@ -1,8 +1,9 @@
 //! Time since boot, from Embassy's time driver (TIM5, 1 MHz).
 //!
-//! The driver counts half turns of a 16-bit counter by an interrupt at each, 33 ms apart. A core that stands still for longer misses
-//! some, and after an odd number of them the clock steps back by 65.5 ms at the end of every turn, until the chip restarts.
-//! So the counter stands still whenever the core does: for a probe, and for work on the F405's flash.
+//! The driver counts half turns of a 16-bit counter by an interrupt at each, 33 ms apart. A core that stands still for
+//! longer misses some, and after an odd number of them the clock steps back by 65.5 ms at the end of every turn, until
+//! the chip restarts. So the counter stands still whenever the core does: for a probe, and for work on the F405's
+//! flash.
 
 use crate::hardware::Clock;
 use embassy_stm32::pac::DBGMCU;

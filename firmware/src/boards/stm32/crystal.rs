@@ -2,8 +2,8 @@
 
 use embassy_stm32::pac::RCC;
 
-/// Looks at it, at least: each takes 4 cycles or more of a core at 64 MHz or less, so a tenth of a second together at the least. A crystal
-/// takes a few milliseconds.
+/// Looks at it, at least: each takes 4 cycles or more of a core at 64 MHz or less, so a tenth of a second together at
+/// the least. A crystal takes a few milliseconds.
 const POLLS: u32 = 1_600_000;
 
 /// Starts the crystal; whether it runs. Before the clocks are set, once.

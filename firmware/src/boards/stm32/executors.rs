@@ -1,5 +1,5 @@
-//! Three executors in interrupts that the board has no other use for, control above the sensor and that above the services, all below the
-//! drivers' own. The thread is left to the memory card, which may keep it for minutes.
+//! Three executors in interrupts that the board has no other use for, control above the sensor and that above the
+//! services, all below the drivers' own. The thread is left to the memory card, which may keep it for minutes.
 
 use embassy_executor::InterruptExecutor;
 

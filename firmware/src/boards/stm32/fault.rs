@@ -2,22 +2,23 @@
 //!
 //! Panics, faults and interrupts that nobody expects end here, in the order of [`Ending`]:
 //!
-//! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves whether it
-//!    was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no log.
+//! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves
+//!    whether it was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
+//!    log.
 //! 2. the log gets the panic's message, or the fault's place.
 //! 3. stop frames go on for long enough (25 ms or more) for a probe to fetch the log, which a restart empties.
 //! 4. the chip restarts.
 //!
 //! `panic-probe` logs before anything else can run. So the panic handler is here.
 //!
-//! What the controllers see: the frame that was going out is cut and discarded by its checksum; stop frames follow, and then
-//! silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included, so it
-//! needs no waveform: sixteen periods at the width of a zero.
+//! What the controllers see: the frame that was going out is cut and discarded by its checksum; stop frames follow, and
+//! then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included,
+//! so it needs no waveform: sixteen periods at the width of a zero.
 //!
-//! What this does not reach: a core that cannot run any code (a stack that overflowed into the fault handler, a clock that
-//! failed). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first time, and the
-//! controllers stop for want of frames within their own time-out. The watchdog is fed once before these steps, so that the restart is theirs
-//! and names them as its cause; if one of them hangs, it is the watchdog's.
+//! What this does not reach: a core that cannot run any code (a stack that overflowed into the fault handler, a clock
+//! that failed). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
+//! time, and the controllers stop for want of frames within their own time-out. The watchdog is fed once before these
+//! steps, so that the restart is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};
@@ -30,10 +31,12 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac::iwdg::vals::Key;
 use embassy_stm32::pac::timer::TimGp16;
 
-/// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the peripheral bus.
+/// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the
+/// peripheral bus.
 const POLLS: usize = 10_000;
 
-/// Silence before each frame, turns of a loop: 0.08 ms at 400 MHz, if the Cortex-M7 takes one cycle for a turn. It may take two.
+/// Silence before each frame, turns of a loop: 0.08 ms at 400 MHz, if the Cortex-M7 takes one cycle for a turn. It may
+/// take two.
 #[cfg(feature = "micoair-h743")]
 const SILENCE: u32 = 32_000;
 

@@ -1,14 +1,14 @@
 //! The first instructions: whatever ran before, here it begins as after a reset.
 //!
-//! A bootloader may hand over from a task of its own operating system (ArduPilot's does): on that task's stack, with its interrupts
-//! armed, its caches and memory protection on, its clocks running. A thread that stays on that stack overwrites memory that is
-//! somebody else's now; a data cache stands between the core and the DMA buffers; an interrupt that nobody expects is a fault; a PLL that
-//! runs takes no new settings.
+//! A bootloader may hand over from a task of its own operating system (ArduPilot's does): on that task's stack, with
+//! its interrupts armed, its caches and memory protection on, its clocks running. A thread that stays on that stack
+//! overwrites memory that is somebody else's now; a data cache stands between the core and the DMA buffers; an
+//! interrupt that nobody expects is a fault; a PLL that runs takes no new settings.
 
 use cortex_m::Peripherals;
 
-// Before memory is set up, by the runtime's own hook, without using a stack: no interrupt until `begin_anew` has ended those that are
-// armed, the main stack from here on, no interrupt masked by its priority.
+// Before memory is set up, by the runtime's own hook, without using a stack: no interrupt until `begin_anew` has ended
+// those that are armed, the main stack from here on, no interrupt masked by its priority.
 core::arch::global_asm!(
     ".section .text.__pre_init, \"ax\"",
     ".global __pre_init",
@@ -34,7 +34,8 @@ const END_PENDING: u32 = 1 << 25 | 1 << 27;
 pub fn begin_anew() {
     // SAFETY: nothing else runs yet, and nobody has the core's peripherals before this returns.
     let core = unsafe { Peripherals::steal() };
-    // SAFETY: the runtime has set up memory and all handlers; from here on nothing is pending but what this firmware starts.
+    // SAFETY: the runtime has set up memory and all handlers; from here on nothing is pending but what this firmware
+    // starts.
     unsafe {
         core.SYST.csr.write(0);
         core.SCB.icsr.write(END_PENDING);
@@ -78,7 +79,8 @@ fn stop_plls() {
     }
 }
 
-/// Resets the DMA controllers, which would go on writing to memory, and the USB port, which a host would go on talking to.
+/// Resets the DMA controllers, which would go on writing to memory, and the USB port, which a host would go on talking
+/// to.
 #[cfg(feature = "micoair-h743")]
 fn quiet_peripherals() {
     let reset = embassy_stm32::pac::RCC.ahb1rstr();
@@ -91,7 +93,8 @@ fn quiet_peripherals() {
     }
 }
 
-/// Resets the DMA controllers, which would go on writing to memory, and the USB port, which a host would go on talking to.
+/// Resets the DMA controllers, which would go on writing to memory, and the USB port, which a host would go on talking
+/// to.
 #[cfg(feature = "crazyflie-bolt")]
 fn quiet_peripherals() {
     let (dma, usb) = (embassy_stm32::pac::RCC.ahb1rstr(), embassy_stm32::pac::RCC.ahb2rstr());

@@ -1,12 +1,12 @@
 //! DShot300 for four motors on the four channels of one timer, by burst DMA.
 //!
-//! The timer rests between frames: counter stopped at zero, every channel low. [`Motors::write`] draws the frames, starts
-//! the counter, and at each update event one DMA burst sets the four widths of the next bit. The counter starts only once the
-//! transfer waits for it, so that no burst can straddle an update. However a write ends, also if it is dropped half-way, the
-//! timer rests again, and a controller discards the frame that was cut by its checksum.
+//! The timer rests between frames: counter stopped at zero, every channel low. [`Motors::write`] draws the frames,
+//! starts the counter, and at each update event one DMA burst sets the four widths of the next bit. The counter starts
+//! only once the transfer waits for it, so that no burst can straddle an update. However a write ends, also if it is
+//! dropped half-way, the timer rests again, and a controller discards the frame that was cut by its checksum.
 //!
-//! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled in
-//! both halves of the register, a motor at full throttle.
+//! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
+//! in both halves of the register, a motor at full throttle.
 
 use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
 use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
@@ -51,7 +51,8 @@ where
     D: UpDma<T>,
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
-    /// Every channel low, nothing sent. Motor i is on channel `channels[i]` (0 to 3); `dma` is the timer's update request.
+    /// Every channel low, nothing sent. Motor i is on channel `channels[i]` (0 to 3); `dma` is the timer's update
+    /// request.
     pub fn new(
         timer: Peri<'static, T>,
         pins: Pins<T>,

@@ -1,13 +1,13 @@
 //! Where parameters live: the last two sectors of the flash, 128 KB each.
 //!
-//! Nothing outside the two sectors can be reached. Work on the flash blocks its task. On the F405 it also stalls the core, up
-//! to two seconds for an erase, because code runs from the same flash: the watchdog is given patience meanwhile, no control
-//! tick happens, and the [clock](super::clock) stands still. So nothing may be saved unless disarmed. The H743
-//! erases its second bank while code runs from the first.
+//! Nothing outside the two sectors can be reached. Work on the flash blocks its task. On the F405 it also stalls the
+//! core, up to two seconds for an erase, because code runs from the same flash: the watchdog is given patience
+//! meanwhile, no control tick happens, and the [clock](super::clock) stands still. So nothing may be saved unless
+//! disarmed. The H743 erases its second bank while code runs from the first.
 //!
-//! The registers are driven here and not by Embassy: its driver waits for the flash without end, and on the H743 leaves the
-//! flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part says what
-//! is its own: addresses, registers, and how a record that may be torn is read.
+//! The registers are driven here and not by Embassy: its driver waits for the flash without end, and on the H743 leaves
+//! the flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part
+//! says what is its own: addresses, registers, and how a record that may be torn is read.
 
 use super::watchdog::Patience;
 use crate::hardware::{Fault, Flash, Record};
@@ -49,7 +49,8 @@ fn words(place: usize) -> Result<*mut u32, Fault> {
     if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
-/// Waits for the flash, and asks whether it did as it was told. Counts instead of asking the clock, which may stand still.
+/// Waits for the flash, and asks whether it did as it was told. Counts instead of asking the clock, which may stand
+/// still.
 fn done() -> Result<(), Fault> {
     let is_done = (0..chip::POLLS).any(|_| !chip::is_busy());
     if is_done && !chip::has_failed() { Ok(()) } else { Err(Fault) }

@@ -1,7 +1,7 @@
 //! What every STM32 board runs: its tasks by priority.
 //!
-//! Control and the sensor have executors of their own, in interrupts; everything else shares a third, but for the memory card, which has
-//! the thread to itself.
+//! Control and the sensor have executors of their own, in interrupts; everything else shares a third, but for the
+//! memory card, which has the thread to itself.
 
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};

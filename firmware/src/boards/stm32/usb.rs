@@ -1,7 +1,8 @@
 //! The USB port as a serial line (CDC-ACM) for the link, on PA11 and PA12.
 //!
-//! Without a host the port costs nothing: its pull-up waits, and no interrupt comes. What a program on the host may do to it is bounded: who
-//! reads nothing holds up a frame for as long as the link allows, and who writes too much waits for the host's next try, not for us.
+//! Without a host the port costs nothing: its pull-up waits, and no interrupt comes. What a program on the host may do
+//! to it is bounded: who reads nothing holds up a frame for as long as the link allows, and who writes too much waits
+//! for the host's next try, not for us.
 //!
 //! The driver's own task waits for the host without end, as an interrupt does; nothing waits for that task.
 

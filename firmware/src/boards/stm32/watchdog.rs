@@ -6,7 +6,8 @@ use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::{IndependentWatchdog, Instance};
 
-/// Time without food, us: five ticks of the control task. The watchdog's clock is crude: on the F405 this is 34 to 94 ms.
+/// Time without food, us: five ticks of the control task. The watchdog's clock is crude: on the F405 this is 34 to 94
+/// ms.
 const TIMEOUT: u32 = 50_000;
 
 /// Polls within which the watchdog takes over new settings. It needs five of its own cycles, a third of a millisecond.

@@ -3,8 +3,8 @@ use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 
 type Local = Shared<NoopRawMutex>;
 
-/// Messages that a request leads to if the card has one log of `size` bytes, each the lowest bits of its place; the ticks of 1 ms
-/// that took.
+/// Messages that a request leads to if the card has one log of `size` bytes, each the lowest bits of its place; the
+/// ticks of 1 ms that took.
 fn messages(size: u32, offset: u32, wanted: u32) -> (Vec<Message>, u64) {
     let shared = Local::new();
     shared.card.set(CardState::Ready, 0);

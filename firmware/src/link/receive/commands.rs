@@ -111,7 +111,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }
 
-    /// Has the vehicle restarted, into its bootloader or not, once this answer is out. What is refused leaves alone what was accepted.
+    /// Has the vehicle restarted, into its bootloader or not, once this answer is out. What is refused leaves alone
+    /// what was accepted.
     fn restart(&mut self, into_bootloader: bool) -> MavResult {
         let shared = self.shared;
         let (refused, result) = if !shared.can_restart.is_raised() {

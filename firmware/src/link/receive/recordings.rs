@@ -21,7 +21,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        // Who hears that there is none asks no more; who wants a part and hears nothing asks again, and gets it after landing.
+        // Who hears that there is none asks no more; who wants a part and hears nothing asks again, and gets it after
+        // landing.
         let list = Reply::Logs { first: message.start, last: message.end };
         self.shared.reply(if self.may_read(frame) { list } else { Reply::NoLogs });
     }

@@ -1,6 +1,7 @@
 use super::*;
 
-/// 100 messages a second from a clock that is ahead by `offset`, us, with delays; the stamps' errors against the least delay.
+/// 100 messages a second from a clock that is ahead by `offset`, us, with delays; the stamps' errors against the least
+/// delay.
 fn errors(offset: u64, drift: f64, delay: impl Fn(u64) -> u64) -> Vec<i64> {
     let mut clock: Option<SenderClock> = None;
     let mut errors = Vec::new();

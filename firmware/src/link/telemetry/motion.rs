@@ -121,7 +121,8 @@ pub fn odometry(time: u64, report: &Report) -> Option<ODOMETRY_DATA> {
     })
 }
 
-/// The upper triangle of a covariance of which two traces are known by their roots; the rest is unknown, said as NaN, or zero.
+/// The upper triangle of a covariance of which two traces are known by their roots; the rest is unknown, said as NaN,
+/// or zero.
 fn diagonal(first: f32, second: f32) -> [f32; 21] {
     // Row by row: the diagonal's places.
     let mut triangle = [0.0; 21];

@@ -69,8 +69,8 @@ pub fn current_mode(mode: Mode) -> CURRENT_MODE_DATA {
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
 }
 
-/// Whether it is on the ground; nobody knows of what was stopped in the air or may still fall, nor before there is anything to
-/// tell by.
+/// Whether it is on the ground; nobody knows of what was stopped in the air or may still fall, nor before there is
+/// anything to tell by.
 #[must_use]
 pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     let landed_state = match report.mode {
@@ -112,11 +112,12 @@ pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
     }
 }
 
-/// Which sensors there are, whether they work, the battery (V, if known), how much of its period the longest tick took, what
-/// the line lost, and whether flights are logged, if there is a card.
+/// Which sensors there are, whether they work, the battery (V, if known), how much of its period the longest tick took,
+/// what the line lost, and whether flights are logged, if there is a card.
 ///
-/// Clients know sensors that this vehicle has not, and wait for them. What a magnetometer is there for, a heading, and what GPS is
-/// there for, a place, comes from the poses here; so both bits say, like that of a vision system, whether poses are believed.
+/// Clients know sensors that this vehicle has not, and wait for them. What a magnetometer is there for, a heading, and
+/// what GPS is there for, a place, comes from the poses here; so both bits say, like that of a vision system, whether
+/// poses are believed.
 #[must_use]
 pub fn status(
     voltage: Option<f32>,

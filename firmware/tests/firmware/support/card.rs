@@ -1,4 +1,5 @@
-//! A memory card in memory: formatted, damaged, slow, failing, or without power from any write on; and an independent reader of its files.
+//! A memory card in memory: formatted, damaged, slow, failing, or without power from any write on; and an independent
+//! reader of its files.
 
 use super::Simulated;
 use fatfs::{FatType, FileSystem, FormatVolumeOptions, FsOptions, format_volume};

@@ -1,4 +1,5 @@
-//! Flash like that of the boards: programmed by words, each once between erasures; it fails, and loses its power, on demand.
+//! Flash like that of the boards: programmed by words, each once between erasures; it fails, and loses its power, on
+//! demand.
 
 use firmware::hardware::{Fault, Flash, Record};
 use std::cell::RefCell;

@@ -1,4 +1,5 @@
-//! An encoder that is not ours (the `mavlink` crate's own), flash that fails, and a clock that goes as fast as the tests do.
+//! An encoder that is not ours (the `mavlink` crate's own), flash that fails, and a clock that goes as fast as the
+//! tests do.
 
 pub mod bodies;
 pub mod card;

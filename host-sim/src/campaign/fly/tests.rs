@@ -96,7 +96,8 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     fs::write(again.join("parts/000002.arrow"), b"ARROW1\0\0 and then nothing").unwrap();
     std::mem::forget(WholeFile::create(&again.join("parts/000003.arrow")).unwrap());
     assert!(store.part(1) == Some(kept.clone()) && store.part(2).is_none() && store.part(0).is_none());
-    // A number that was changed is damage as well, where the part is sealed; those of older campaigns are not, and are taken.
+    // A number that was changed is damage as well, where the part is sealed; those of older campaigns are not, and are
+    // taken.
     let (sealed, middle) = (fs::read(again.join("parts/000001.arrow")).unwrap(), 8000);
     let part = |bytes: &[u8]| {
         fs::write(again.join("parts/000000.arrow"), bytes).unwrap();

@@ -19,7 +19,8 @@ const SETPOINT: u64 = 20;
 /// Ticks after which who was refused asks again.
 const AGAIN: u64 = 100;
 
-/// How long each silence lasts, ticks: of the ground station; of poses, three times; of a battery that is low, until it is changed.
+/// How long each silence lasts, ticks: of the ground station; of poses, three times; of a battery that is low, until it
+/// is changed.
 const SILENCE: u64 = 400;
 const DARK: [u64; 3] = [70, 150, 200];
 const LOW: u64 = 3_000;
@@ -49,7 +50,8 @@ pub struct Script {
 impl Script {
     pub fn new(number: u64, random: &mut impl Rng) -> Self {
         let mut about = |time: u64| time + random.random_range(0..200);
-        // It takes a second to find out that setpoints have ceased, two and a half for the station: its last heartbeat counts.
+        // It takes a second to find out that setpoints have ceased, two and a half for the station: its last heartbeat
+        // counts.
         let silence = about(22_000) / HEARTBEAT * HEARTBEAT;
         Self {
             arm: about(300),
@@ -90,8 +92,8 @@ impl Script {
         self.frame.contains(&tick)
     }
 
-    /// What the operator says in this tick, in `mode`, which will be at `now` and a period, us; `heard` is when the station was heard last. Who is
-    /// refused asks again, a second later.
+    /// What the operator says in this tick, in `mode`, which will be at `now` and a period, us; `heard` is when the
+    /// station was heard last. Who is refused asks again, a second later.
     pub fn given(&self, tick: u64, mode: Mode, now: u64, heard: &mut Option<u64>) -> Inputs<'static> {
         let silent = (self.silence..self.silence + SILENCE).contains(&tick);
         if tick.is_multiple_of(HEARTBEAT) && !silent {

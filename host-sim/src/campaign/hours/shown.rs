@@ -15,7 +15,8 @@ pub struct Hour {
     pub delays: [f64; TIMED.len()],
 }
 
-/// Consequences that are timed: of the take-off command, of the last heartbeat, setpoint and pose, of a battery that is low.
+/// Consequences that are timed: of the take-off command, of the last heartbeat, setpoint and pose, of a battery that is
+/// low.
 pub const TIMED: [Reason; 5] =
     [Reason::TakenOff, Reason::GroundStationLost, Reason::SetpointsLost, Reason::PoseLost, Reason::BatteryLow];
 
@@ -26,7 +27,8 @@ pub struct Obeyed {
     pub chosen: f32,
     /// The least and the greatest of what came of it: m above the ground in hover, or m/s downwards while landing.
     pub found: (f64, f64),
-    /// The shortest and the longest time that it took, ticks: from the take-off's command to its height; of a landing, nothing is said.
+    /// The shortest and the longest time that it took, ticks: from the take-off's command to its height; of a landing,
+    /// nothing is said.
     pub took: (u64, u64),
 }
 
@@ -73,14 +75,15 @@ pub struct Hours {
     pub position: Vector3<f64>,
 }
 
-/// How much the last hour may differ from the first, relative: means over 300 s of noise that takes about half a second to forget.
+/// How much the last hour may differ from the first, relative: means over 300 s of noise that takes about half a second
+/// to forget.
 const ALIKE: f64 = 0.15;
 
 /// How far apart two delays of one kind may be, ticks.
 const SPREAD: u64 = 1;
 
-/// How far from the height that was chosen a hover may be, m, and how far from the speed, m/s: gusts and the estimate's noise, and a landing that
-/// begins out of a climb or with the ground's cushion.
+/// How far from the height that was chosen a hover may be, m, and how far from the speed, m/s: gusts and the estimate's
+/// noise, and a landing that begins out of a climb or with the ground's cushion.
 const HEIGHT_OFF: f64 = 0.02;
 const SPEED_OFF: f64 = 0.1;
 

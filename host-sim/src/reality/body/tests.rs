@@ -40,7 +40,8 @@ fn under_a_held_wrench_it_is_the_plant_of_the_model() {
     for _ in 0..2000 {
         body.advance(1e-3, |_, _| (force, torque));
     }
-    // Rounding, and the length that each takes from the quaternion in its own way: the plant's gap to the exact motion is 1e-8.
+    // Rounding, and the length that each takes from the quaternion in its own way: the plant's gap to the exact motion
+    // is 1e-8.
     assert!(gap(plant.state(), &body.origin()) < 1e-8, "{:e}", gap(plant.state(), &body.origin()));
 }
 

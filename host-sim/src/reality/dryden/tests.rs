@@ -1,4 +1,5 @@
-//! The filters against the specification: lengths, intensities, stationarity at any step, variance, autocorrelation, spectrum.
+//! The filters against the specification: lengths, intensities, stationarity at any step, variance, autocorrelation,
+//! spectrum.
 
 use super::*;
 use std::f64::consts::PI;
@@ -46,7 +47,8 @@ fn variance_and_autocorrelation_are_the_specifications() {
             let shape = if index == 0 { 1.0 } else { 1.0 - 0.5 * away };
             let expected = variance * shape * (-away).exp();
             let found = correlation(x, lag);
-            // Five standard deviations of u's estimate, whose samples are the least independent: sqrt(4 T / total time).
+            // Five standard deviations of u's estimate, whose samples are the least independent: sqrt(4 T / total
+            // time).
             let tolerance = 5.0 * variance * (4.0 * t / (step * x.len() as f64)).sqrt();
             assert!((found - expected).abs() < tolerance, "{index}, lag {lag}: {found} {expected} +- {tolerance}");
         }

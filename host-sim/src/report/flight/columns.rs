@@ -1,5 +1,5 @@
-//! Which columns the page keeps of a flight. They bear log.csv's names and are its numbers in single precision, but for yaw,
-//! which is in degrees and without jumps, and for what is worked out here:
+//! Which columns the page keeps of a flight. They bear log.csv's names and are its numbers in single precision, but for
+//! yaw, which is in degrees and without jumps, and for what is worked out here:
 //!
 //! - `tilt`: the angle between thrust axis and vertical, degrees;
 //! - `filter_…`: |ubar_p|, |u_f|, |u_s|, m/s^2;

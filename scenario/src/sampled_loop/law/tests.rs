@@ -34,8 +34,8 @@ fn directions(axis: Axis) -> (Vector3<f64>, Vector3<f64>) {
     }
 }
 
-/// Position or angle at tick k and its derivative, about one in size: four oscillations, slow to fast, out of rest and about
-/// zero, since the estimates integrate. `pace` tells one from another.
+/// Position or angle at tick k and its derivative, about one in size: four oscillations, slow to fast, out of rest and
+/// about zero, since the estimates integrate. `pace` tells one from another.
 fn wave(k: usize, period: f64, pace: f64) -> (f64, f64) {
     // The first tick is at rest: a law that has just been reset has none before it to compare with.
     let Some(since) = k.checked_sub(1) else { return (0.0, 0.0) };
@@ -110,7 +110,8 @@ fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
     (0..TICKS).map(tick).collect()
 }
 
-/// The greatest difference over the greatest command. Half the difference of both senses leaves out what is of second order.
+/// The greatest difference over the greatest command. Half the difference of both senses leaves out what is of second
+/// order.
 fn difference(scenario: &Scenario, axis: Axis) -> f64 {
     let [ahead, back] = [1.0, -1.0].map(|sign| flown(scenario, axis, sign));
     let flown = ahead.iter().zip(&back).map(|(ahead, back)| 0.5 * (ahead - back));
@@ -136,7 +137,8 @@ fn the_linear_law_commands_what_the_flown_law_commands() {
         .map(|(name, delay)| (name, study.replace("delay = 0.010", &format!("delay = {delay}"))));
     let texts = FILES.iter().copied().chain(late.iter().map(|(name, text)| (*name, text.as_str())));
     for (name, text) in texts {
-        // The scale is learnt from products of what varies, which no small motion of a closed loop shows; this one is not closed.
+        // The scale is learnt from products of what varies, which no small motion of a closed loop shows; this one is
+        // not closed.
         let text = estimating(text, "scale_rate = 0.0");
         let whole = Scenario::parse(&text, name).unwrap();
         // An attitude loop alone has no position, so no force is estimated either.

@@ -8,8 +8,8 @@ use embassy_stm32::pac::flash::vals::Psize;
 pub const START: usize = 0x080C_0000;
 const FIRST_SECTOR: u8 = 10;
 
-/// Looks at a flash at work, at most: each takes 6 cycles or more of a core at 168 MHz, so seven seconds together at the least. An
-/// erase takes up to two, and stalls most of them.
+/// Looks at a flash at work, at most: each takes 6 cycles or more of a core at 168 MHz, so seven seconds together at
+/// the least. An erase takes up to two, and stalls most of them.
 pub const POLLS: u32 = 200_000_000;
 
 /// The flags of the status register that say what went wrong; writing them clears them.
@@ -52,8 +52,8 @@ pub fn has_failed() -> bool {
     FLASH.sr().read().0 & FAILURES != 0
 }
 
-/// Closes the control register, and empties the data cache, which an erase leaves as it was. It may only be emptied while
-/// it is off.
+/// Closes the control register, and empties the data cache, which an erase leaves as it was. It may only be emptied
+/// while it is off.
 pub fn close() {
     FLASH.cr().write(|w| w.set_lock(true));
     let control = FLASH.acr();

@@ -1,8 +1,8 @@
 //! The H743's flash: two banks, programmed by words of 32 bytes that each have an error-correcting code.
 //!
-//! A word that power failed on while it was programmed or erased has the wrong code. Reading it raises a bus fault, which
-//! would restart the chip at every boot: so records are read with faults masked, and the flash's own flag says whether to
-//! believe them.
+//! A word that power failed on while it was programmed or erased has the wrong code. Reading it raises a bus fault,
+//! which would restart the chip at every boot: so records are read with faults masked, and the flash's own flag says
+//! whether to believe them.
 
 use crate::hardware::Fault;
 use core::arch::asm;
@@ -15,8 +15,8 @@ use embassy_stm32::pac::flash::regs::Ccr;
 pub const START: usize = 0x081C_0000;
 const FIRST_SECTOR: u8 = 6;
 
-/// Looks at a flash at work, at most: each takes 16 cycles or more of a core at 400 MHz, for its barrier and two reads over a bus at half of
-/// that, so eight seconds together at the least. An erase takes up to four.
+/// Looks at a flash at work, at most: each takes 16 cycles or more of a core at 400 MHz, for its barrier and two reads
+/// over a bus at half of that, so eight seconds together at the least. An erase takes up to four.
 pub const POLLS: u32 = 200_000_000;
 
 /// The flags of the status register that say what went wrong, and the same bits of the register that clears them.
@@ -70,7 +70,8 @@ pub fn has_failed() -> bool {
     bank().sr().read().0 & FAILURES != 0
 }
 
-/// Closes the control register, which keeps what it holds when it closes: emptied first, with it whatever a word lacked.
+/// Closes the control register, which keeps what it holds when it closes: emptied first, with it whatever a word
+/// lacked.
 pub fn close() {
     bank().cr().write(|_| ());
     bank().cr().modify(|w| w.set_lock(true));
