@@ -192,8 +192,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.complaint.law = refused;
             refused.inspect(|error| self.shared.announce(Event::Input(*error)));
         }
-        if let (true, Some(Ok(flown))) = (outcome.is_thrust_doubtful, &outcome.flown) {
-            self.shared.announce(Event::Thrust(flown.thrust_scale));
+        if let Some(share) = outcome.doubtful_thrust {
+            self.shared.announce(Event::Thrust(share));
         }
     }
 

@@ -357,6 +357,14 @@ impl<'m> Chain<'m> {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
+    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns nothing.
+    ///
+    /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
+    /// takes up a steady lack of thrust.
+    pub fn delivered_share(&self) -> f32 {
+        self.law.thrust_scale() * self.gravity / (self.gravity - self.vertical_force())
+    }
+
     /// The acceleration beside the one that was asked for and the one that the law knows of, m/s^2, world.
     pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
         let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);

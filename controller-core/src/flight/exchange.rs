@@ -124,6 +124,6 @@ pub struct Outcome {
     pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,
-    /// Whether [`Flown::thrust_scale`] has been doubtful for a while, and it is time to say so.
-    pub is_thrust_doubtful: bool,
+    /// The rotors' thrust over the commanded thrust, in the ticks in which a lasting doubt about it is to be reported.
+    pub doubtful_thrust: Option<f32>,
 }

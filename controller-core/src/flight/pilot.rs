@@ -143,7 +143,10 @@ impl<'m> Pilot<'m> {
             _ => None,
         });
         let (output, flown) = self.output(estimate, inputs.now);
-        let scale = flown.as_ref().and_then(|flown| flown.as_ref().ok()).map(|flown| flown.thrust_scale);
+        let share = match (&self.chain, &flown) {
+            (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
+            _ => None,
+        };
         Outcome {
             output,
             mode: self.mode,
@@ -158,7 +161,7 @@ impl<'m> Pilot<'m> {
             health: estimate.health,
             pose: estimate.pose,
             flown,
-            is_thrust_doubtful: self.thrust_check.is_doubtful(scale, inputs.now),
+            doubtful_thrust: self.thrust_check.tick(share, inputs.now),
         }
     }
 

@@ -1,39 +1,38 @@
-//! What the rotors give of what they are asked for, as a check of battery, mass and thrust curve.
+//! The rotors' thrust over the commanded thrust, as a check of battery, mass and thrust curve.
 //!
-//! The law estimates it as its thrust scale, and flies with what it finds; the certificate bears what its file says,
-//! 0.8 to 1.3 on the vehicles here. With a battery that is compensated and a mass that is right it stays near 1.
-//! Farther off than [`DOUBTFUL`], for [`LASTING`], something is not what the file says, and somebody should look before
-//! the limit is reached.
+//! The law learns a steady lack of thrust as a vertical force and the rest as its thrust scale;
+//! `Chain::delivered_share` puts the two together. With a compensated battery, the right mass and the right curve the
+//! share stays near 1; vertical wind moves it by its acceleration over gravity. A share further off than [`DOUBTFUL`]
+//! for [`LASTING`] is reported, so that somebody looks before the estimates reach their limits.
 
-/// The distance from 1 beyond which the scale is told.
+/// The distance of the share from 1 beyond which it is doubtful.
 pub const DOUBTFUL: f32 = 0.15;
 
-/// For how long, us: the estimate takes 2 s after lift-off to settle.
+/// The time for which the share is doubtful before it is reported, us: the estimates take 2 s after lift-off to settle.
 pub const LASTING: u64 = 3_000_000;
 
-/// How often it is told, us.
+/// The time between two reports, us.
 pub const AGAIN: u64 = 10_000_000;
 
-/// Since when the scale has been doubtful.
+/// The time of the next report.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct ThrustCheck {
-    /// When it is to be told, us; none while all is well.
+    /// When to report, us; `None` while all is well.
     due: Option<u64>,
 }
 
 impl ThrustCheck {
-    /// Whether this tick's scale is to be told; none where nothing is flown.
-    pub fn is_doubtful(&mut self, scale: Option<f32>, now: u64) -> bool {
-        // Written so that a number that is none is doubtful.
-        let well = scale.is_none_or(|scale| (scale - 1.0).abs() <= DOUBTFUL);
+    /// The share, in a tick in which it is to be reported. Without a flight there is no share.
+    pub fn tick(&mut self, share: Option<f32>, now: u64) -> Option<f32> {
+        let doubtful = share.filter(|share| share.is_nan() || (share - 1.0).abs() > DOUBTFUL);
         let due = *self.due.get_or_insert(now.saturating_add(LASTING));
-        if well {
+        if doubtful.is_none() {
             self.due = None;
         } else if now >= due {
             self.due = Some(now.saturating_add(AGAIN));
-            return true;
+            return doubtful;
         }
-        false
+        None
     }
 }
 

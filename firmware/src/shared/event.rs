@@ -62,7 +62,7 @@ pub enum Event {
     Estimator(Fault),
     /// The law cannot use its input.
     Input(InputError),
-    /// The rotors give this part of what the model says, for a while now.
+    /// For a while now the rotors have delivered this share of the commanded thrust.
     Thrust(f32),
     /// The motors' frames do not go out.
     MotorsLost,
@@ -105,7 +105,7 @@ impl fmt::Display for Event {
             Self::Pose(Err(rejected)) => rejected.fmt(f),
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
-            Self::Thrust(scale) => write!(f, "Thrust x{scale:.2}: check battery, mass, THR_CURVE"),
+            Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
             Self::BatteryMissing => f.write_str("Battery: no reading for 1 s, nothing watches it"),
