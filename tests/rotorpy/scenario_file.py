@@ -48,10 +48,13 @@ def same(found, wanted):
 
 
 def changed(text, changes):
-    """The text of a scenario with other values, ((section, key, number), ...), for keys that are there on lines of their own."""
+    """The text of a scenario with other values, ((section, key, number), ...). A key stands on a line of its own or not at all:
+    what follows from a vehicle's numbers can be given as well. `host-sim` refuses a key that it does not know."""
     for section, key, value in changes:
         place = re.compile(rf"(^\[{section}\][^\n]*\n(?:(?!\[)[^\n]*\n)*?{key} = )[^\s#]+", re.MULTILINE)
         text, found = place.subn(rf"\g<1>{value!r}", text)
-        if found != 1:
-            raise ValueError(f"{section}.{key}: to be changed to {value}, but found {found} times")
+        if found == 0 and f"[{section}]" in text:
+            text = text.replace(f"[{section}]\n", f"[{section}]\n{key} = {value!r}\n", 1)
+        elif found == 0:
+            text += f"\n[{section}]\n{key} = {value!r}\n"
     return text
