@@ -94,8 +94,7 @@ pub enum Command {
         #[arg(long)]
         show: bool,
     },
-    /// Refine a vehicle's constants by trial flights: everything certifies; then the least of what a pilot feels. About
-    /// a minute.
+    /// Refine a vehicle's constants by trial flights: certified first, then pleasant to fly. About a minute.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
