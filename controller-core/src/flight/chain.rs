@@ -357,7 +357,8 @@ impl<'m> Chain<'m> {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
-    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns nothing.
+    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns
+    /// nothing.
     ///
     /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
     /// takes up a steady lack of thrust.
