@@ -49,7 +49,8 @@ enum Objective {
 /// What was found, shares of bounds; one is the bound.
 #[derive(Debug, Clone, Default)]
 struct Shown {
-    /// |omega_d12|, |omega_d'12|, the thrust, the torques; the rotors' greatest and least thrust, 1 at the end of the range, 0 in its middle.
+    /// |omega_d12|, |omega_d'12|, the thrust, the torques; the rotors' greatest and least thrust, 1 at the end of the
+    /// range, 0 in its middle.
     motion: [f64; 3],
     torque: [f64; 3],
     rotors: [f64; 2],

@@ -1,8 +1,8 @@
-//! What the estimates learn of an interval: how the vehicle moved, against the wrench that acted. Sections 2, 7 and 9
+//! How the estimates learn from an interval: the vehicle's motion against the wrench that acted. Sections 2, 7 and 9
 //! of `docs/extended-law.md`.
 //!
-//! The acceleration beside gravity's and the known drag's goes to the thrust scale; what thrust with that scale does
-//! not explain, to the force; and what the torque with that scale does not explain of the rotation, to the torque bias.
+//! The acceleration without gravity and known drag goes to the thrust scale. Its rest beside the scaled thrust goes to
+//! the force. The rotation's rest beside the scaled torque goes to the torque bias.
 
 use super::force::ForceObserver;
 use super::memory::{Averages, Estimates, Memory};
@@ -34,7 +34,7 @@ impl Learning {
         }
     }
 
-    /// The averages in `memory` with what happened since its last tick, if there is something to be learnt from that;
+    /// The averages in `memory` brought up to this tick, if the last interval can teach anything;
     /// `axis` is R e3 now.
     #[must_use]
     pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
@@ -51,7 +51,7 @@ impl Learning {
         Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque) }
     }
 
-    /// The averages as far as they are believed.
+    /// The averages cut to their levels.
     #[must_use]
     pub fn believed(&self, averages: &Averages) -> Estimates {
         let Averages { force, torque, scale } = averages;
