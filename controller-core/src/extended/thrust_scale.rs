@@ -5,10 +5,8 @@
 //! variations alone. With y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
 //! ```text
-//! ```text
 //! y - ybar = s (f - fbar) for any constant force
 //! s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi]
-//! ```
 //! ```
 //!
 //! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are
