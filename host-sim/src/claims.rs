@@ -205,7 +205,11 @@ pub fn all_hold(claims: &[Claim]) -> bool {
 pub fn verdict_line(claims: &[Claim]) -> String {
     let failing: Vec<&str> =
         claims.iter().filter(|claim| claim.holds == Some(false)).map(|claim| claim.claim.as_str()).collect();
-    if failing.is_empty() { "every claim holds".to_owned() } else { format!("NOT every claim holds ({})", failing.join("; ")) }
+    if failing.is_empty() {
+        "every claim holds".to_owned()
+    } else {
+        format!("NOT every claim holds ({})", failing.join("; "))
+    }
 }
 
 /// The claims as an aligned table for a terminal.
