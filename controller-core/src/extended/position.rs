@@ -24,7 +24,7 @@
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
-use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::error::ParameterError;
 use crate::math;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
