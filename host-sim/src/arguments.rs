@@ -207,7 +207,7 @@ One line of 33 numbers in, one line of 4 numbers out, flushed, until end of inpu
   in:   t dt | x(3) v(3) | q(4) as x y z w, body to world | omega(3) body |
         reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
   out:  thrust [N], torque x y z [N m]; not clipped to any limit
-The output uses the filters as they stand, which then advance by the line's dt (0 < dt <= 0.1 s, and under
+The output uses the filters as they stand, which then advance by the line's dt (0.00025 to 0.1 s, and under
 the extended law at most 0.6 over the greater estimates.force_bandwidth). A line that cannot be used, or is longer than 64 KB, is
 answered by \"error: ...\" on its turn and changes nothing.";
 

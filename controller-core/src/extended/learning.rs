@@ -13,6 +13,11 @@ use crate::state::State;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
+/// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate in it,
+/// rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
+const GREATEST_ACCELERATION: f32 = 1e3;
+const GREATEST_CHANGE: f32 = 1e3;
+
 /// The constants of the three estimates, for intervals of one length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Learning {
@@ -43,6 +48,11 @@ impl Learning {
             return *averages;
         };
         let made = self.force.observed([&last.velocity, &state.velocity]);
+        let turned = (state.angular_velocity - last.angular_velocity).norm_squared();
+        let moves = made.norm_squared() < GREATEST_ACCELERATION * GREATEST_ACCELERATION;
+        if !(moves & (turned < GREATEST_CHANGE * GREATEST_CHANGE)) {
+            return *averages;
+        }
         let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
         let scale = self.scale.learnt(&averages.scale, &made, &commanded);
         let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));

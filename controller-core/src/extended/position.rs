@@ -24,7 +24,7 @@
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
-use crate::error::{ParameterError, Reason, require, require_positive};
+use crate::error::ParameterError;
 use crate::math;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
@@ -118,12 +118,10 @@ impl PositionLaw {
     /// Under `gravity`, m/s^2, for steps of `period`, s.
     ///
     /// # Errors
-    /// Names `control.period` if it is outside (0, 0.1].
+    /// As [`FilterTransition::check_period`].
     pub fn new(parameters: &ExtendedParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let p = parameters;
-        require_positive(period, "control.period")?;
-        let longest = FilterTransition::LONGEST_PERIOD;
-        require(period <= longest, "control.period", Reason::Above(longest))?;
+        FilterTransition::check_period(period)?;
         let lags = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / bandwidth);
         let [of_command, of_intermediate, of_smoothed] = lags;
         let gone = |bandwidth: f32| -math::exp_m1(-f64::from(bandwidth) * f64::from(period));
