@@ -13,6 +13,7 @@ pub mod scenes;
 pub mod shown;
 
 use crate::campaign::step;
+use crate::directory_lock::DirectoryLock;
 use crate::flier::{Flier, LawChoice};
 use crate::interrupt::Interrupt;
 use crate::plots::canvas::PlotError;
@@ -185,7 +186,7 @@ pub fn write(comparison: &Comparison, directory: &Path) -> Result<(), CompareErr
         let path = path.to_owned();
         |error| CompareError::Output(path, error)
     };
-    std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
     for (name, text) in &comparison.files {
         let path = directory.join(name);
         WholeFile::write(&path, text).map_err(failed(&path))?;

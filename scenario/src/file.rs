@@ -86,7 +86,7 @@ impl Scenario {
     /// [`ScenarioError`]: unreadable, no TOML, or a field that was refused.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match crate::text::read(path) {
             Ok(text) => Self::parse(&text, &file),
             Err(error) => Err(ScenarioError { file, what: format!("cannot be read: {error}") }),
         }

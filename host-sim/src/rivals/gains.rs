@@ -25,7 +25,6 @@ use super::pilot::model;
 use crate::flier::{LawChoice, OURS};
 use scenario::Scenario;
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -118,7 +117,8 @@ impl Set {
     pub fn read(scenario: &Scenario, file: Option<&Path>) -> Result<Self, GainsError> {
         let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME) };
         let name = file.display().to_string();
-        let text = fs::read_to_string(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
+        let text =
+            scenario::text::read(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
         Self::of(scenario, &text, &name)
     }
 
