@@ -61,30 +61,17 @@ impl FilterTransition {
     /// The longest period, s: the slowest tick the link's simulators may ask for.
     pub const LONGEST_PERIOD: f32 = 0.1;
 
-    /// The shortest, s: for shorter ones the certificate's allowance does not cover what the filters' rounding adds up to.
-    pub const SHORTEST_PERIOD: f32 = 2.5e-4;
-
-    /// Whether a period, s, is between these two.
-    ///
-    /// # Errors
-    /// Names `control.period` if it is not.
-    pub fn check_period(period: f32) -> Result<(), ParameterError> {
-        let (shortest, longest) = (Self::SHORTEST_PERIOD, Self::LONGEST_PERIOD);
-        require_positive(period, "control.period")?;
-        require(period >= shortest, "control.period", Reason::Below(shortest))?;
-        require(period <= longest, "control.period", Reason::Above(longest))
-    }
-
     /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].
     const GREATEST_WEIGHT: f64 = 1.0 - 8.0 / 16_777_216.0;
 
-    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period between [`Self::SHORTEST_PERIOD`] and
-    /// [`Self::LONGEST_PERIOD`], s.
+    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::LONGEST_PERIOD`]] s.
     ///
     /// # Errors
-    /// As [`Self::check_period`].
+    /// Names `control.period` if it is outside.
     pub fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
-        Self::check_period(period)?;
+        require_positive(period, "control.period")?;
+        let longest = Self::LONGEST_PERIOD;
+        require(period <= longest, "control.period", Reason::Above(longest))?;
         let (k_f, k_s, h) = (f64::from(k_f), f64::from(k_s), f64::from(period));
         let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.

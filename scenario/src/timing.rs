@@ -22,7 +22,7 @@ const GREATEST_DURATION: f64 = 1e7;
 const DEFAULT_DURATION: f64 = 20.0;
 /// The filters advance by at most a tenth of a second at a time.
 const LEAST_RATE: f64 = 10.0;
-/// Periods are whole microseconds, so there is no faster rate.
+/// Beyond it the certificate's allowance does not cover what the rounding of the filters adds up to.
 const GREATEST_RATE: f64 = 4000.0;
 /// Rate where `[control]` is left out, Hz.
 const DEFAULT_RATE: f64 = 100.0;

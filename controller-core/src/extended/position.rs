@@ -24,7 +24,7 @@
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
-use crate::error::ParameterError;
+use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::math;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
@@ -118,10 +118,12 @@ impl PositionLaw {
     /// Under `gravity`, m/s^2, for steps of `period`, s.
     ///
     /// # Errors
-    /// As [`FilterTransition::check_period`].
+    /// Names `control.period` if it is outside (0, 0.1].
     pub fn new(parameters: &ExtendedParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let p = parameters;
-        FilterTransition::check_period(period)?;
+        require_positive(period, "control.period")?;
+        let longest = FilterTransition::LONGEST_PERIOD;
+        require(period <= longest, "control.period", Reason::Above(longest))?;
         let lags = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / bandwidth);
         let [of_command, of_intermediate, of_smoothed] = lags;
         let gone = |bandwidth: f32| -math::exp_m1(-f64::from(bandwidth) * f64::from(period));
