@@ -1,5 +1,5 @@
 //! Touchdowns on sensors as they are. Legs that are stiff stop a vehicle within a millisecond, at 0.5 m/s with 50 g, of
-//! which an accelerometer shows 24: the estimate is told of the rest by poses, 20 ms late. Here landings begin at two
+//! which an accelerometer shows 24: the estimate learns the rest from poses, 20 ms late. Here landings begin at two
 //! dozen moments, each with its own draw of noise and biases, because what is left out depends on where between two
 //! samples and two poses the ground comes.
 //!
@@ -11,7 +11,7 @@ use controller_core::flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
 use host_sim::piloted::{Nobody, PilotedVehicle, Place};
 use scenario::reality::estimator::Estimator;
 
-/// When it is told what, and until when it is watched, ticks.
+/// When it gets which command, and until when it is watched, ticks.
 const ARM: u64 = 200;
 const TAKE_OFF: u64 = 220;
 const LAND: u64 = 900;

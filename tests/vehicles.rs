@@ -1,5 +1,5 @@
 //! The vehicles of `vehicles/` under the paper's law, with their rotors turning: certified to the last rotor, and flown
-//! without one that saturates. What the boards allocate with clips nothing of what their certificates allow.
+//! without one that saturates. The boards' allocation clips no wrench that their certificates allow.
 //! `cargo test -p host-sim vehicles -- --nocapture` prints what each flight showed.
 
 use crate::support::extended::vehicle;
@@ -208,7 +208,7 @@ fn most_gyroscopic(inertia: &Vector3<f64>, row: &Vector3<f64>) -> Vector3<f64> {
     eigen.eigenvectors.column(eigen.eigenvalues.imax()).into()
 }
 
-/// A wrench of `used` times what the certificate allows, where a rotor's thrust is nearly at an end of what it may be.
+/// A wrench of `used` times what the certificate allows, where a rotor's thrust is nearly at an end of its range.
 fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut ChaCha8Rng) -> Wrench {
     let form = &certificate.paper().unwrap().sharp;
     let inertia = scenario.configuration.vehicle().inertia.cast::<f64>();
@@ -231,7 +231,7 @@ fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut 
     Wrench { thrust: thrust as f32, torque: torque.cast() }
 }
 
-/// The mixer gives nothing up of what is certified.
+/// The mixer gives up no part of a certified wrench.
 #[test]
 fn every_allowed_wrench_is_within_the_rotors_and_what_flies_agrees_with_the_mixer_to_the_bit() {
     let mut rng = random::generator(52);

@@ -144,8 +144,8 @@ impl Estimator {
     }
 
     /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an increment with numbers
-    /// that cannot be, everything begins anew, with the biases as they were: nothing carries a state over what nobody
-    /// measured.
+    /// that cannot be, everything begins anew, with the biases as they were: no state carries over a time
+    /// without measurements.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
         if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {
@@ -187,7 +187,7 @@ impl Estimator {
 
     /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included.
     /// None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it, and with a rate that
-    /// nobody can have measured.
+    /// is not finite or beyond every sensor.
     #[must_use]
     pub fn state(&self, now: u64, rate: &Vector3<f32>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);

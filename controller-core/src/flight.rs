@@ -17,9 +17,9 @@
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
 //!   are brought up, and how a vehicle without a pose goes down.
 //!
-//! An armed vehicle idles until it is told to take off or to fly setpoints; then its rotors are brought up to the law's
+//! An armed vehicle idles until a command to take off or to fly setpoints; then its rotors are brought up to the law's
 //! thrusts within a second. A landing ends with the ground found and the motors stopped. A vehicle set down by its
-//! setpoint keeps turning its rotors until it is told to land.
+//! setpoint keeps turning its rotors until a command to land.
 //!
 //! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator
 //! refuses it, says why, and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for

@@ -74,8 +74,8 @@ impl Law {
         }
     }
 
-    /// What the rotors deliver of what is commanded, as far as the law knows: they are to be asked for a wrench divided
-    /// by it.
+    /// The delivered thrust over the commanded thrust, by the law's estimate: divide a wrench by it before the rotors
+    /// are asked for it.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {

@@ -71,14 +71,14 @@ pub fn lesser(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
-/// The greater of two numbers; none if one of them is none. For proofs, where what is no number must not pass for the
-/// lesser one.
+/// The greater of two numbers; NaN if either is NaN. For proofs, where a NaN must not pass for the lesser
+/// one.
 #[must_use]
 pub fn greater_f64(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// The lesser of two numbers; none if one of them is none.
+/// The lesser of two numbers; NaN if either is NaN.
 #[must_use]
 pub fn lesser_f64(a: f64, b: f64) -> f64 {
     if a <= b || a.is_nan() { a } else { b }
@@ -99,7 +99,7 @@ pub fn single(x: i64) -> f32 {
     high as f32 * 4_294_967_296.0 + low as f32
 }
 
-/// The whole part of a number, exactly; beyond 2^61 it saturates, and of what is no number it is zero. In two halves,
+/// The whole part of a number, exactly; beyond 2^61 it saturates, and a NaN gives zero. In two halves,
 /// as [`single`].
 #[must_use]
 pub fn whole(x: f32) -> i64 {

@@ -33,7 +33,7 @@ fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
     }
 }
 
-/// What the motors are told, tick by tick, when a controller's setting is changed; the stop command where it is left
+/// The motors' commands, tick by tick, when a controller's setting is changed; the stop command where it is left
 /// out.
 fn words(setting: Setting) -> Vec<(usize, Word)> {
     let mut flight = Flight::settled();

@@ -127,8 +127,8 @@ fn poses_of_another_time_are_none() {
     lie(old, 0, &[Rejected::TooOld, Rejected::Repeated]);
 }
 
-/// How long it takes to hold once the truth is told again, after three seconds of which in the first `lied` ticks the
-/// poses are what `told` says, and none come afterwards; none where it does not hold within ten seconds.
+/// How long it takes to hold once true poses come again, after three seconds: in the first `lied` ticks of them the
+/// poses are those of `told`, afterwards there are none. `None` if it does not hold within ten seconds.
 fn held_again(told: Told, lied: u64) -> Option<u64> {
     let mut flight = hovering();
     flight.told = told;

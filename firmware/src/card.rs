@@ -1,4 +1,4 @@
-//! Every flight as a file on a memory card: each tick, and everything that people are told.
+//! Every flight as a file on a memory card: each tick, and every text that goes out.
 //!
 //! ```text
 //! control -> recorder's ring --+-> sectors of whole ULog messages -> LOG00012.ULG
@@ -19,8 +19,8 @@
 //!   behind by as much as the ring holds. What is overwritten before it was read is counted, noted in the file and
 //!   told.
 //! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority
-//!   of all. A card that is missing, full, removed, worn out or formatted for something else is told in words, tried
-//!   again every [`RETRY`], and keeps nobody from arming.
+//!   of all. A card that is missing, full, removed, worn out or formatted for something else is reported in words,
+//!   tried again every [`RETRY`], and does not prevent arming.
 //! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
 //!   that was there before: [`log`] and [`volume`] say why.
 
@@ -136,8 +136,8 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
     }
 
-    /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, somebody may read other
-    /// files; while nobody does, this one is made longer.
+    /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, other files may be
+    /// read; while none is, this one is made longer.
     async fn fill<C: Card>(
         &mut self,
         volume: &Volume<'_, C>,

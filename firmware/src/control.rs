@@ -97,7 +97,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// One tick, from what the other tasks have put down to what the motors are told.
+    /// One tick, from what the other tasks have put down to the motors' command.
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
         let increments: Vec<Increment, INCREMENTS> = waiting(&self.shared.increments);
@@ -124,8 +124,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         command
     }
 
-    /// Counts an increment that does not begin where the one before it ended: nobody knows what the vehicle did in
-    /// between.
+    /// Counts an increment that does not begin where the one before it ended: the motion in
+    /// between is unknown.
     fn integrate(&mut self, increment: &Increment) {
         let follows = self.integrated.is_none_or(|end| end == increment.start);
         self.timing.gaps = self.timing.gaps.saturating_add(u32::from(!follows));
@@ -155,8 +155,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// What the battery has left, by its voltage. Without a recent reading nobody knows, which matters where somebody
-    /// has set a voltage to act on.
+    /// What the battery has left, by its voltage. Without a recent reading it is unknown, which matters where a voltage
+    /// to act on is set.
     fn battery(&self, now: u64) -> Battery {
         let parameters = &self.shared.parameters;
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
@@ -197,7 +197,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// That nothing watches the battery of an armed vehicle any more: landing for want of a reading would help nobody.
+    /// That nothing watches the battery of an armed vehicle any more: landing for want of a reading would not help.
     fn tell_of_the_battery(&mut self, is_missing: bool) {
         if is_missing && !self.complaint.battery {
             self.shared.announce(Event::BatteryMissing);

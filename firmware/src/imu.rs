@@ -26,7 +26,7 @@ use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it,
-/// and is dropped half-way by less. How old a sample may be is none of this task's business.
+/// and is dropped half-way by less. How old a sample may be, others decide.
 pub const PATIENCE: u64 = 200_000;
 
 /// How long to leave a faulty sensor alone, us.

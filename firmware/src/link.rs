@@ -21,7 +21,7 @@
 //! [`acknowledgement`]. Nothing is signed: whoever is on the line commands. What a message's fields are is the
 //! `mavlink` crate's to say: only the types that matter here are decoded, each by itself, because matching on all
 //! messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect does not know (a
-//! frame, a command, a type) is none.
+//! frame, a command, a type) is not decoded.
 
 pub mod acknowledgement;
 pub mod command;

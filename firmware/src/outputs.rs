@@ -1,4 +1,4 @@
-//! From what a tick decided to what the motors are told.
+//! From a tick's decision to the motors' command.
 //!
 //! A rotor's thrust follows the square of its speed. A speed controller that holds its command's speed makes it a
 //! square of the command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and
@@ -30,7 +30,7 @@ impl Outputs {
         }
     }
 
-    /// What the motors are told for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they
+    /// The motors' command for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they
     /// idle at.
     #[must_use]
     pub fn command(&self, output: &Output, ratio: f32, idle: f32) -> MotorCommand {

@@ -15,8 +15,8 @@
 //!   anybody's setpoints; what comes from the link is then refused. On the ground they begin a flight when the stick is
 //!   pushed up.
 //! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`]
-//!   no longer is. If its sticks flew, the vehicle holds, and nobody takes over unasked: setpoints of the link go on
-//!   being refused until somebody on it asks to fly them, or the radio is heard again and its switch says so.
+//!   no longer is. If its sticks flew, the vehicle holds, and nothing takes over by itself: setpoints of the link go on
+//!   being refused until a client on it asks to fly them, or the radio is heard again and its switch says so.
 
 pub mod sticks;
 
@@ -110,7 +110,7 @@ pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
     shared: &'a Shared<M>,
     last: Option<(Frame, u64)>,
-    /// Whether a hold is still to be asked for: nobody asks again who is silent.
+    /// Whether a hold is still to be asked for: a silent transmitter does not ask again.
     hold_due: bool,
 }
 

@@ -1,7 +1,7 @@
 //! The restart that a command asked for, into the firmware or into a bootloader.
 //!
-//! The link refuses one while a motor turns or parameters are written; from its yes on nobody arms. The restart waits
-//! for the answer to go out, and for what was set just before to be saved.
+//! The link refuses one while a motor turns or parameters are written; from its yes on arming is refused. The restart
+//! waits for the answer to go out, and for what was set just before to be saved.
 
 use crate::hardware::{Clock, Restart};
 use crate::shared::{Event, Severity, Shared};
@@ -25,8 +25,8 @@ pub async fn run<M: RawMutex, R: Restart>(shared: &Shared<M>, clock: &impl Clock
             continue;
         }
         clock.until(clock.now().saturating_add(GRACE)).await;
-        // Neither can be, since nobody arms meanwhile and saving does not give way; but what would follow is too bad to
-        // rely on it.
+        // Neither can be, since arming is refused meanwhile and saving does not give way; but what would follow is too
+        // bad to rely on it.
         if shared.is_turning() || shared.saving.is_raised() {
             shared.restarting.lower();
             shared.announce(Event::new(Severity::Warning, "Restart: not now"));

@@ -8,10 +8,10 @@
 //! ```
 //!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
-//! [`LoopMargin::LEAST`]; that it reached its reference, position and attitude, within the first 90 % of its duration and
-//! stayed near it ([`crate::flown`] says how near); and that once there it never strayed further than the file's
-//! `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the errors of
-//! its last quarter are reported without a verdict.
+//! [`LoopMargin::LEAST`]; that it reached its reference, position and attitude, within the first 90 % of its duration
+//! and stayed near it ([`crate::flown`] says how near); and that once there it never strayed further than the file's
+//! `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the errors
+//! of its last quarter are reported without a verdict.
 
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};

@@ -1,7 +1,7 @@
 //! One writer for a directory: who writes flights, campaigns or comparisons into it keeps everybody else out.
 //!
 //! The lock is the operating system's on the directory itself. It ends with the process, however that ends, and leaves
-//! no file behind. Where a file system has no locks, as some across a network, there is none.
+//! no file behind. Some file systems across a network have no locks; there it does nothing.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;

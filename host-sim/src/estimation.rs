@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Before a flight begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates,
-//! by a hand that nobody sees: the estimator begins to work in motion, too.
+//! by an invisible hand: the estimator begins to work in motion, too.
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;
@@ -96,7 +96,7 @@ impl Estimation {
         }
     }
 
-    /// What the law is told at this moment, and whether the estimate has jumped since it was told last.
+    /// The estimate at this moment, and whether it has jumped since the last one.
     ///
     /// # Errors
     /// [`NoEstimate`].

@@ -153,7 +153,7 @@ impl Flight {
         }
     }
 
-    /// A flight of what is certified, with the law and the allocation that boards fly, in the circumstances of
+    /// A flight of a certified configuration, with the law and the allocation that boards fly, in the circumstances of
     /// `scenario`: its timing, delay, lag, start and reference.
     ///
     /// # Errors
@@ -251,7 +251,7 @@ impl Flight {
         Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
     }
 
-    /// What the law is told where that is not the state.
+    /// The measured state, where that is not the true one.
     #[inline(always)]
     fn told(&mut self) -> Result<Option<State>, FlightError> {
         let state = *self.vehicle.state();
@@ -300,7 +300,7 @@ impl Flight {
         FlightError { time_us: self.time_us(), cause }
     }
 
-    /// What the law is told, where it is told anything else than the state.
+    /// The measured state, where that is not the true one.
     #[inline]
     fn measure(&mut self, state: &BodyState) -> Result<Option<State>, NoEstimate> {
         let Some(estimation) = &mut self.estimation else {
@@ -352,7 +352,7 @@ impl Flight {
         self.vehicle.state()
     }
 
-    /// The beginning of a tick: what the law is told.
+    /// The beginning of a tick: the measured state.
     #[inline]
     pub(crate) fn measured(&mut self) -> Result<State, FlightError> {
         let told = self.told()?;

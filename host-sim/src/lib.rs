@@ -1,4 +1,4 @@
-//! The desktop side: a vehicle to fly, and reports of what was flown. Scenario files and the verdict on them are a
+//! The desktop side: a vehicle to fly, and reports of its flights. Scenario files and the verdict on them are a
 //! crate of their own, [`scenario`], which the firmware's build uses too.
 //!
 //! | module | what it holds |
@@ -7,7 +7,7 @@
 //! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
 //! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
 //! | [`vehicle`] | the one or the other, as the scenario says |
-//! | [`sensors`] | what the controller is told of the state |
+//! | [`sensors`] | the measured state |
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`controller`], [`rivals`], [`flier`] | what flies: our law, or other laws to compare it with; the one that is chosen |

@@ -1,7 +1,7 @@
 //! What the firmware can fly of all scenarios: 100 Hz, four rotors, and sampled loops with margin.
 //!
-//! On a board the law is told body rates by the estimator, which are late ([`rates_delay`]); they are in the loops
-//! judged here, whether the scenario has `[estimator]` or not.
+//! On a board the law gets its body rates from the estimator, and they are late ([`rates_delay`]); they are in the
+//! loops judged here, whether the scenario has `[estimator]` or not.
 //!
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
 //! of factors is judged here.

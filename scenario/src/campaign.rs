@@ -26,7 +26,7 @@
 //! rotor_scales = 0.0                   # part of each rotor's thrust, more or less
 //! ```
 //!
-//! Each number is the greatest of what is drawn: evenly from zero up, or within a ball of that radius, or as much on
+//! Each number is the greatest value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
 //! either side. Every key may be left out; these are the defaults. Those of `duration` and `wind` ([`default_wind`])
 //! depend on the law.
 
@@ -87,7 +87,7 @@ pub enum Asked {
     InTurn,
 }
 
-/// Greatest standard deviations of what is measured, and how late it may come.
+/// Greatest standard deviations of the measurements, and how late it may come.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseRanges {
     /// rad/s.
@@ -100,7 +100,7 @@ pub struct NoiseRanges {
     pub delay: f64,
 }
 
-/// Greatest errors of the model; parts of what it has.
+/// Greatest errors of the model, as shares of its values but for the centre of mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ModelRanges {
     /// Part of the mass.

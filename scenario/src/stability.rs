@@ -1,6 +1,6 @@
 //! What is asked of the sampled loops: stable, and not nearly unstable.
 //!
-//! A linear model without margin is a model of a vehicle that nobody has. [`LoopMargin::LEAST`] is what a configuration
+//! A linear model without margin models a vehicle that does not exist. [`LoopMargin::LEAST`] is what a configuration
 //! must have to fly; `host-sim tune` asks for more.
 
 use crate::sampled_loop::{Axis, LoopReport};

@@ -73,7 +73,7 @@ impl Timing {
     }
 }
 
-/// Whether a law that is stepped by somebody's own clock may be stepped by `period`, s; what is wrong with it otherwise.
+/// Whether a law in a caller's own loop may be stepped by `period`, s.
 ///
 /// # Errors
 /// In words, with the range that a file's rate has as well.

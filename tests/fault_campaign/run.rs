@@ -227,7 +227,7 @@ impl Flight<'_> {
     /// What has failed, and for how long, s.
     fn failed(&self) -> Vec<(Failure, f64)> {
         let now = self.sight.now;
-        // What a hit on the ground has given to the velocity, beyond the accelerometer's range, is told from a drift
+        // What a hit on the ground has given to the velocity, beyond the accelerometer's range, differs from a drift
         // only in time.
         let counts_from = |failure| if failure == Failure::PoseDrifts { self.hit } else { 0 };
         let lasts = |failure| Some(self.failures.since(failure, now)?.min((now - counts_from(failure)) as f64 * 1e-6));
@@ -256,7 +256,7 @@ impl Flight<'_> {
         let gentle = failed.iter().all(|(failure, _)| expected::answer(*failure, phase).is_gentle);
         let is_hit = !gentle && self.flown.touchdown.is_some();
         let is_down = self.is_on_ground() && does == Severity::Off && most >= Severity::Land;
-        // Once off, always off: nobody arms.
+        // Once off, always off: arming is not asked for.
         let rearmed = self.down.is_some() && does != Severity::Off;
         if does < least || (does > most && !is_down && !is_hit) || rearmed {
             let Sight { mode, height, .. } = self.sight;

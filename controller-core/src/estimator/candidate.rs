@@ -17,7 +17,7 @@
 //! at position    0.1 + 0.1 T + 0.15 T^2 m
 //! ```
 //!
-//! Otherwise the poses lie, or their frame has moved and nobody said so. Nothing here decides which:
+//! Otherwise the poses lie, or their frame has moved without a report. Nothing here decides which:
 //! [`super::Estimator::adopt`] is for those who know.
 
 use super::filter::{Biases, Filter};

@@ -16,8 +16,8 @@ use nalgebra::Matrix3;
 /// ms late, and their jitter.
 pub const COASTING_AFTER: u64 = 300_000;
 
-/// Deviations beyond which nobody should fly on an estimate: m, m/s, rad (each the root of a trace). As with poses, not
-/// for longer than [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
+/// Deviations beyond which an estimate is not good enough to fly on: m, m/s, rad (each the root of a trace). As with
+/// poses, not for longer than [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
 const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
 /// The mean NIS beyond which poses are noisier than they say: by a factor of 1.7, or not white.

@@ -1,7 +1,7 @@
 //! What the last increments say of the present: the force that acts, and a velocity that does not shake.
 //!
 //! Rotors that are out of balance shake the IMU at 70 to 130 Hz, some millimetres to and fro a second for each m/s^2.
-//! That is a true motion, but a law that looks at it 100 times a second takes it for a slow one. So it is told the mean
+//! That is a true motion, but a law that looks at it 100 times a second takes it for a slow one. So it gets the mean
 //! of three velocities, v_0 at the end of the last increment, v_1 and v_2 one and two increments before; and because
 //! that is 5 ms late, and the last increment A = 2 to 8 ms old, what a force adds to it meanwhile, which is averaged
 //! over so long that it does not shake:

@@ -13,8 +13,8 @@ use crate::state::State;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate in it,
-/// rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
+/// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate
+/// in it, rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
 const GREATEST_ACCELERATION: f32 = 1e3;
 const GREATEST_CHANGE: f32 = 1e3;
 

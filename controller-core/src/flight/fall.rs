@@ -14,8 +14,8 @@ pub(super) struct Fall {
 }
 
 impl Fall {
-    /// Whether it may fall, once a tick; `is_stopped` in the one that stops it in the air. Without a state nobody
-    /// knows.
+    /// Whether it may fall, once a tick; `is_stopped` in the one that stops it in the air. Without
+    /// a state the last answer stands.
     pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) -> bool {
         let lies = self.still.is_so(state.is_some_and(is_still), GROUND_LASTING, now);
         // What has hovered until now was still as well.

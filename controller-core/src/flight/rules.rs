@@ -28,7 +28,7 @@ use crate::estimator::EXTRAPOLATION_MAX;
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
 pub const COASTING_MAX: u64 = 1_000_000;
 
-/// The greatest age of what the IMU said that is flown, us: twenty samples missed, two control ticks, and the delay of
+/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of
 /// its own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without
 /// rates nothing tells where up is.
 pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;

@@ -3,7 +3,7 @@
 use crate::math;
 
 /// Limits and answers to failures. Numbers outside what their fields say are brought to the nearest that is allowed;
-/// one that is none is the default.
+/// one that is not a number is the default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightSettings {
     /// How high a take-off goes that names no height, m, in [0.5, 50].

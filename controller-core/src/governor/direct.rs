@@ -8,7 +8,7 @@
 //! ```
 //!
 //! - *Averaged*: the head is the averaged command ([`super::averages`]).
-//! - *Direct*: the head's snap is the stream's and feedback of what it is off by, as far as [`super::envelope`] lets
+//! - *Direct*: the head's snap is the stream's, with feedback of the head's error, as far as [`super::envelope`] lets
 //!   it.
 //! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else.
 //!   From there the averages start ([`super::steady`]), as if this steady motion had always been commanded.
@@ -32,7 +32,7 @@ use nalgebra::Vector3;
 const FEASIBLE: f32 = 0.9995;
 const RETREATING: f32 = 0.98;
 
-/// The share that feedback may ask for of what the stream leaves of the bounds, and the least that is counted on.
+/// The share of the bounds, less the stream's part, that feedback may ask for, and the least that is counted on.
 const FEEDBACK: f32 = 0.25;
 const LEAST_LEFT: f32 = 0.01;
 
@@ -253,7 +253,7 @@ impl Direct {
         self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
     }
 
-    /// The acceleration that feedback may ask for, m/s^2: a share of what is left by a head whose error turns with the
+    /// The acceleration that feedback may ask for, m/s^2: a share of the rest beside a head whose error turns with the
     /// stream.
     fn room(&self, sought: &Sought) -> f32 {
         let Point { acceleration, jerk, snap, rate, .. } = &sought.point;

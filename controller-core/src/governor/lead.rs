@@ -1,7 +1,7 @@
 //! Where the command must be for the averages to come out on a moving point.
 //!
 //! Averages with mean delay d and variance sigma^2 turn e^(i w t) into H(w) e^(i w (t-d)), H = 1 - w^2 sigma^2/2 + ...,
-//! and a parabola q into q - d q' + (d^2 + sigma^2) q''/2. Inverted, with L = d plus the age of what is known of the
+//! and a parabola q into q - d q' + (d^2 + sigma^2) q''/2. Inverted, with L = d plus the age of the last report of the
 //! point:
 //!
 //! - a point on a circle, a = i w v in the horizontal plane: ahead = (v/w) (g sin(wL) + i (1 - g cos(wL))), feed = g

@@ -3,7 +3,7 @@
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two
 //! triples in a row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the
 //! truth is beyond. So may a lesser one of the accelerometer that leaps: it is what the sensor's own filter leaves of a
-//! peak at full scale. Shaking is told from that by its slope, not by its size.
+//! peak at full scale. Shaking differs from that by its slope, not by its size.
 
 use crate::estimator::Clipped;
 use nalgebra::Vector3;

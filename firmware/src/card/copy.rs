@@ -7,7 +7,7 @@ use crate::recorder::Recorder;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Copies the recording that the start found, unless the newest copy is the same; the number of the file that holds it.
-/// None if there is none, or if a flight has begun meanwhile, which ends it.
+/// `None` without a recording, or if a flight has begun meanwhile, which ends it.
 ///
 /// A copy that a cut has shortened differs, and the next start makes another.
 ///

@@ -230,7 +230,7 @@ fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Cont
     Ok(Content::of(&sector))
 }
 
-/// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of what is in question
+/// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of the search
 /// can be left out at a time.
 ///
 /// # Errors

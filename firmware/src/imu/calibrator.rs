@@ -12,8 +12,8 @@
 //! calibrated along with the other, from its own samples. What comes out is applied at once, and kept in the
 //! parameters. Six sides and the single one forget the level that was found with other offsets: level afterwards.
 //!
-//! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. What
-//! nobody asked for is done in silence, again and again until it stood still for once.
+//! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. A
+//! calibration without a request is done in silence, again and again until it stood still for once.
 
 use super::solution::{GRAVITY, solve};
 use crate::hardware::{Fault, RawImu, Unit};
@@ -65,9 +65,9 @@ struct Job {
     /// Of the first and of the second sensor.
     findings: [Findings; 2],
     sides: u8,
-    /// How the sensor that stands by does: none where there is none, or none yet.
+    /// How the sensor that stands by does; `None` without one, or before its first sample.
     standby: Option<Result<(), Fault>>,
-    /// What was last said of a side that is none.
+    /// The last report on a position that is not a side.
     said: Option<SixPointError>,
 }
 

@@ -9,7 +9,7 @@
 //! old pose never comes out as a fresh one.
 //!
 //! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot
-//! be told from noise. Frames of `common` that nobody here wants are checked and skipped whole: bytes inside them that
+//! be told from noise. Frames of `common` without a use here are checked and skipped whole: bytes inside them that
 //! look like a frame (a log being sent) do nothing.
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.

@@ -3,7 +3,7 @@
 //! One at a time. So there is one receiver, which knows who commands, and one place where answers go; whoever is on the
 //! line that is not the link is not heard, poses included. The link moves when the port is opened or closed, never
 //! while a motor turns: who flies over one line keeps it, and a cable that is pulled is a ground station that falls
-//! silent. Every move is told, on the line that it leads to.
+//! silent. Every move is reported, on the line that it leads to.
 
 use crate::hardware::{Clock, Port};
 use crate::shared::{Event, Flag, Severity, Shared};

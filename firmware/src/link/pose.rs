@@ -14,8 +14,8 @@
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
 //! like jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless.
 //! Velocities and body rates must be finite too, though the IMU's are flown. Of the covariance the greatest variances
-//! of position and of attitude count, where they are positive (NaN means unknown, and zero that nobody has filled it
-//! in).
+//! of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender left it
+//! out).
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
@@ -47,8 +47,8 @@ pub enum PoseRefusal {
     Repeated,
     /// It was under way for more than [`LATE_MAX`], says TIMESYNC.
     Late,
-    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC nobody
-    /// knows.
+    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC the two
+    /// look alike.
     LateOrSet,
     /// Another source is being listened to.
     SecondSource,
@@ -99,7 +99,8 @@ impl Poses {
         }
     }
 
-    /// The pose in `frame`; none in another message. Where nobody else knows, it took `delay`, us, at least.
+    /// The pose in `frame`; none in another message. Where the delay is unknown otherwise, it took `delay`, us, at
+    /// least.
     ///
     /// # Errors
     /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
@@ -181,7 +182,7 @@ impl Source {
         let clock = self.clock.as_ref().filter(|_| time != 0)?;
         let Offset { value, error } = self.sync.offset(self.arrived)?;
         let delay = clock.offset() - value;
-        // No message is here before it was sent; and one that is too late is none.
+        // No message is here before it was sent; and one that is too late does not count.
         let plausible = (-i128::from(error)..=i128::from(LATE_MAX)).contains(&delay);
         plausible.then(|| u64::try_from(delay).unwrap_or(0))
     }

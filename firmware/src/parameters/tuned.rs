@@ -5,11 +5,11 @@
 //! ```
 //!
 //! It runs twice: when one of them is set, on all of them as they would be then; and at boot, on what was stored. What
-//! flies is the second one's, so a change counts from the next boot. A parameter that nobody set is as built, whatever
-//! was built.
+//! flies is the second one's, so a change counts from the next boot. A parameter that was never set is as built,
+//! whatever was built.
 //!
 //! Certifying takes long (`docs/firmware.md`), and a stack like that of booting. It runs in the link's task, below
-//! control, which keeps its time; and while it does nobody arms.
+//! control, which keeps its time; and arming is refused meanwhile.
 
 use super::table::Name;
 use controller_core::certificate::Certificate;
@@ -34,7 +34,7 @@ pub struct Built {
 /// Why tuned parameters may not fly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unfit {
-    /// There is no such configuration, or nobody judged its loops.
+    /// There is no such configuration, or its loops were not judged.
     Parameter(ParameterError),
     /// This inequality of its certificate fails before all others.
     Inequality(Inequality),

@@ -1,4 +1,4 @@
-//! What people are told. An event is put into words where it is sent or logged, not in the control task it may come
+//! Reports to people. An event is put into words where it is sent or logged, not in the control task it may come
 //! from.
 
 use controller_core::error::InputError;

@@ -1,5 +1,5 @@
-//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery that nobody
-//! measures, motors that are not reached.
+//! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery without a
+//! reading, motors that are not reached.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};

@@ -1,4 +1,4 @@
-//! Flights on a memory card: what an independent reader finds there, and what people are told of a card that does not
+//! Flights on a memory card: what an independent reader finds there, and the texts about a card that does not
 //! do as it should.
 
 #![expect(clippy::single_range_in_vec_init, reason = "flights are lists of times, some with one")]

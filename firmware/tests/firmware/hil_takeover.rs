@@ -96,7 +96,7 @@ pub fn increment(now: u64) -> Increment {
     }
 }
 
-/// What the pins are told in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being
+/// The pins' commands in 100 ms of a vehicle that may fly, the request coming at `asked` and the simulator being
 /// wanted from 45 ms on; and the answer.
 fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, Vec<String>) {
     let (clock, shared, hil) = (Simulated::default(), Local::new(), Hil::new());

@@ -1,5 +1,5 @@
-//! campaign.json: of what a directory holds the flights. Two directories belong together, and a campaign goes on where
-//! it was, only if these agree.
+//! campaign.json: which campaign the flights of a directory belong to. Two directories belong together, and a campaign
+//! goes on where it was, only if these agree.
 
 use super::CampaignError;
 use super::batches::sha256;
@@ -126,7 +126,7 @@ impl Manifest {
     /// What `directory` says that it holds; none where there is no campaign.
     ///
     /// # Errors
-    /// If its manifest cannot be read or is none.
+    /// If its manifest cannot be read or is malformed.
     pub fn of(directory: &Path) -> Result<Option<Self>, CampaignError> {
         let path = directory.join(MANIFEST);
         let text = match fs::read_to_string(&path) {

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 /// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// The longest attempt to connect: the system itself would try for minutes where nobody answers at all. Long enough for
-/// any line.
+/// The longest attempt to connect: the system itself would try for minutes where no answer comes at all. Long enough
+/// for any line.
 const ATTEMPT: Duration = Duration::from_millis(500);
 
 /// Where the other side is to be found.
@@ -73,7 +73,7 @@ impl Port {
     /// Finds the other side; `patience` bounds this and every later wait.
     ///
     /// # Errors
-    /// [`PortError`] if there is nobody in time or the address cannot be used.
+    /// [`PortError`] if the other side does not come in time or the address cannot be used.
     pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
         let stream = connected(address, patience, interrupt)?;
         Self::over(stream, patience, interrupt.clone()).map_err(PortError::Broken)
@@ -90,7 +90,7 @@ impl Port {
         Ok(Self { reader, parser, writer, patience, interrupt, encoder, bytes })
     }
 
-    /// The next command; none when the other side has gone. Other messages, and what is none, are skipped.
+    /// The next command; none when the other side has gone. Other messages, and noise, are skipped.
     ///
     /// # Errors
     /// [`PortError`] if no byte comes in time or the connection breaks.

@@ -3,7 +3,7 @@
 //! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses
 //! that arrive within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are
 //! true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end.
-//! `[sensors]` is not for here: it describes what a law is told that has no estimator.
+//! `[sensors]` is not for here: it describes the measurements of a law without an estimator.
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 

@@ -26,7 +26,7 @@ use nalgebra::SMatrix;
 use std::array::from_fn;
 
 /// Parts of the log that the jackknife leaves out in turn: in a flight of 80 s each is 5 s long, longer than the memory
-/// of what is left once the noise is made white. Turbulence is not quite of first order, nor does an estimator's error
+/// of the residuals once they are whitened. Turbulence is not quite of first order, nor does an estimator's error
 /// in its gyro's bias come and go as the model has it.
 pub const BLOCKS: usize = 16;
 /// Between two looks at the velocities, s.
@@ -63,7 +63,7 @@ pub struct Fit {
     pub covariance: Covariance,
 }
 
-/// Fits `model`; `asked_for` is that of the same flight without what nobody asked for. Samples come each `period`, s.
+/// Fits `model`; `asked_for` is that of the same flight without disturbances. Samples come each `period`, s.
 ///
 /// # Errors
 /// If the search leads nowhere: the log is of another vehicle, or says next to nothing.

@@ -161,7 +161,7 @@ fn differentiate(moments: &mut [Option<Moment>]) {
 }
 
 /// A moment from time, velocity, attitude, rates, thrust and torque asked for by the law, the reference's velocity, and
-/// what the rotors were believed to give of what they were asked for; none if that is no state.
+/// and the believed thrust scale; `None` if that is no state.
 #[must_use]
 pub fn moment(numbers: &[f64], scale: f64) -> Option<Moment> {
     let &[time, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz, thrust, tau_x, tau_y, tau_z, rx, ry, rz] = numbers else {

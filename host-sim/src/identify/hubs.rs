@@ -12,7 +12,7 @@
 //! hold a centre of mass that is beside the origin, turn unlike each other. With w_i = w + T_i/(2 c k w) for what it
 //! gives beyond the mean and n c k w^2 = m F, all drag at the rotors makes kappa 1, and drag of the frame makes it
 //! less. A is used, not V_b: a gust pulls at the rotors as a moving vehicle's own speed does, and what it does is known
-//! ([`super::noise`]) where its speed is not. If gusts are left out of it, a centre of mass is told up to 40 % too
+//! ([`super::noise`]) where its speed is not. If gusts are left out of it, a centre of mass is found up to 40 % too
 //! near; if F is g, as in a hover, by a sixth in winds that press the vehicle down.
 //!
 //! *lambda*, k_h/m: translational lift, k_h times the square of each hub's speed across. It carries the vehicle as

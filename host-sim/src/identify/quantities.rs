@@ -44,7 +44,7 @@ impl Quantity {
         Self { value, uncertainty, interval: [value - wide, value + wide] }
     }
 
-    /// `unit` times e to the power of what is known.
+    /// `unit` times e to the power of the logarithm.
     fn exponential(logarithm: f64, uncertainty: f64, unit: f64) -> Self {
         let at = |deviations: f64| unit * (logarithm + deviations * uncertainty).exp();
         Self { value: at(0.0), uncertainty: at(0.0) * uncertainty, interval: [at(-COVERAGE), at(COVERAGE)] }
@@ -58,7 +58,7 @@ impl Quantity {
     }
 }
 
-/// All that is told of a vehicle.
+/// All that is found of a vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantities {
     /// kg.
@@ -131,7 +131,7 @@ impl Quantities {
     }
 }
 
-/// Between what the squared lag allows; there is none below zero, and none above the whole. That is the whole as it was
+/// Between the bounds from the squared lag: not below zero, and not above the whole. That is the whole as it was
 /// flown: rates are late by what is counted for them or less, so without that the lag of a vehicle that acts at once
 /// would be cut short.
 fn lag(squared: &Quantity, whole: &Quantity) -> Quantity {

@@ -17,8 +17,8 @@ const TURNING: f64 = 0.025;
 /// Speeds asked for that show drag, across and along the vertical, root mean square about their mean, m/s.
 const MOVING: [f64; 3] = [0.25, 0.25, 0.08];
 
-/// What rotors may deliver of what the file says: beyond that they are others, or the log's thrust is not what was
-/// asked of them.
+/// The thrust scales that are believed: beyond them the rotors are others, or the log's thrust is not the commanded
+/// one.
 const SCALES: [f64; 2] = [0.3, 3.0];
 
 /// What is missing of a flight, a line each; empty for a flight that can tell.

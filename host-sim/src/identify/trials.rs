@@ -17,7 +17,7 @@ use toml_edit::{Array, DocumentMut, Table, value};
 /// The manoeuvre.
 pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
 
-/// How much younger the body rates are that the law is told at a tick than a scenario with an estimator counts at most,
+/// How much younger the body rates are that the law gets at a tick than a scenario with an estimator counts at most,
 /// s: the last sample of the IMU came now, not a millisecond ago.
 pub const RATES_YOUNGER: f64 = 0.001;
 
@@ -115,7 +115,7 @@ impl Trial {
         Ok(Self { text, log, bench, truths, drag })
     }
 
-    /// The name of each quantity, what is told of it, and what it is.
+    /// The name of each quantity, its estimate, and its true value.
     #[must_use]
     pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, super::quantities::Quantity, f64)> {
         let t = &self.truths;
@@ -127,7 +127,7 @@ impl Trial {
             ("inertia z", told.inertia[2], t.inertia[2]),
             ("lag and delay", told.whole_delay, t.lag + t.delay - RATES_YOUNGER),
             ("lag", told.lag, t.lag),
-            // None below zero is told.
+            // No estimate is below zero.
             ("delay", told.delay, (t.delay - RATES_YOUNGER).max(0.0)),
             ("centre of mass x", told.centre_of_mass[0], t.centre[0]),
             ("centre of mass y", told.centre_of_mass[1], t.centre[1]),

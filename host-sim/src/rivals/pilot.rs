@@ -1,9 +1,9 @@
-//! A rival at the controls of a flight: what it is told, and what is made of what it commands.
+//! A rival at the controls of a flight: its inputs, and the way of its commands.
 //!
-//! It is told what ours is told, in double precision: the measured state; the reference; and as a part of the
+//! It gets what ours gets, in double precision: the measured state; the reference; and as a part of the
 //! reference's acceleration the drag that `[estimates] drag_across` knows of, c v_d across, which ours feeds forward as
-//! well. Its wrench goes the way of ours, through the same allocation; what of it the rotors can deliver, it is told at
-//! once.
+//! well. Its wrench goes the way of ours, through the same allocation; it learns at once which part the rotors can
+//! deliver.
 
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};

@@ -7,7 +7,7 @@
 //!
 //! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
 //! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
-//! The world moves when somebody looks: to that moment, a millisecond at a time, so nobody can see it too early or too
+//! The world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too
 //! late.
 
 use super::clock::SimClock;
@@ -103,7 +103,7 @@ impl World {
         Ok(Self(Rc::new(Inner { clock: clock.clone(), faults, body: RefCell::new(body) })))
     }
 
-    /// Moves for ever, also where nobody looks.
+    /// Moves for ever, without readers as well.
     pub async fn run(self) {
         let clock = &self.0.clock;
         loop {

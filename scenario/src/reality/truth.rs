@@ -11,7 +11,7 @@
 //! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
 //! ```
 //!
-//! The state that a flight reports and its controller is told is that of the body's origin, the *model's* centre of
+//! The state that a flight reports and its controller gets is that of the body's origin, the *model's* centre of
 //! mass, from which the rotors' positions are measured: it is where the markers and the flight controller are.
 
 use super::numbers::Allowed;

@@ -1,4 +1,4 @@
-//! Each thing that is looked for, just where it begins and just before; each ends where any of what makes it up is
+//! Each thing that is looked for, just where it begins and just before; each ends where any of its parts is
 //! missing.
 
 extern crate std;

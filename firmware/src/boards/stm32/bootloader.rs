@@ -34,7 +34,7 @@ pub fn wish() {
 pub fn enter_if_wished(is_own_restart: bool) {
     // After another start the memory may have been without power, and hold nothing that may be read.
     let is_wished = is_own_restart && {
-        // SAFETY: this part of the memory is nobody else's, has been written to since power came, and any bits are
+        // SAFETY: nothing else uses this part of the memory, it has been written to since power came, and any bits are
         // numbers.
         let wish = unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).read_volatile() };
         wish.iter().zip(&WISH).filter(|(wish, expected)| wish == expected).count() >= WISH.len() - 1
@@ -46,7 +46,7 @@ pub fn enter_if_wished(is_own_restart: bool) {
 }
 
 fn set(value: [u64; 4]) {
-    // SAFETY: this part of the memory is nobody else's, and one thing at a time sets it.
+    // SAFETY: nothing else uses this part of the memory, and one thing at a time sets it.
     unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).write_volatile(value) };
     fence(Ordering::SeqCst);
     cortex_m::asm::dsb();

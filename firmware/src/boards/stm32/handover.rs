@@ -3,7 +3,7 @@
 //! A bootloader may hand over from a task of its own operating system (ArduPilot's does): on that task's stack, with
 //! its interrupts armed, its caches and memory protection on, its clocks running. A thread that stays on that stack
 //! overwrites memory that is somebody else's now; a data cache stands between the core and the DMA buffers; an
-//! interrupt that nobody expects is a fault; a PLL that runs takes no new settings.
+//! interrupt without a handler is a fault; a PLL that runs takes no new settings.
 
 use cortex_m::Peripherals;
 

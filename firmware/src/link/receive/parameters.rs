@@ -1,5 +1,5 @@
-//! Parameters in: read, listed, set while disarmed. Setting one of the configuration certifies it, here, while nobody
-//! may arm.
+//! Parameters in: read, listed, set while disarmed. Setting one of the configuration certifies it, here, while arming
+//! is refused.
 
 use super::Receiver;
 use crate::link::frame::Frame;

@@ -1,4 +1,5 @@
-//! Logs, asked for: listed, read in any order, erased. Only while disarmed, and who asks otherwise is told so.
+//! Logs, asked for: listed, read in any order, erased. Only while disarmed, a request at another time is refused in
+//! words.
 
 use super::Receiver;
 use crate::link::frame::Frame;
@@ -21,8 +22,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        // Who hears that there is none asks no more; who wants a part and hears nothing asks again, and gets it after
-        // landing.
+        // A client that hears of an empty list stops asking; one that wants a part and hears nothing asks again, and
+        // gets it after landing.
         let list = Reply::Logs { first: message.start, last: message.end };
         self.shared.reply(if self.may_read(frame) { list } else { Reply::NoLogs });
     }

@@ -69,8 +69,8 @@ pub fn current_mode(mode: Mode) -> CURRENT_MODE_DATA {
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
 }
 
-/// Whether it is on the ground; nobody knows of what was stopped in the air or may still fall, nor before there is
-/// anything to tell by.
+/// Whether it is on the ground; unknown of a vehicle that was stopped in the air or may still fall, and before there is
+/// an estimate.
 #[must_use]
 pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     let landed_state = match report.mode {
@@ -137,7 +137,7 @@ pub fn status(
         | Sensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
         | Sensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
         | Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS;
-    // By the IMU alone the vehicle is held level and sinks; where it drifts and turns to nobody knows.
+    // By the IMU alone the vehicle is held level and sinks; its drift and heading are unknown.
     let without_pose = Sensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION
         | Sensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
         | Sensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL;

@@ -28,8 +28,8 @@ fn the_longest_step_that_fits_is_taken() {
     assert_eq!((half.timing.steps_per_tick, half.delay_steps), (4, 4));
 }
 
-/// With the step of a campaign the paper's flight stays within a micrometre of what steps of half a millisecond make of
-/// it.
+/// With the step of a campaign the paper's flight stays within a micrometre of the same flight in steps of half a
+/// millisecond.
 #[test]
 fn the_papers_flight_moves_by_less_than_a_micrometre() {
     let fine = divided(&vehicle("paper", ""), 20).unwrap();

@@ -1,4 +1,4 @@
-//! Section 10: what the actuators still do of what was commanded.
+//! Section 10: the part of past commands that the actuators still carry out.
 
 use super::double;
 use nalgebra::Vector4;
