@@ -2,13 +2,20 @@
 
 use crate::support::binary;
 use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird-paper-law.toml");
 
 /// A directory of this suite.
 fn directory(test: &str) -> PathBuf {
     binary::directory("cli_verdicts", test)
+}
+
+/// Flies a scenario with this `text` in `directory`, into `out`: the exit status and what it printed.
+fn flown(directory: &Path, text: &str) -> (i32, String) {
+    std::fs::write(directory.join("scenario.toml"), text).unwrap();
+    let output = host_sim(directory, &["fly", "scenario.toml", "--out", "out"]);
+    (status(&output), stdout(&output))
 }
 
 /// The Hummingbird with rotors that follow a second late: every command within its limits, five of six loops unstable.
@@ -51,10 +58,8 @@ fn certify_refuses_a_loop_without_margin_and_says_which_margin() {
 #[test]
 fn fly_flies_an_unstable_loop_reports_it_and_fails() {
     let directory = directory("fly");
-    std::fs::write(directory.join("sluggish.toml"), sluggish()).unwrap();
-    let output = host_sim(&directory, &["fly", "sluggish.toml", "--out", "out"]);
-    let text = stdout(&output);
-    assert_eq!(status(&output), 1, "{text}");
+    let (status, text) = flown(&directory, &sluggish());
+    assert_eq!(status, 1, "{text}");
     let failing: Vec<&str> = text.lines().filter(|line| line.ends_with("FAILS")).collect();
     assert!(failing.iter().any(|line| line.starts_with("sampled loops") && line.contains("roll: unstable")), "{text}");
     assert!(failing.iter().any(|line| line.starts_with("within 0.2 m") && line.contains("never")), "{text}");
@@ -65,23 +70,17 @@ fn fly_flies_an_unstable_loop_reports_it_and_fails() {
 
 #[test]
 fn a_loop_without_margin_fails_a_flight_that_arrives() {
-    let directory = directory("arrives");
-    std::fs::write(directory.join("weak.toml"), weak()).unwrap();
-    let output = host_sim(&directory, &["fly", "weak.toml", "--out", "out"]);
-    let text = stdout(&output);
+    let (status, text) = flown(&directory("arrives"), &weak());
     let failing: Vec<&str> = text.lines().filter(|line| line.ends_with("FAILS")).collect();
     let [only] = failing[..] else { panic!("{text}") };
-    assert!(status(&output) == 1 && only.starts_with("sampled loops") && only.contains("must bear 2.0 ms"), "{text}");
+    assert!(status == 1 && only.starts_with("sampled loops") && only.contains("must bear 2.0 ms"), "{text}");
 }
 
 #[test]
 fn a_flight_that_does_not_reach_its_reference_in_time_fails_with_the_numbers() {
-    let directory = directory("late");
     // Table I needs nineteen seconds from the paper's start.
-    std::fs::write(directory.join("short.toml"), with(PAPER, "duration", "duration = 5.0")).unwrap();
-    let output = host_sim(&directory, &["fly", "short.toml", "--out", "out"]);
-    let text = stdout(&output);
-    assert_eq!(status(&output), 1, "{text}");
+    let (status, text) = flown(&directory("late"), &with(PAPER, "duration", "duration = 5.0"));
+    assert_eq!(status, 1, "{text}");
     let row = text.lines().find(|line| line.starts_with("within 0.2 m of the reference for good")).unwrap();
     let words: Vec<&str> = row.split("  ").map(str::trim).filter(|word| !word.is_empty()).collect();
     assert_eq!(words[1..], ["<= 4.5 s", "never", "FAILS"], "{row}");
@@ -93,9 +92,7 @@ fn a_flight_that_does_not_reach_its_reference_in_time_fails_with_the_numbers() {
 fn a_flight_of_less_than_four_ticks_is_steady_in_its_last() {
     let directory = directory("ticks");
     for duration in ["0.01", "0.03"] {
-        std::fs::write(directory.join("ticks.toml"), with(PAPER, "duration", &format!("duration = {duration}")))
-            .unwrap();
-        let text = stdout(&host_sim(&directory, &["fly", "ticks.toml", "--out", "out"]));
+        let (_, text) = flown(&directory, &with(PAPER, "duration", &format!("duration = {duration}")));
         for row in ["position error, steady state", "MRP error, steady state"] {
             let row = text.lines().find(|line| line.starts_with(row)).unwrap();
             assert!(!row.contains("  0 m ") && !row.contains("  0  "), "{row}");
@@ -146,12 +143,10 @@ fn tune_does_not_ask_for_less_than_certify_does() {
 
 #[test]
 fn a_flight_that_is_not_certified_fails_and_its_last_line_names_the_claim() {
-    let directory = directory("uncertified");
-    std::fs::write(directory.join("weak.toml"), with(PAPER, "torque_max", "torque_max = [0.5, 0.5, 0.3]")).unwrap();
-    let output = host_sim(&directory, &["fly", "weak.toml", "--out", "out"]);
-    let text = stdout(&output);
+    let weak = with(PAPER, "torque_max", "torque_max = [0.5, 0.5, 0.3]");
+    let (status, text) = flown(&directory("uncertified"), &weak);
     let last = text.lines().last().unwrap();
-    assert_eq!(status(&output), 1, "{text}");
+    assert_eq!(status, 1, "{text}");
     assert!(
         last.starts_with("NOT every claim holds (commands, certificate); log, figures and report in out"),
         "{last}"

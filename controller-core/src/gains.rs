@@ -32,6 +32,24 @@ pub struct GainParameters {
 }
 
 impl GainParameters {
+    /// Each gain beside its path in a scenario file, in the order of Table I.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, f32); 11] {
+        [
+            ("gains.k_p", self.k_p),
+            ("gains.k_v", self.k_v),
+            ("gains.k_f", self.k_f),
+            ("gains.k_s", self.k_s),
+            ("gains.k_theta", self.k_theta),
+            ("gains.k_omega", self.k_omega),
+            ("gains.m_p", self.m_p),
+            ("gains.m_theta", self.m_theta),
+            ("gains.m_omega", self.m_omega),
+            ("gains.delta", self.delta),
+            ("gains.alpha", self.alpha),
+        ]
+    }
+
     /// The paper's Table I.
     pub const TABLE_1: Self = Self {
         k_p: 9.0,
@@ -65,19 +83,7 @@ impl Gains {
     /// Names the first gain that is not.
     pub fn new(parameters: GainParameters, vehicle: &Vehicle) -> Result<Self, ParameterError> {
         let p = &parameters;
-        for (value, field) in [
-            (p.k_p, "gains.k_p"),
-            (p.k_v, "gains.k_v"),
-            (p.k_f, "gains.k_f"),
-            (p.k_s, "gains.k_s"),
-            (p.k_theta, "gains.k_theta"),
-            (p.k_omega, "gains.k_omega"),
-            (p.m_p, "gains.m_p"),
-            (p.m_theta, "gains.m_theta"),
-            (p.m_omega, "gains.m_omega"),
-            (p.delta, "gains.delta"),
-            (p.alpha, "gains.alpha"),
-        ] {
+        for (field, value) in p.named() {
             require_positive(value, field)?;
             require(value > Self::LEAST, field, Reason::NotAbove(Self::LEAST))?;
             require(value < Self::GREATEST, field, Reason::NotBelow(Self::GREATEST))?;

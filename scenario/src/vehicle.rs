@@ -229,23 +229,10 @@ fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
     Err(FieldError::new("rotors.position", problem))
 }
 
-/// The keys of the paper law's `[gains]` with their values; delta and alpha are the last two.
+/// The keys of the paper law's `[gains]` with their values.
 #[must_use]
 pub fn named(gains: &GainParameters) -> [(&'static str, f32); 11] {
-    let g = gains;
-    [
-        ("k_p", g.k_p),
-        ("k_v", g.k_v),
-        ("k_f", g.k_f),
-        ("k_s", g.k_s),
-        ("k_theta", g.k_theta),
-        ("k_omega", g.k_omega),
-        ("m_p", g.m_p),
-        ("m_theta", g.m_theta),
-        ("m_omega", g.m_omega),
-        ("delta", g.delta),
-        ("alpha", g.alpha),
-    ]
+    gains.named().map(|(path, value)| (path.trim_start_matches("gains."), value))
 }
 
 /// Reads `[gains]`.
