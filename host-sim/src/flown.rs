@@ -5,8 +5,9 @@
 //! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. A vehicle that stands on the ground does not
 //! fly: it is away from its reference wherever that is.
 //!
-//! A flight is *there* once it has been near in both for a second. From then on it is on its way with its
-//! reference, and the greatest distance from it counts as tracking error: before, it recovers or approaches.
+//! A flight is *there* once it has been near in both for a second, or from its start if it starts near in both and at
+//! the reference's velocity. From then on it is on its way with its reference, and the greatest distance from it counts
+//! as tracking error: before, it recovers or approaches.
 
 use crate::flight::{Flight, FlightError, Tick};
 use scenario::Scenario;
@@ -15,6 +16,8 @@ use scenario::Scenario;
 pub const NEAR_POSITION: f64 = 0.2;
 /// How near to the desired attitude, norm of the modified Rodrigues parameters: 11 degrees.
 pub const NEAR_MRP: f64 = 0.05;
+/// How near to the reference's velocity a flight must start to be there, m/s.
+const NEAR_VELOCITY: f64 = 0.2;
 /// For how long a flight must be near before it is there, us: a vehicle that passes by is not.
 const THERE_FOR: u64 = 1_000_000;
 /// Extremes of no value at all.
@@ -109,6 +112,8 @@ impl Flown {
         if mrp_error > NEAR_MRP {
             self.away_until_us.1 = tick.time_us + self.period_us;
         }
+        let velocity_error = (tick.state.velocity - tick.reference.velocity.map(f64::from)).norm();
+        self.there |= self.ticks == 1 && self.away_until_us == (0, 0) && velocity_error <= NEAR_VELOCITY;
         self.there |= tick.time_us >= self.away_until_us.0.max(self.away_until_us.1) + THERE_FOR;
         if self.there && self.strayed.is_none_or(|(greatest, _)| position_error > greatest) {
             self.strayed = Some((position_error, tick.time_us as f64 / 1e6));

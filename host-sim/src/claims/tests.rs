@@ -96,3 +96,18 @@ linear = [0.3, 0.3, 0.0]
     assert!(strayed.holds == Some(false) && strayed.required == "<= 0.5 m", "{strayed:?}");
     assert_eq!(with("\ntolerance = 50.0").holds, Some(true));
 }
+
+#[test]
+fn a_flight_that_starts_on_its_path_and_leaves_it_at_once_fails_even_if_it_returns() {
+    let hover = "kind = \"hover\"\nposition = [0.0, 0.0, 5.0]";
+    let (head, _) = scenario::PAPER.split_once("[initial]").unwrap();
+    let text = format!(
+        "{head}[reference]\n{hover}\n[drag]\nlinear = [0.3, 0.3, 0.0]\n[wind]\n\
+         gust = {{ kind = \"pulse\", start = 0.1, velocity = [8.0, 0.0, 0.0], duration = 3.0 }}\n"
+    );
+    let scenario = Scenario::parse(&text, "swept").unwrap_or_else(|error| panic!("{error}"));
+    let seen = flown(&scenario);
+    assert!(seen.position_reached().is_some_and(|reached| reached < 36.0), "{seen:?}");
+    let strayed = judged(&scenario, &seen).into_iter().find(|claim| claim.claim.starts_with("farthest")).unwrap();
+    assert_eq!(strayed.holds, Some(false), "{strayed:?}");
+}
