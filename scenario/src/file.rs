@@ -2,9 +2,9 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
+use crate::path::{self, Swing};
 use crate::reality::sensors::{self, VelocitySource};
 use crate::reality::{self, Reality, estimator};
-use crate::path::{self, Swing};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};

@@ -75,8 +75,7 @@ pub fn check_ground(
     let (field, lowest, remedy) = match reference {
         ReferenceKind::Hover { .. } => ("reference.position", at(0.0), "raise it"),
         ReferenceKind::Harmonic(harmonic) => {
-            let [(frequency, phase, amplitude)] =
-                [(harmonic.frequency[2], harmonic.phase[2], harmonic.amplitude[2])];
+            let [(frequency, phase, amplitude)] = [(harmonic.frequency[2], harmonic.phase[2], harmonic.amplitude[2])];
             let down = if amplitude > 0.0 { std::f64::consts::PI } else { 0.0 };
             let turned = (down - phase).rem_euclid(std::f64::consts::TAU);
             let time = if frequency == 0.0 { 0.0 } else { turned / frequency.abs() };

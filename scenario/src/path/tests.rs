@@ -5,7 +5,7 @@ use crate::Scenario;
 fn gates(change: impl Fn(&str) -> String) -> Result<Scenario, String> {
     let points = [(0.0, 0.0, 1.0), (4.0, 4.0, 2.0), (16.0, 5.0, 2.0), (20.0, 0.0, 2.5), (24.0, 0.0, 1.0)]
         .map(|(t, x, z)| format!("{{ t = {t:?}, position = [{x:?}, 0.0, {z:?}] }}"));
-    let (head, _) = crate::PAPER.split_once("[reference]").unwrap();
+    let (head, _) = crate::PAPER.split_once("[initial]").unwrap();
     let text = format!("{head}[reference]\nkind = \"waypoints\"\npoints = [{}]\n", points.join(", "));
     Scenario::parse(&change(&text), "gates").map_err(|error| error.to_string())
 }
@@ -38,20 +38,20 @@ fn a_path_inside_does_not_swing_out() {
     let smooth = |text: &str| lifted(&text.replace("kind = \"waypoints\"", "kind = \"waypoints\"\npath = \"smooth\""));
     assert_eq!(gates(smooth).unwrap().swing(), gates(lifted).unwrap().swing());
     let wrong = |text: &str| text.replace("kind = \"waypoints\"", "kind = \"waypoints\"\npath = \"straight\"");
-    let refused = gates(wrong).unwrap_err();
+    let refused = gates(wrong).err().unwrap();
     assert!(refused.contains("reference.path: must be \"smooth\" or \"inside\", found \"straight\""), "{refused}");
 }
 
 #[test]
 fn a_reference_below_the_ground_is_refused_with_the_place_and_time() {
-    let refused = gates(str::to_owned).unwrap_err();
+    let refused = gates(str::to_owned).err().unwrap();
     let words = "gates: reference.points: the path must stay above the ground at 0 m, found (";
     assert!(refused.starts_with(words) && refused.contains("path = \"inside\""), "{refused}");
     // Whose points lie below zero does not call that the ground; with [ground] the file says where it is.
     let sunk = |text: &str| text.replace("[0.0, 0.0, 1.0]", "[0.0, 0.0, -0.1]");
     gates(sunk).unwrap();
-    let above = gates(|text| lifted(text) + "[ground]\nheight = 5.0\n").unwrap_err();
-    assert!(above.contains("the path must stay above the ground at 5 m"), "{above}");
+    let above = gates(|text| lifted(text) + "[ground]\nheight = 10.5\n").err().unwrap();
+    assert!(above.contains("the path must stay above the ground at 10.5 m"), "{above}");
     for (reference, field) in [
         ("kind = \"hover\"\nposition = [0.0, 0.0, 1.0]", "reference.position"),
         (
