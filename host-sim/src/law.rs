@@ -19,6 +19,7 @@ use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use scenario::Scenario;
+use scenario::timing::check_period;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 
@@ -44,10 +45,6 @@ const FIELDS: [(&str, &[&str], f64); 14] = [
     ("yaw", &["_acceleration"], 1e4),
 ];
 const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
-
-/// Shortest and longest dt, s.
-const LEAST_PERIOD: f64 = 2.5e-4;
-const GREATEST_PERIOD: f64 = 0.1;
 
 /// Longest line, bytes: whatever is sent, memory is not what runs out.
 const LONGEST: usize = 1 << 16;
@@ -155,9 +152,7 @@ impl LawServer {
         let at_time = |problem: String| format!("t = {time}: {problem}");
 
         let period = numbers.next();
-        if !(LEAST_PERIOD..=GREATEST_PERIOD).contains(&period) {
-            return Err(at_time(format!("dt: must be from {LEAST_PERIOD} to {GREATEST_PERIOD} s, found {period}")));
-        }
+        check_period(period).map_err(|problem| at_time(format!("dt: {problem}")))?;
         let (position, velocity) = (numbers.vector(), numbers.vector());
         let [i, j, k, w] = [numbers.next(), numbers.next(), numbers.next(), numbers.next()];
         let attitude = Quaternion::new(w, i, j, k);

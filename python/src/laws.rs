@@ -16,6 +16,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use scenario::timing::check_period;
 use std::fmt::Display;
 
 /// Rows that one core takes at a time: fewer are not worth waking another for.
@@ -91,8 +92,9 @@ impl Law {
         Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.law, &asked))))
     }
 
-    /// The time by which the next steps advance the filters, s, in (0, 0.1]. It begins as the scenario's.
+    /// The time by which the next steps advance the filters, s, from 0.00025 to 0.1. It begins as the scenario's.
     fn set_period(&mut self, period: f64) -> PyResult<()> {
+        check_period(period).map_err(|problem| refused_field("control.period", problem))?;
         self.law.set_period(period as f32).map_err(refused)
     }
 

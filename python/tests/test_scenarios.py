@@ -88,6 +88,7 @@ GOOD = sh.reference([0, 0, 1])
         (lambda: sh.Law(PAPER).step(sh.state(), np.zeros(19)), "heading.direction: must be a unit vector"),
         (lambda: sh.Law(PAPER).step(sh.state(), sh.reference(acceleration=[0, 0, -9])), "its vertical part must stay above"),
         (lambda: sh.Law(PAPER).set_period(0.0), "control.period"),
+        (lambda: sh.Law(PAPER).set_period(1e-30), "control.period"),
         (lambda: sh.LawRows(PAPER, 2).step([sh.state(), np.zeros(13)], [GOOD, GOOD]), "row 1: state.attitude"),
         (lambda: sh.LawRows(PAPER, 2).reset([True]), r"chosen: must have shape \(2,\)"),
         (lambda: sh.state(attitude=[1, 0, 0, 0], euler=[0, 0, 0]), "euler: attitude is given already"),

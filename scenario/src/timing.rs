@@ -4,6 +4,7 @@
 //! tick never falls between two steps.
 
 use crate::section::{FieldError, Section};
+use std::ops::RangeInclusive;
 
 /// The clock of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Timing {
 
 /// Longest flight, s: nearly four months.
 const GREATEST_DURATION: f64 = 1e7;
+/// Time between two ticks, shortest and longest, s.
+const PERIODS: RangeInclusive<f64> = 1.0 / GREATEST_RATE..=1.0 / LEAST_RATE;
 /// Duration where it is left out, s.
 const DEFAULT_DURATION: f64 = 20.0;
 /// The filters advance by at most a tenth of a second at a time.
@@ -68,6 +71,18 @@ impl Timing {
     pub fn duration(&self) -> f64 {
         (self.ticks * self.period_us) as f64 * 1e-6
     }
+}
+
+/// Whether a law that is stepped by somebody's own clock may be stepped by `period`, s; what is wrong with it otherwise.
+///
+/// # Errors
+/// In words, with the range that a file's rate has as well.
+pub fn check_period(period: f64) -> Result<(), String> {
+    let (shortest, longest) = (PERIODS.start(), PERIODS.end());
+    if PERIODS.contains(&period) {
+        return Ok(());
+    }
+    Err(format!("must be from {shortest} to {longest} s, found {period}"))
 }
 
 fn read_period(root: &Section) -> Result<u64, FieldError> {

@@ -234,7 +234,7 @@ class Law:
     def for_rotors(self, asked: ArrayLike) -> NDArray[np.float32]:
         """What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`."""
     def set_period(self, period: float) -> None:
-        """The time by which the next steps advance the filters, s, in (0, 0.1]. It begins as the scenario's."""
+        """The time by which the next steps advance the filters, s, from 0.00025 to 0.1. It begins as the scenario's."""
     def hold_estimates(self) -> None:
         """After a step whose wrench was clipped: nothing can be learnt from that motion."""
     @property

@@ -48,6 +48,8 @@ fn zero_and_negative_times_are_refused_by_name() {
         ("duration = 1\ncontrol.rate = 0", "control.rate"),
         ("duration = 1\ncontrol.rate = -100", "control.rate"),
         ("duration = 1\ncontrol.rate = 5", "control.rate"),
+        ("duration = 1\ncontrol.rate = 5000", "control.rate"),
+        ("duration = 1\ncontrol.rate = 1e6", "control.rate"),
         ("duration = 1\nplant.step = 0", "plant.step"),
         ("duration = 1\nplant.step = -0.001", "plant.step"),
         ("duration = 1\nplant.step = 1e-12", "plant.step"),
@@ -60,4 +62,15 @@ fn zero_and_negative_times_are_refused_by_name() {
 fn the_default_step_divides_any_period() {
     let timing = read("duration = 1\ncontrol.rate = 400").unwrap();
     assert_eq!((timing.period_us, timing.steps_per_tick), (2500, 3));
+}
+
+#[test]
+fn a_period_given_by_the_tick_has_the_range_of_the_rate() {
+    for period in [2.5e-4, 0.01, 0.1] {
+        assert_eq!(check_period(period), Ok(()));
+    }
+    for period in [1e-30, 2.4e-4, 0.101, 0.0, -0.01, f64::NAN] {
+        let expected = format!("must be from 0.00025 to 0.1 s, found {period}");
+        assert_eq!(check_period(period), Err(expected));
+    }
 }
