@@ -188,9 +188,10 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
     let (session, ground) = (arguments.session()?, arguments.ground()?);
     let (interrupt, patience) = (watch()?, arguments.patience()?);
-    let unwritable = |log: &Path, error| format!("--log {}: cannot be written: {error}", log.display());
-    let own = |log: &PathBuf| WholeFile::alone(log).map_err(|error| unwritable(log, error));
-    let _log = arguments.log.as_ref().map(own).transpose()?;
+    if let Some(log) = &arguments.log {
+        let alone = WholeFile::alone(log).map(drop);
+        alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
+    }
     let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {
