@@ -4,8 +4,10 @@
 use crate::support::binary;
 use crate::support::binary::{brief, files, host_sim, status, stderr, stdout, with};
 use host_sim::rivals::gains::BUILT_IN;
+use host_sim::whole_file::WholeFile;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird.toml");
 /// Not thrown at all: near where it is to be, at rest, level.
@@ -130,4 +132,43 @@ fn gains_that_were_found_for_a_name_with_a_dot_are_read_again() {
     let read = ["campaign", "dotted.toml", "--law", "lee", "--gains", "out/rivals.toml", "--flights", "1"];
     let flown = host_sim(&directory, &read);
     assert!(status(&flown) < 2, "{}", stderr(&flown));
+}
+
+#[test]
+fn two_runs_at_a_time_do_not_write_one_file() {
+    let directory = directory("shared-file");
+    // As another run holds it, for as long as it lives: a number of a process that is not this one's.
+    let other = WholeFile::alone(&directory.join("out.file")).unwrap();
+    let commands = [
+        &["tune", "h.toml", "--out", "out.file"][..],
+        &["identify", "log.csv", "--scenario", "h.toml", "--out", "out.file"],
+        &["hil", "h.toml", "--listen", "127.0.0.1:0", "--log", "out.file"],
+        &["sitl", "--mcap", "out.file"],
+        &["sitl", "--parameters", "out.file"],
+    ];
+    for command in commands {
+        let refused = host_sim(&directory, command);
+        let message = stderr(&refused);
+        assert_eq!((status(&refused), message.lines().count()), (2, 1), "{command:?}: {message}");
+        let words = "out.file: cannot be written: another run writes it; wait for its end";
+        assert!(message.contains(words), "{command:?}: {message}");
+    }
+    assert!(!directory.join("out.file").exists());
+    drop(other);
+    assert_eq!(files(&directory), ["h.toml"]);
+}
+
+#[test]
+fn a_comparison_keeps_its_directory_from_its_beginning() {
+    let directory = directory("shared-comparison");
+    fs::create_dir(directory.join("out")).unwrap();
+    let other = fs::File::open(directory.join("out")).unwrap();
+    other.try_lock().unwrap();
+    let started = Instant::now();
+    // 100,000 flights would take minutes.
+    let refused = host_sim(&directory, &["compare", "h.toml", "--flights", "100000", "--out", "out"]);
+    let message = stderr(&refused);
+    assert_eq!((status(&refused), message.lines().count()), (2, 1), "{message}");
+    assert!(message.contains("out: cannot be written: another run writes into it"), "{message}");
+    assert!(started.elapsed() < Duration::from_secs(60));
 }

@@ -153,6 +153,46 @@ fn a_flight_that_is_not_certified_fails_and_its_last_line_names_the_claim() {
     );
 }
 
+/// The paper's vehicle through gates, one leg much longer than the others; `height` is added to all.
+fn gates(height: f64, path: &str) -> String {
+    let points = [(0.0, 0.0, 1.0), (4.0, 4.0, 2.0), (16.0, 5.0, 2.0), (20.0, 0.0, 2.5), (24.0, 0.0, 1.0)]
+        .map(|(t, x, z)| format!("{{ t = {t:?}, position = [{x:?}, 0.0, {:?}] }}", z + height));
+    let (head, _) = PAPER.split_once("[initial]").unwrap();
+    format!("{head}[reference]\nkind = \"waypoints\"\npath = \"{path}\"\npoints = [{}]\n", points.join(", "))
+}
+
+#[test]
+fn a_path_that_swings_out_is_said_and_below_ground_refused() {
+    let directory = directory("swing");
+    for (name, text) in
+        [("high", gates(10.0, "smooth")), ("low", gates(0.0, "smooth")), ("inside", gates(0.0, "inside"))]
+    {
+        std::fs::write(directory.join(format!("{name}.toml")), text).unwrap();
+    }
+    for command in ["certify", "fly"] {
+        let run = |file: &str| host_sim(&directory, &[command, file]);
+        let (high, inside) = (stdout(&run("high.toml")), stdout(&run("inside.toml")));
+        let swing = "the path leaves the box of its waypoints by ";
+        let line = high.lines().find_map(|line| line.split_once(swing)).unwrap_or_else(|| panic!("{command}: {high}"));
+        assert!(line.1.contains(" m at ") && line.1.contains("path = \"inside\""), "{command}: {line:?}");
+        assert!(!inside.contains(swing), "{command}: {inside}");
+        let low = run("low.toml");
+        let message = stderr(&low);
+        assert_eq!((status(&low), message.lines().count()), (2, 1), "{command}: {message}");
+        assert!(message.contains("reference.points: the path must stay above the ground at 0 m, found ("), "{message}");
+    }
+}
+
+#[test]
+fn a_key_without_an_end_is_refused_at_once() {
+    let directory = directory("key");
+    std::fs::write(directory.join("key.toml"), format!("{} = 1", "k".repeat(4_000_000))).unwrap();
+    let output = host_sim(&directory, &["certify", "key.toml"]);
+    let message = stderr(&output);
+    assert_eq!((status(&output), message.lines().count()), (2, 1));
+    assert!(message.len() < 3000 && message.contains("kk: unknown key (allowed: name, duration"), "{message}");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_device_without_an_end_is_refused_and_not_read_to_exhaustion() {
@@ -162,5 +202,12 @@ fn a_device_without_an_end_is_refused_and_not_read_to_exhaustion() {
         let message = stderr(&output);
         assert_eq!((status(&output), message.lines().count()), (2, 1), "{command}: {message}");
         assert!(message.contains("/dev/zero: cannot be read: longer than"), "{command}: {message}");
+    }
+    let sources = [&["identify", "/dev/zero"][..], &["identify", "log.csv", "--scenario", "/dev/zero"]];
+    for arguments in [&sources[..], &[&["sitl", "--parameters", "/dev/zero"]]].concat() {
+        let output = host_sim(&directory, arguments);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{arguments:?}: {message}");
+        assert!(message.contains("/dev/zero: cannot be read: longer than"), "{arguments:?}: {message}");
     }
 }

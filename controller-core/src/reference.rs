@@ -12,6 +12,7 @@
 mod bernstein;
 pub mod harmonic;
 pub mod hover;
+mod inside;
 pub mod phase;
 mod segment;
 mod spline;

@@ -31,11 +31,12 @@ fn random(generator: &mut Random) -> Vec<Waypoint> {
         .collect()
 }
 
-/// Random references the law accepts: wild ones leave its range.
+/// Random references the law accepts, each path of both kinds: wild ones leave its range.
 fn references(seed: u64, count: usize) -> impl Iterator<Item = (Vec<Waypoint>, Waypoints)> {
     let mut generator = Random(seed);
     std::iter::repeat_with(move || random(&mut generator))
-        .filter_map(|points| Waypoints::new(&points).ok().map(|waypoints| (points, waypoints)))
+        .flat_map(|points| [Waypoints::new(&points), Waypoints::inside(&points)].map(|path| (points.clone(), path)))
+        .filter_map(|(points, path)| path.ok().map(|path| (points, path)))
         .take(count)
 }
 
@@ -221,6 +222,42 @@ fn two_equal_points_in_a_row_are_a_wait_and_the_legs_around_it_do_not_feel_its_l
     assert_eq!(short.at(micros(2.5)), long.at(micros(2.5)));
     assert_eq!(short.bounds(), long.bounds());
     assert!(short.bounds().horizontal_acceleration < 1.2, "{:?}", short.bounds());
+}
+
+#[test]
+fn a_path_inside_stays_on_each_leg_in_the_box_of_its_two_points() {
+    let mut generator = Random(6);
+    let mut swings = 0;
+    for _ in 0..500 {
+        let points = random(&mut generator);
+        let (Ok(inside), Ok(smooth)) = (Waypoints::inside(&points), Waypoints::new(&points)) else { continue };
+        for pair in points.windows(2) {
+            let (from, to) = (micros(pair[0].time), micros(pair[1].time));
+            let out = |path: &Waypoints, time: u64| {
+                let position = path.at(time).position;
+                (0..3).any(|axis| {
+                    let [a, b] = [pair[0].position[axis], pair[1].position[axis]];
+                    let found = f64::from(position[axis]);
+                    found < a.min(b) - 1e-5 || found > a.max(b) + 1e-5
+                })
+            };
+            let times = || (0..=100).map(|i| from + (to - from) * i / 100);
+            assert!(!times().any(|time| out(&inside, time)), "{points:?}");
+            swings += u32::from(times().any(|time| out(&smooth, time)));
+        }
+    }
+    assert!(swings > 300, "the smooth paths hardly swing: {swings}");
+}
+
+#[test]
+fn a_path_inside_passes_points_in_a_line_at_a_constant_speed() {
+    let points = [0.0, 1.0, 2.0, 3.0].map(|t| waypoint(2.0 * t, [3.0 * t, -t, 1.0], 0.0));
+    let inside = Waypoints::inside(&points).unwrap();
+    for i in 0..=20 {
+        let reference = inside.at(2_000_000 + 100_000 * i);
+        assert!((reference.velocity - nalgebra::Vector3::new(1.5, -0.5, 0.0)).amax() < 1e-6, "{reference:?}");
+        assert!(reference.acceleration.amax() < 1e-5, "{reference:?}");
+    }
 }
 
 #[test]

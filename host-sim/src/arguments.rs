@@ -52,10 +52,15 @@ Exit status:
 
 const FLY_HELP: &str = "\
 Besides the file's limits and the certificate's bounds a flight claims
+- that every inequality of its certificate holds;
 - that its sampled loops are stable, with 1.5 times the gain, 1 / 1.5 of it or 2 ms more delay;
 - that it reached its reference for good within the first 90 % of its duration: from then on its position is within 0.2 m
-  of the reference's, off the ground, and its attitude, heading included, within 0.05 (modified Rodrigues parameters; 11 degrees).
-It is flown whatever it claims. Interrupted, it leaves no file.";
+  of the reference's, off the ground, and its attitude, heading included, within 0.05 (modified Rodrigues parameters;
+  11 degrees);
+- that once there it never strayed further than reference.tolerance (0.5 m if the file does not say).
+It is flown whatever it claims; the last line names the claims that fail. A waypoint path that leaves the box of its
+points is said, with place and time; a reference that goes below the ground is refused. While it flies, no other run
+writes into the directory. Interrupted, it leaves no file.";
 
 const CERTIFY_HELP: &str = "\
 CERTIFIED means two things. The commands are proven to stay within every limit, whatever the vehicle does: that is the
@@ -209,7 +214,8 @@ One line of 33 numbers in, one line of 4 numbers out, flushed, until end of inpu
   out:  thrust [N], torque x y z [N m]; not clipped to any limit
 The output uses the filters as they stand, which then advance by the line's dt (0.00025 to 0.1 s, and under
 the extended law at most 0.6 over the greater estimates.force_bandwidth). A line that cannot be used, or is longer than 64 KB, is
-answered by \"error: ...\" on its turn and changes nothing.";
+answered by \"error: ...\" on its turn and changes nothing. Beyond these, numbers cannot be used: x 1e6 m; v 300 m/s; omega
+and yaw rate 300 rad/s; a 300 m/s^2, j 1e4 m/s^3, s 1e6 m/s^4; yaw 1e6 rad, its acceleration 1e4 rad/s^2.";
 
 const HIL_HELP: &str = "\
 The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the file's order. Each moves

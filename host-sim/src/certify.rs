@@ -128,6 +128,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let tightest = certificate.tightest().map_or(String::new(), |tightest| {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
+    let swing = scenario.swing().map_or(String::new(), |swing| format!("reference: {swing}\n"));
     let projection = scenario
         .configuration
         .thrust_floor()
@@ -140,7 +141,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     };
     format!(
         "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{forms}\n\
-         {tightest}{projection}",
+         {tightest}{projection}{swing}",
         scenario.name,
     )
 }

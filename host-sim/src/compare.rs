@@ -167,17 +167,17 @@ pub fn compare(
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
 
-/// Whether `directory` can be made and written into: a check before long work that leaves no files behind.
+/// Makes `directory` and keeps others from writing into it; before long work, not after it.
 ///
 /// # Errors
 /// [`CompareError::Output`].
-pub fn writable(directory: &Path) -> Result<(), CompareError> {
-    let nearest = directory.ancestors().find(|path| path.exists()).unwrap_or(Path::new("."));
-    let failed = |error| CompareError::Output(directory.to_owned(), error);
-    WholeFile::try_name(&nearest.join("compare.csv")).map_err(failed)
+pub fn reserve(directory: &Path) -> Result<DirectoryLock, CompareError> {
+    let reserved = DirectoryLock::take(directory)
+        .and_then(|lock| WholeFile::try_name(&directory.join("compare.csv")).map(|()| lock));
+    reserved.map_err(|error| CompareError::Output(directory.to_owned(), error))
 }
 
-/// Writes all files of `comparison` into `directory`, after all of them were written in full.
+/// Writes all files of `comparison` into `directory`, which is reserved, after all of them were written in full.
 ///
 /// # Errors
 /// [`CompareError::Output`].
@@ -186,7 +186,6 @@ pub fn write(comparison: &Comparison, directory: &Path) -> Result<(), CompareErr
         let path = path.to_owned();
         |error| CompareError::Output(path, error)
     };
-    let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
     for (name, text) in &comparison.files {
         let path = directory.join(name);
         WholeFile::write(&path, text).map_err(failed(&path))?;

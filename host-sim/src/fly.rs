@@ -117,9 +117,10 @@ pub fn fly(
     let (flown, record, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
 
     let outcome = match law {
-        LawChoice::Ours => {
-            Outcome { certification: certification(&verdict), claims: claims::claims(scenario, &verdict, &flown) }
-        }
+        LawChoice::Ours => Outcome {
+            certification: certification(scenario, &verdict),
+            claims: claims::claims(scenario, &verdict, &flown),
+        },
         LawChoice::Rival(..) => Outcome {
             certification: format!(
                 "under the law {}, of which nothing is proven; the bounds are those of ours",
@@ -244,15 +245,17 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> FlyError {
 }
 
 /// Whether the configuration is one that may fly for real, in a sentence.
-fn certification(verdict: &Verdict) -> String {
-    match verdict.refusal() {
+fn certification(scenario: &Scenario, verdict: &Verdict) -> String {
+    let swing = scenario.swing().map_or(String::new(), |swing| format!("; {swing}"));
+    let sentence = match verdict.refusal() {
         None => "certified: its commands are proven to stay within the limits for every reference within this one's bounds, \
                  and its small motions are stable with margin"
             .to_owned(),
         Some(refusal) => {
             format!("not certified: {refusal}; what was flown here proves nothing about other flights")
         }
-    }
+    };
+    sentence + &swing
 }
 
 fn report(scenario: &Scenario, outcome: &Outcome) -> String {

@@ -212,7 +212,7 @@ impl Log {
         "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4,controller_us";
 
     fn create(path: &Path) -> io::Result<Self> {
-        let mut file = WholeFile::create(path)?;
+        let mut file = WholeFile::alone(path)?;
         writeln!(file, "{}", Self::HEADER)?;
         Ok(Self { file })
     }

@@ -26,21 +26,23 @@ use std::io::{self, BufRead, Read, Write};
 /// Numbers of a line.
 const NUMBERS: usize = 33;
 
-/// What messages call them: a name, and what its elements are called.
-const FIELDS: [(&str, &[&str]); 13] = [
-    ("t", &[""]),
-    ("dt", &[""]),
-    ("x", &AXES),
-    ("v", &AXES),
-    ("q", &[".x", ".y", ".z", ".w"]),
-    ("omega", &AXES),
-    ("reference x", &AXES),
-    ("reference v", &AXES),
-    ("reference a", &AXES),
-    ("reference j", &AXES),
-    ("reference s", &AXES),
-    ("yaw", &[""]),
-    ("yaw", &["_rate", "_acceleration"]),
+/// What messages call them, what their elements are called, and how large they may be: beyond what any vehicle of this
+/// kind does, they are nonsense, which the law would remember.
+const FIELDS: [(&str, &[&str], f64); 14] = [
+    ("t", &[""], f64::MAX),
+    ("dt", &[""], f64::MAX),
+    ("x", &AXES, 1e6),
+    ("v", &AXES, 1e4),
+    ("q", &[".x", ".y", ".z", ".w"], 2.0),
+    ("omega", &AXES, 1e4),
+    ("reference x", &AXES, 1e6),
+    ("reference v", &AXES, 1e4),
+    ("reference a", &AXES, 1e4),
+    ("reference j", &AXES, 1e6),
+    ("reference s", &AXES, 1e8),
+    ("yaw", &[""], 1e6),
+    ("yaw", &["_rate"], 1e4),
+    ("yaw", &["_acceleration"], 1e6),
 ];
 const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
@@ -181,27 +183,27 @@ impl LawServer {
     }
 }
 
-/// Exactly 33 finite numbers that fit single precision.
+/// Exactly 33 finite numbers within their ranges.
 fn parse(line: &str) -> Result<[f64; NUMBERS], String> {
     let found = line.split_whitespace().count();
     if found != NUMBERS {
         return Err(format!("needs {NUMBERS} numbers on a line, found {found}"));
     }
-    let fields = FIELDS.iter().flat_map(|(name, elements)| elements.iter().map(move |element| (name, element)));
+    let fields = FIELDS.iter().flat_map(|field| field.1.iter().map(move |element| (field.0, element, field.2)));
     let mut values = [0.0; NUMBERS];
-    for ((value, word), (name, element)) in values.iter_mut().zip(line.split_whitespace()).zip(fields) {
-        *value = number(word).map_err(|problem| format!("{name}{element}: {problem}"))?;
+    for ((value, word), (name, element, greatest)) in values.iter_mut().zip(line.split_whitespace()).zip(fields) {
+        *value = number(word, greatest).map_err(|problem| format!("{name}{element}: {problem}"))?;
     }
     Ok(values)
 }
 
-fn number(word: &str) -> Result<f64, String> {
+fn number(word: &str, greatest: f64) -> Result<f64, String> {
     let number: f64 = word.parse().map_err(|_| format!("must be a number, found {word:?}"))?;
     if !number.is_finite() {
         return Err(format!("must be finite, found {number}"));
     }
-    if number.abs() > f64::from(f32::MAX) {
-        return Err(format!("must be within ±{:e}, found {number:e}", f32::MAX));
+    if number.abs() > greatest {
+        return Err(format!("must be within ±{greatest}, found {number:e}"));
     }
     Ok(number)
 }

@@ -189,7 +189,8 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let (session, ground) = (arguments.session()?, arguments.ground()?);
     let (interrupt, patience) = (watch()?, arguments.patience()?);
     if let Some(log) = &arguments.log {
-        WholeFile::try_name(log).map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
+        let alone = WholeFile::alone(log).map(drop);
+        alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
     }
     let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));

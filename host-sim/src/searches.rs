@@ -13,7 +13,7 @@ use host_sim::tune::effort::Effort;
 use host_sim::tune::{Tuned, output, tune, widest_bounds};
 use host_sim::whole_file::WholeFile;
 use scenario::{Scenario, bounds, check_name};
-use std::io;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -27,7 +27,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let original = text_of(Some(&arguments.file))?;
     let read = Scenario::parse(&original, &arguments.file.display().to_string());
     let mut scenario = read.map_err(|error| error.to_string())?;
-    let (name, path) = destination(arguments, &scenario)?;
+    let (name, path, mut file) = destination(arguments, &scenario)?;
     scenario.name = name;
     let unwritable = |error| format!("{}: cannot be written: {error}", path.display());
     let effort = Effort { generations: arguments.generations, population: arguments.population, seed: arguments.seed };
@@ -47,7 +47,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         }
     };
     let text = output::rewritten(&original, &tuned).map_err(|error| error.to_string())?;
-    WholeFile::write(&path, &text).map_err(unwritable)?;
+    file.write_all(text.as_bytes()).and_then(|()| file.finish()).map_err(unwritable)?;
     let mut summary = found(&tuned, &path, interrupt.signal().is_some())?;
     if arguments.widen {
         let (factor, widest) =
@@ -87,13 +87,15 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         }
         error => Err(error.to_string()),
     };
+    // A search takes minutes: whatever is wrong with the rest shows now.
+    let reserved = compare::certified(&scenario).and_then(|_| compare::reserve(&directory));
+    let _lock = match reserved {
+        Ok(lock) => lock,
+        Err(error) => return failed(error),
+    };
     let (set, found) = match known {
         Ok(set) => (set, None),
         Err((effort, name)) => {
-            // A search takes minutes: whatever is wrong with the rest shows now.
-            if let Err(error) = compare::certified(&scenario).map(drop).and_then(|()| compare::writable(&directory)) {
-                return failed(error);
-            }
             if name == FOUND {
                 complain(format_args!(
                     "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
@@ -158,8 +160,9 @@ fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Re
     Ok(())
 }
 
-/// The name of a tuned scenario and the file it goes to. Whatever is wrong with them shows now, not after the search.
-fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String, PathBuf), String> {
+/// The name of a tuned scenario and the file it goes to, begun: whatever is wrong with them shows now, not after the
+/// search.
+fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String, PathBuf, WholeFile), String> {
     let stem = arguments.out.as_deref().and_then(Path::file_stem);
     let name = stem.map_or_else(|| format!("{}-tuned", scenario.name), |stem| stem.to_string_lossy().into_owned());
     check_name(&name).map_err(|error| format!("--out: becomes the scenario's name: {error}"))?;
@@ -167,10 +170,8 @@ fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String
     if same_file(&path, &arguments.file) {
         return Err(format!("{}: --out must be another file than the one tuned", path.display()));
     }
-    let writable =
-        if path.is_dir() { Err(io::ErrorKind::IsADirectory.into()) } else { WholeFile::create(&path).map(drop) };
-    writable.map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
-    Ok((name, path))
+    let file = WholeFile::alone(&path).map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
+    Ok((name, path, file))
 }
 
 /// A search's line about the constants it found.

@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -18,6 +18,7 @@ static STARTED: AtomicU64 = AtomicU64::new(0);
 /// A file that shows up under its name only when it is complete; dropped before that, it leaves nothing behind.
 ///
 /// A device or a pipe is written to as it stands: it must not be replaced by a file of its name.
+#[derive(Debug)]
 pub struct WholeFile {
     writer: BufWriter<File>,
     /// Under which name it grows, and which one it gets; none for what is no regular file.
@@ -42,6 +43,32 @@ impl WholeFile {
         let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED}"));
         let writer = BufWriter::new(File::create(&temporary)?);
         Ok(Self { writer, names: Some((temporary, path)) })
+    }
+
+    /// As [`Self::create`], and keeps other programs from starting the same file in this way until it is dropped or
+    /// finished: of two runs of minutes the later one would silently replace the other's result.
+    ///
+    /// # Errors
+    /// As [`Self::create`]'s, or if another program is at it; the text says what to do.
+    pub fn alone(path: &Path) -> io::Result<Self> {
+        let file = Self::create(path)?;
+        let Some((temporary, path)) = &file.names else { return Ok(file) };
+        // The lock is on what grows: it ends with the program and leaves nothing behind. Where a file system has no
+        // locks, there is none.
+        let _ = file.writer.get_ref().lock();
+        let directory = temporary.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let locked = |found: PathBuf| {
+            let other = File::open(found).map(|other| other.try_lock_shared());
+            matches!(other, Ok(Err(TryLockError::WouldBlock)))
+        };
+        let others = std::fs::read_dir(directory)?.flatten().map(|entry| entry.path());
+        if others.filter(|found| is_unfinished(found, path) && !is_own(found)).any(locked) {
+            return Err(io::Error::new(
+                io::ErrorKind::WouldBlock,
+                "another run writes it; wait for its end, or choose another name",
+            ));
+        }
+        Ok(file)
     }
 
     /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.
@@ -116,6 +143,13 @@ pub fn is_unfinished(found: &Path, path: &Path) -> bool {
     let name = found.file_name().map(|name| name.to_string_lossy());
     let beginning = hidden(path);
     name.zip(beginning).is_some_and(|(name, beginning)| name.starts_with(&beginning) && name.ends_with(UNFINISHED))
+}
+
+/// Whether this program started what grows under the name `found`.
+fn is_own(found: &Path) -> bool {
+    let name = found.file_name().map(|name| name.to_string_lossy());
+    let process = std::process::id().to_string();
+    name.is_some_and(|name| name.split('.').nth(2) == Some(process.as_str()))
 }
 
 /// What a name stands for that is a symbolic link, whether that exists or not: the link stays one.

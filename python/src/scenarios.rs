@@ -58,7 +58,7 @@ impl Scenario {
     fn load(path: PathBuf) -> PyResult<Self> {
         let file = path.display().to_string();
         let text =
-            std::fs::read_to_string(&path).map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
+            scenario::text::read(&path).map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
         Self::of(text, file)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
+use crate::path::{self, Swing};
 use crate::reality::sensors::{self, VelocitySource};
 use crate::reality::{self, Reality, estimator};
 use crate::reference::ReferenceKind;
@@ -125,6 +126,7 @@ impl Scenario {
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;
+        path::check_ground(&reference, &*trajectory, reality.ground)?;
         let campaign = campaign::read(root, &timing, &configuration)?;
         Ok(Self {
             name,
@@ -139,6 +141,12 @@ impl Scenario {
             trajectory,
             campaign,
         })
+    }
+
+    /// How far its path leaves the box of its waypoints, if it has any and does.
+    #[must_use]
+    pub fn swing(&self) -> Option<Swing> {
+        Swing::of(&self.reference, &*self.trajectory)
     }
 
     /// From a tick to the moment its wrench acts, s.

@@ -34,6 +34,7 @@ pub mod extended;
 pub mod file;
 pub mod inertia;
 pub mod initial;
+pub mod path;
 pub mod reality;
 pub mod reference;
 pub mod sampled_loop;

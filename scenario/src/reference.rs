@@ -31,7 +31,21 @@ pub enum ReferenceKind {
     /// A cosine on each axis, a heading that turns and swings.
     Harmonic(HarmonicParameters),
     /// Points with times, and a path through them.
-    Waypoints(Vec<Waypoint>),
+    Waypoints {
+        /// The points.
+        points: Vec<Waypoint>,
+        /// Which way between them.
+        path: Path,
+    },
+}
+
+/// The way between waypoints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Path {
+    /// The smoothest.
+    Smooth,
+    /// Inside the box of each leg's two points.
+    Inside,
 }
 
 impl ReferenceKind {
@@ -47,7 +61,7 @@ impl ReferenceKind {
         match section.text("kind")? {
             "hover" => read_hover(&section),
             "harmonic" => read_harmonic(&section).map(Self::Harmonic),
-            "waypoints" => read_waypoints(&section).map(Self::Waypoints),
+            "waypoints" => read_waypoints(&section),
             other => {
                 let allowed = "must be \"hover\", \"harmonic\" or \"waypoints\"";
                 Err(FieldError::new(section.path_of("kind"), format!("{allowed}, found {other:?}")))
@@ -79,7 +93,8 @@ impl ReferenceKind {
                 Arc::new(Hover::new(position.map(|value| value as f32), Heading::new(direction, 0.0, 0.0)?)?)
             }
             Self::Harmonic(parameters) => Arc::new(Harmonic::new(*parameters)?),
-            Self::Waypoints(points) => Arc::new(Waypoints::new(points)?),
+            Self::Waypoints { points, path: Path::Smooth } => Arc::new(Waypoints::new(points)?),
+            Self::Waypoints { points, path: Path::Inside } => Arc::new(Waypoints::inside(points)?),
         })
     }
 }
@@ -111,9 +126,17 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
     })
 }
 
-/// `heading_deg` is zero where it is left out.
-fn read_waypoints(section: &Section) -> Result<Vec<Waypoint>, FieldError> {
-    section.allow(&["kind", "tolerance", "points"])?;
+/// `heading_deg` is zero and the path the smoothest where they are left out.
+fn read_waypoints(section: &Section) -> Result<ReferenceKind, FieldError> {
+    section.allow(&["kind", "tolerance", "points", "path"])?;
+    let path = match section.has("path").then(|| section.text("path")).transpose()? {
+        None | Some("smooth") => Path::Smooth,
+        Some("inside") => Path::Inside,
+        Some(other) => {
+            let problem = format!("must be \"smooth\" or \"inside\", found {other:?}");
+            return Err(FieldError::new(section.path_of("path"), problem));
+        }
+    };
     let read = |point: &Section| {
         point.allow(&["t", "position", "heading_deg"])?;
         Ok(Waypoint {
@@ -122,5 +145,6 @@ fn read_waypoints(section: &Section) -> Result<Vec<Waypoint>, FieldError> {
             heading: point.number_or("heading_deg", 0.0)?.to_radians(),
         })
     };
-    section.sections("points")?.iter().map(read).collect()
+    let points = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
+    Ok(ReferenceKind::Waypoints { points, path })
 }

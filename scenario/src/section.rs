@@ -8,6 +8,10 @@ use nalgebra::Vector3;
 use std::fmt;
 use toml::{Table, Value};
 
+/// The longest key that may be a misspelt one, bytes: the time to compare two keys grows with the product of their
+/// lengths.
+const LONGEST_KEY: usize = 200;
+
 /// A field that was refused, and why; `problem` also says what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldError {
@@ -18,10 +22,21 @@ pub struct FieldError {
 }
 
 impl FieldError {
-    /// Refuses `field`.
+    /// Refuses `field`. Both texts lose their middle where a key or a value of the file makes them endless.
     pub fn new(field: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self { field: field.into(), problem: problem.into() }
+        Self { field: shortened(field.into(), 200), problem: shortened(problem.into(), 2000) }
     }
+}
+
+/// `text` without its middle where it has more than `longest` characters.
+fn shortened(text: String, longest: usize) -> String {
+    let length = text.chars().count();
+    if length <= longest {
+        return text;
+    }
+    let part = longest / 2;
+    let head: String = text.chars().take(part).collect();
+    head + "…" + &text.chars().skip(length - part).collect::<String>()
 }
 
 impl fmt::Display for FieldError {
@@ -58,13 +73,14 @@ impl<'a> Section<'a> {
         match self.table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
             Some(key) => {
-                let nearest = known.iter().min_by_key(|candidate| strsim::damerau_levenshtein(candidate, key));
-                let nearest = nearest.copied().unwrap_or_default();
+                let near = |candidate: &&&str| strsim::damerau_levenshtein(candidate, key);
+                let nearest = known.iter().filter(|_| key.len() <= LONGEST_KEY).min_by_key(near);
+                let nearest = nearest.map_or(String::new(), |nearest| format!(", did you mean \"{nearest}\"?"));
                 let all = known.join(", ");
                 Err(FieldError::new(
                     // A key may hold line ends, and whatever else a terminal acts on.
                     self.path_of(&key.escape_debug().to_string()),
-                    format!("unknown key, did you mean \"{nearest}\"? (allowed: {all})"),
+                    format!("unknown key{nearest} (allowed: {all})"),
                 ))
             }
         }

@@ -9,9 +9,11 @@
 //! every instant, not only at those somebody looked at; they are tight within 1e-3 unless a segment's control points
 //! lie a hundred times further out than its curve does.
 //!
-//! What it cannot do: choose the times, or keep the path from overshooting between points. Legs of very different
-//! duration overshoot most, because bending a long one costs little. About 10 kB in memory.
+//! Such a path may swing out between points, most of all where legs differ much in duration, because bending a long one
+//! costs little. [`Waypoints::inside`] takes another one that never does (`reference::inside`), at the cost of more
+//! acceleration. What neither can do: choose the times. About 10 kB in memory.
 
+use super::inside;
 use super::segment::{Anchor, Segment, Suprema};
 use super::spline::{self, Derivatives, REST, Span};
 use super::{DERIVATIVE_RANGE, Reference, ReferenceBounds, Trajectory, outwards, phase};
@@ -107,13 +109,25 @@ pub struct Waypoints {
 }
 
 impl Waypoints {
-    /// Through `points`, times strictly increasing from zero; a single point is a hover.
+    /// The smoothest path through `points`, times strictly increasing from zero; a single point is a hover.
     ///
     /// # Errors
     /// Names the field, as in the scenario file: no point or more than [`CAPACITY`]; a number that is not finite or out
     /// of range; a first time that is not zero, or one that is not a microsecond later than the one before; points so
     /// far apart in so short a time that a derivative leaves the range of the law.
     pub fn new(points: &[Waypoint]) -> Result<Self, ParameterError> {
+        Self::through(points, spline::solve)
+    }
+
+    /// As [`Self::new`], on a path that stays on every leg inside the box of the leg's two points.
+    ///
+    /// # Errors
+    /// As [`Self::new`]'s.
+    pub fn inside(points: &[Waypoint]) -> Result<Self, ParameterError> {
+        Self::through(points, inside::solve)
+    }
+
+    fn through(points: &[Waypoint], solve: Solve) -> Result<Self, ParameterError> {
         let mut knots: heapless::Vec<Knot, CAPACITY> = heapless::Vec::new();
         let names = TIME.into_iter().zip(POSITION).zip(HEADING);
         for (point, ((time, position), heading)) in points.iter().zip(names) {
@@ -129,23 +143,26 @@ impl Waypoints {
         let too_few = ParameterError { field: "reference.points", reason: Reason::TooFew(1) };
         let last = knots.last().ok_or(too_few)?.anchor();
 
-        let segments = connect(&knots);
+        let segments = connect(&knots, solve);
         let bounds = bounds(&segments)?;
         Ok(Self { segments, last, bounds })
     }
 }
 
+/// How to pass the points between legs that begin and end at rest.
+type Solve = fn(&[Span]) -> heapless::Vec<Derivatives, { spline::SEGMENTS }>;
+
 /// The polynomial pieces between the knots. All storage has room for [`CAPACITY`] of them.
-fn connect(knots: &[Knot]) -> heapless::Vec<Segment, { spline::SEGMENTS }> {
+fn connect(knots: &[Knot], solve: Solve) -> heapless::Vec<Segment, { spline::SEGMENTS }> {
     let pairs = || knots.iter().zip(knots.iter().skip(1));
     let mut spans: heapless::Vec<Span, { spline::SEGMENTS }> = heapless::Vec::new();
     for (knot, next) in pairs() {
         let _ = spans.push(knot.span(next));
     }
     let mut ends: heapless::Vec<Derivatives, { spline::SEGMENTS }> = heapless::Vec::new();
-    // Between two waits, or the ends, one spline that starts and stops at rest; a wait is a run of its own.
+    // Between two waits, or the ends, one run that starts and stops at rest; a wait is a run of its own.
     for run in spans.chunk_by(|span, next| !span.waits() && !next.waits()) {
-        for end in spline::solve(run).into_iter().chain(core::iter::once(REST)) {
+        for end in solve(run).into_iter().chain(core::iter::once(REST)) {
             let _ = ends.push(end);
         }
     }

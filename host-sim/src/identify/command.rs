@@ -8,8 +8,11 @@ use super::{identify, margins, telling, ulog};
 use crate::table::{aligned, short};
 use crate::whole_file::WholeFile;
 use scenario::Scenario;
-use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// The longest log, bytes: a day of the fastest one.
+const LONGEST_LOG: u64 = 1 << 30;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -75,26 +78,29 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     } else {
         "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
     };
-    if let Some((name, path)) = out {
+    if let Some((name, path, mut file)) = out {
         let text = rewritten(&task.original, &name, &Values::of(&told), scenario.timing.step()).map_err(of_file)?;
-        WholeFile::write(path, &text).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
+        let written = file.write_all(text.as_bytes()).and_then(|()| file.finish());
+        written.map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
         report += &format!("written to {}\n", path.display());
     }
     Ok(report)
 }
 
-/// The name of the scenario found, and the file it goes to. Whatever is wrong with them shows now, not after the fit.
-fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path), Refused> {
+/// The name of the scenario found, and the file it goes to, begun: whatever is wrong with them shows now, not after the
+/// fit.
+fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path, WholeFile), Refused> {
     let name = path.file_stem().map_or_else(|| usual.to_owned(), |stem| stem.to_string_lossy().into_owned());
     scenario::check_name(&name)
         .map_err(|what| Refused::Input(format!("--out: becomes the scenario's name: {what}")))?;
-    WholeFile::try_name(path).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
-    Ok((name, path))
+    let file = WholeFile::alone(path).map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
+    Ok((name, path, file))
 }
 
 /// A log of either kind; a ULog is known by its first bytes.
 fn read(path: &Path) -> Result<FlightLog, Refused> {
-    let bytes = fs::read(path).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
+    let bytes =
+        scenario::text::bytes(path, LONGEST_LOG).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
     let log = if bytes.starts_with(&ulog::MAGIC) {
         ulog::read(&bytes)
     } else {

@@ -20,6 +20,8 @@ const BLANK: Record = [u32::MAX; _];
 pub struct DeskFlash {
     records: Rc<RefCell<Vec<Record>>>,
     file: Option<PathBuf>,
+    /// Held for the session: two of them would undo each other's parameters.
+    _alone: Option<Rc<WholeFile>>,
 }
 
 impl DeskFlash {
@@ -29,16 +31,17 @@ impl DeskFlash {
     /// In words, if the file cannot be read, is something else, or could not be written later: what is set in a session
     /// is to outlast it.
     pub fn open(file: Option<PathBuf>) -> Result<Self, String> {
-        let flash = Self { records: Rc::new(RefCell::new(vec![BLANK; 2 * RECORDS])), file };
+        let unwritable = |path: &PathBuf, error| format!("--parameters {}: cannot be written: {error}", path.display());
+        let alone = |path: &PathBuf| WholeFile::alone(path).map_err(|error| unwritable(path, error));
+        let _alone = file.as_ref().map(alone).transpose()?.map(Rc::new);
+        let flash = Self { records: Rc::new(RefCell::new(vec![BLANK; 2 * RECORDS])), file, _alone };
         let Some(path) = &flash.file else { return Ok(flash) };
-        WholeFile::try_name(path)
-            .map_err(|error| format!("--parameters {}: cannot be written: {error}", path.display()))?;
-        let image = match std::fs::read(path) {
+        let wanted = 2 * RECORDS * BYTES;
+        let image = match scenario::text::bytes(path, wanted as u64) {
             Ok(image) => image,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(flash),
             Err(error) => return Err(format!("--parameters {}: cannot be read: {error}", path.display())),
         };
-        let wanted = 2 * RECORDS * BYTES;
         if image.len() != wanted {
             return Err(format!(
                 "--parameters {}: is no file of parameters: it has not {wanted} bytes",

@@ -21,7 +21,7 @@ impl Record {
     /// # Errors
     /// In words, if it cannot be written.
     pub fn create(path: &Path, scenario: &Scenario, text: &str) -> Result<Self, String> {
-        let begin = || Recording::begin(WholeFile::create(path)?, scenario, text, TOPICS);
+        let begin = || Recording::begin(WholeFile::alone(path)?, scenario, text, TOPICS);
         let recording = begin().map_err(failed(path))?;
         let period = scenario.timing.period_us;
         Ok(Self { recording, path: path.to_owned(), period, due: period / 2 })

@@ -63,3 +63,13 @@ fn lists_of_tables_carry_their_index() {
     let points = Section::root(&table).section("r").unwrap().sections("points").unwrap();
     assert_eq!(points[1].number("t").unwrap_err().field, "r.points[1].t");
 }
+
+#[test]
+fn keys_and_values_without_an_end_are_refused_at_once_and_in_a_short_line() {
+    let endless = "k".repeat(4_000_000);
+    let unknown = table(&format!("{endless} = 1"));
+    let error = Section::root(&unknown).allow(&["mass", "inertia"]).unwrap_err().to_string();
+    assert!(error.len() < 3000 && error.ends_with("k: unknown key (allowed: mass, inertia)"), "{error}");
+    let error = FieldError::new("name", format!("must be short, found {endless:?}")).to_string();
+    assert!(error.len() < 3000 && error.starts_with("name: must be short, found \"kkk"), "{error}");
+}
