@@ -112,9 +112,6 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
     clock::halt_with_the_core();
-    if let Some(mut core) = cortex_m::Peripherals::take() {
-        core.SCB.enable_icache();
-    }
 
     // The motors first: their lines float until here.
     let pins = Pins(

@@ -7,7 +7,7 @@ pub mod card;
 pub mod clock;
 pub mod crystal;
 pub mod executors;
-mod fault;
+pub(super) mod fault;
 mod handover;
 pub mod imu;
 pub mod light;

@@ -22,12 +22,13 @@
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};
+use crate::boards::guard::Fault;
 use crate::dshot::{BITS, zero_width};
 use crate::ending::Ending;
 use crate::hardware::MOTORS;
 use core::panic::PanicInfo;
 use cortex_m::peripheral::SCB;
-use cortex_m_rt::{ExceptionFrame, exception};
+use cortex_m_rt::exception;
 use embassy_stm32::pac::iwdg::vals::Key;
 use embassy_stm32::pac::timer::TimGp16;
 
@@ -51,9 +52,12 @@ fn panicked(info: &PanicInfo<'_>) -> ! {
     end(|| defmt::error!("{}", defmt::Display2Format(info)))
 }
 
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    end(|| defmt::error!("fault at {=u32:#010x}, called from {=u32:#010x}", frame.pc(), frame.lr()))
+/// The core could not go on.
+pub fn faulted(fault: &Fault) -> ! {
+    end(|| match *fault {
+        Fault { is_overflow: true, .. } => defmt::error!("stack overflow"),
+        Fault { place, status, .. } => defmt::error!("fault {=u32:#x} at {}", status, place),
+    })
 }
 
 #[exception]

@@ -3,19 +3,20 @@
 //! Control and the sensor have executors of their own, in interrupts; everything else shares a third, but for the
 //! memory card, which has the thread to itself.
 
+use super::bootloader;
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
+use super::handover::quiet;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
 use super::restart::{Cause, Chip, flags};
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
-use super::{bootloader, handover};
 use crate::boards::chosen::{
     self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
     SERVICES_INTERRUPT,
 };
-use crate::boards::recorder;
+use crate::boards::{guard, handover, recorder};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::link::port::Line;
@@ -37,8 +38,10 @@ type Repeated = repeat::Repeated<CriticalSectionRawMutex>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
-    handover::begin_anew();
+    let mut core = handover::begin_anew(quiet);
     bootloader::enter_if_wished(flags() == Cause::Software);
+    guard::watch(&mut core.MPU);
+    let has_cache = handover::cache_instructions(&mut core);
     let board = chosen::take();
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
@@ -46,6 +49,9 @@ pub fn run() -> ! {
     if !board.has_crystal {
         shared.clock_doubtful.raise();
         shared.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
+    }
+    if !has_cache {
+        shared.announce(Event::new(Severity::Warning, "The instruction cache is not on: slow"));
     }
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
