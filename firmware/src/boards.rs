@@ -6,6 +6,8 @@ pub mod crazyflie_bolt;
 pub mod guard;
 #[cfg(any(feature = "stm32", feature = "mps2"))]
 pub mod handover;
+#[cfg(any(feature = "stm32", feature = "mps2"))]
+pub mod kept;
 #[cfg(feature = "micoair-h743")]
 pub mod micoair_h743;
 #[cfg(feature = "mps2")]

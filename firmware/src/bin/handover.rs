@@ -1,6 +1,6 @@
 //! Starts twice on an emulated board. The first start spoils all that a bootloader may leave of the core, and jumps to
-//! the image's first instruction as a bootloader does; the second looks whether it begins as after a reset. Then its
-//! stack overflows. Run by `.ci/emulated handover`.
+//! the image's first instruction as a bootloader does; the second looks whether it begins as after a reset. Then
+//! it leaves last words and resets the chip; the third start finds them, and its stack overflows. Run by `.ci/emulated handover`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -13,11 +13,16 @@ mod target {
     use cortex_m::register::{basepri, control, primask};
     use cortex_m_rt::exception;
     use cortex_m_semihosting::hprintln;
+    use firmware::boards::kept;
     use firmware::boards::mps2::{self, exit};
+    use firmware::last_words::LastWords;
 
     /// Which start this is: memory that no start clears.
     #[unsafe(link_section = ".uninit.starts")]
     static mut STARTS: MaybeUninit<u32> = MaybeUninit::uninit();
+
+    /// Why the third start comes about.
+    const WORDS: &str = "a restart of the test's own";
 
     /// What [`STARTS`] holds once the first start is over.
     const SECOND: u32 = 0x5EC0_4D00;
@@ -37,6 +42,13 @@ mod target {
     fn main() -> ! {
         let control = control::read();
         // SAFETY: one thread, aligned memory that nobody else touches; any bits are a number.
+        if let Some(words) = kept::take(false) {
+            check("kept over the reset", words.as_str() == WORDS);
+            let _ = mps2::begin();
+            hprintln!("kept over the reset");
+            hprintln!("{}", overflow(black_box(1)));
+            exit::fail("no stack overflow")
+        }
         let is_first = unsafe { (&raw const STARTS).cast::<u32>().read_volatile() } != SECOND;
         if is_first {
             // SAFETY: as above; all that it spoils is there for this.
@@ -64,8 +76,8 @@ mod target {
         check("no region of protected memory but the guard", is_unprotected(&mut core));
         check("an interrupt's floats survive a more urgent one", floats_survive(&mut core));
         hprintln!("as after a reset");
-        hprintln!("{}", overflow(black_box(1)));
-        exit::fail("no stack overflow")
+        kept::keep(&LastWords::new(WORDS));
+        cortex_m::peripheral::SCB::sys_reset()
     }
 
     fn check(what: &str, is_so: bool) {

@@ -10,7 +10,7 @@
 //!
 //! A function whose frame is larger than the guard could step over it; `.ci/budgets` holds every frame to less.
 
-use core::ptr;
+use core::{fmt, ptr};
 use cortex_m::peripheral::{MPU, SCB};
 use cortex_m_rt::ExceptionFrame;
 
@@ -52,7 +52,6 @@ pub fn watch(mpu: &mut MPU) {
 }
 
 /// What the core says of a fault.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault {
     /// Where it was, and where that was called from; none where the stack that says so is no stack.
     pub place: Option<(u32, u32)>,
@@ -64,6 +63,17 @@ pub struct Fault {
     pub bus_address: u32,
     /// Whether the stack ran into the guard.
     pub is_overflow: bool,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_overflow { "stack overflow" } else { "fault" })?;
+        if let Some((place, caller)) = self.place {
+            write!(f, " at {place:#010x} from {caller:#010x}")?;
+        }
+        let Self { status, hard_status, bus_address, .. } = self;
+        write!(f, ", CFSR {status:#010x}, HFSR {hard_status:#010x}, BFAR {bus_address:#010x}")
+    }
 }
 
 impl Fault {

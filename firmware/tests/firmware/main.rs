@@ -16,6 +16,7 @@ mod imu;
 mod imu_calibration;
 mod imu_flow;
 mod journal;
+mod last_words;
 mod link_commands;
 mod link_frames;
 mod link_messages;

@@ -29,7 +29,7 @@ fn panicked(info: &PanicInfo<'_>) -> ! {
 
 /// The processor could not go on.
 pub fn faulted(fault: &Fault) -> ! {
-    fail(format_args!("{fault:x?}"))
+    fail(fault)
 }
 
 /// An interrupt that nobody handles.

@@ -5,7 +5,8 @@
 //! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves
 //!    whether it was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
 //!    log.
-//! 2. the log gets the panic's message, or the fault's place.
+//! 2. the panic's message, or the fault's place and registers, go to memory that the restart leaves as it is
+//!    ([`crate::last_words`]), and to the log.
 //! 3. stop frames go on for long enough (25 ms or more) for a probe to fetch the log, which a restart empties.
 //! 4. the chip restarts.
 //!
@@ -15,17 +16,20 @@
 //! then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included,
 //! so it needs no waveform: sixteen periods at the width of a zero.
 //!
-//! What this does not reach: a core that cannot run any code (a stack that overflowed into the fault handler, a clock
-//! that failed). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
+//! A stack that overflowed is no hindrance: a fault begins it anew ([`crate::boards::guard`]).
+//!
+//! What this does not reach: a core that cannot run any code (a clock that failed, a fault in a fault). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
 //! time, and the controllers stop for want of frames within their own time-out. The watchdog is fed once before these
 //! steps, so that the restart is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};
 use crate::boards::guard::Fault;
+use crate::boards::kept;
 use crate::dshot::{BITS, zero_width};
 use crate::ending::Ending;
 use crate::hardware::MOTORS;
+use crate::last_words::LastWords;
 use core::panic::PanicInfo;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
@@ -49,26 +53,27 @@ static ENDING: Ending = Ending::new();
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
-    end(|| defmt::error!("{}", defmt::Display2Format(info)))
+    end(|| LastWords::panic(info))
 }
 
 /// The core could not go on.
 pub fn faulted(fault: &Fault) -> ! {
-    end(|| match *fault {
-        Fault { is_overflow: true, .. } => defmt::error!("stack overflow"),
-        Fault { place, status, .. } => defmt::error!("fault {=u32:#x} at {}", status, place),
-    })
+    end(|| LastWords::new(fault))
 }
 
 #[exception]
 unsafe fn DefaultHandler(interrupt: i16) -> ! {
-    end(|| defmt::error!("unexpected interrupt {=i16}", interrupt))
+    end(|| LastWords::new(format_args!("unexpected interrupt {interrupt}")))
 }
 
-fn end(log: impl FnOnce()) -> ! {
+fn end(words: impl FnOnce() -> LastWords) -> ! {
     cortex_m::interrupt::disable();
     WATCHDOG.kr().write(|w| w.set_key(Key::RESET));
-    ENDING.act(stop, log);
+    ENDING.act(stop, || {
+        let words = words();
+        kept::keep(&words);
+        defmt::error!("{=str}", words.as_str());
+    });
     SCB::sys_reset()
 }
 

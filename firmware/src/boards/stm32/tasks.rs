@@ -16,9 +16,10 @@ use crate::boards::chosen::{
     self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
     SERVICES_INTERRUPT,
 };
-use crate::boards::{guard, handover, recorder};
+use crate::boards::{guard, handover, kept, recorder};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
+use crate::last_words::LastWords;
 use crate::link::port::Line;
 use crate::outputs::Outputs;
 use crate::parameters::storage::Storage;
@@ -46,6 +47,11 @@ pub fn run() -> ! {
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
+    let kept = kept::take(board.restart.is_power());
+    if let Some(words) = kept.or_else(|| board.restart.words().map(LastWords::new)) {
+        defmt::error!("{=str}", words.as_str());
+        shared.last_words.put(words, 0);
+    }
     if !board.has_crystal {
         shared.clock_doubtful.raise();
         shared.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
@@ -56,7 +62,7 @@ pub fn run() -> ! {
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
-    if let Some(memory) = recorder::take(board.restart == Cause::Power) {
+    if let Some(memory) = recorder::take(board.restart.is_power()) {
         shared.recorder.attach(Ring::recover(memory));
     }
     static PLACE: boot::Place = boot::Place::new();
