@@ -63,7 +63,9 @@ impl LastWords {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; SIZE] {
         let mut memory = [0; SIZE];
-        memory.iter_mut().zip(self.bytes.iter().chain([&self.length])).for_each(|(to, from)| *to = *from);
+        let (bytes, rest) = memory.split_at_mut(LENGTH);
+        bytes.copy_from_slice(&self.bytes);
+        rest.iter_mut().take(1).for_each(|length| *length = self.length);
         if let Some((covered, checksum)) = memory.split_last_chunk_mut::<2>() {
             *checksum = calculate_crc(covered, SEED).to_le_bytes();
         }
@@ -84,8 +86,10 @@ impl Write for LastWords {
     fn write_str(&mut self, words: &str) -> fmt::Result {
         let free = self.bytes.get_mut(self.length.into()..).unwrap_or_default();
         let end = words.floor_char_boundary(free.len());
-        free.iter_mut().zip(words.bytes().take(end)).for_each(|(to, from)| *to = from);
-        self.length += end as u8;
+        if let (Some(to), Some(from)) = (free.get_mut(..end), words.as_bytes().get(..end)) {
+            to.copy_from_slice(from);
+            self.length += end as u8;
+        }
         if end < words.len() { Err(fmt::Error) } else { Ok(()) }
     }
 }
