@@ -17,6 +17,7 @@ use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
@@ -46,13 +47,13 @@ bind_interrupts!(
     /// Interrupts and their handlers.
     #[derive(Debug)]
     pub struct Interrupts {
-        DMA1_STREAM0 => dma::InterruptHandler<DMA1_CH0>;
-        DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
-        DMA1_STREAM2 => dma::InterruptHandler<DMA1_CH2>;
-        DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
-        DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
-        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
-        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
+        DMA1_STREAM0 => Errors<DMA1_CH0>, dma::InterruptHandler<DMA1_CH0>;
+        DMA1_STREAM1 => Errors<DMA1_CH1>, dma::InterruptHandler<DMA1_CH1>;
+        DMA1_STREAM2 => Errors<DMA1_CH2>, dma::InterruptHandler<DMA1_CH2>;
+        DMA1_STREAM3 => Errors<DMA1_CH3>, dma::InterruptHandler<DMA1_CH3>;
+        DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
+        DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
         EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
         EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
@@ -122,12 +123,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     );
     let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
 
-    let bus = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+    let bus = imu::Bus(Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config()));
     let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
     let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
     let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
-    let bus = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
+    let bus = imu::Bus(Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config()));
     let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
     let data_ready = ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts);
     let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));

@@ -16,5 +16,6 @@ pub mod motors;
 pub mod restart;
 pub mod storage;
 pub mod tasks;
+pub mod transfers;
 pub mod usb;
 pub mod watchdog;

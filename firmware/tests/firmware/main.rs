@@ -3,6 +3,7 @@
 #![expect(deprecated, reason = "PING's fields are, and clients still send it")]
 
 mod arming;
+mod boards;
 mod card;
 mod card_cuts;
 mod card_link;

@@ -8,6 +8,7 @@
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
 
+use super::transfers::unbroken;
 use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
 use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
 use embassy_futures::select::{Either, select};
@@ -82,9 +83,9 @@ where
         let (dma, interrupts) = (self.dma.reborrow(), self.interrupts);
         let transfer = self.timer.setup_update_dma_burst(dma, interrupts, Channel::Ch1, Channel::Ch4, words);
         self.timer.start();
-        let sent = select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN)).await;
+        let sent = unbroken(select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN))).await;
         drop(resting);
-        match sent {
+        match sent? {
             Either::First(()) => Ok(()),
             Either::Second(()) => Err(Fault),
         }

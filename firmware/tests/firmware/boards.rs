@@ -1,0 +1,25 @@
+//! What the boards' sources must say, where nothing that runs on a desk can show it.
+
+use std::path::Path;
+
+const BOARDS: [&str; 2] = ["crazyflie_bolt", "micoair_h743"];
+
+fn source(board: &str) -> String {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/boards/{board}.rs"));
+    std::fs::read_to_string(file).unwrap()
+}
+
+#[test]
+fn a_transfer_error_is_taken_away_before_the_handler_that_panics_at_it() {
+    for board in BOARDS {
+        let source = source(board);
+        let bound: Vec<_> = source.lines().filter(|line| line.contains("dma::InterruptHandler<")).collect();
+        assert!(bound.len() >= 5, "{board}");
+        for line in bound {
+            let channel = line.split("dma::InterruptHandler<").nth(1).and_then(|rest| rest.split('>').next()).unwrap();
+            let number = channel.strip_prefix("DMA1_CH").unwrap();
+            let expected = format!("DMA1_STREAM{number} => Errors<{channel}>, dma::InterruptHandler<{channel}>;");
+            assert_eq!(line.trim(), expected, "{board}");
+        }
+    }
+}
