@@ -1,7 +1,7 @@
 //! The inertial sensors of the boards: chip selects on an SPI bus with DMA, data-ready on an interrupt pin.
 
 use super::clock::SystemClock;
-use super::transfers::unbroken;
+use super::transfers::{self, Begun};
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
 use embassy_stm32::exti::ExtiInput;
@@ -19,26 +19,30 @@ impl ErrorType for Bus {
     type Error = ErrorKind;
 }
 
-/// What became of a transfer.
-async fn checked(transfer: impl Future<Output = Result<(), spi::Error>>) -> Result<(), ErrorKind> {
-    unbroken(transfer).await.ok().and_then(Result::ok).ok_or(ErrorKind::Other)
+/// What became of a transfer that has begun then.
+fn checked(begun: &Begun, done: Result<(), spi::Error>) -> Result<(), ErrorKind> {
+    done.map_err(|_| ErrorKind::Other).and(begun.whole().map_err(|_| ErrorKind::Other))
 }
 
 impl SpiBus for Bus {
     async fn read(&mut self, words: &mut [u8]) -> Result<(), ErrorKind> {
-        checked(self.0.read(words)).await
+        let begun = transfers::begin();
+        checked(&begun, self.0.read(words).await)
     }
 
     async fn write(&mut self, words: &[u8]) -> Result<(), ErrorKind> {
-        checked(self.0.write(words)).await
+        let begun = transfers::begin();
+        checked(&begun, self.0.write(words).await)
     }
 
     async fn transfer(&mut self, read: &mut [u8], write: &[u8]) -> Result<(), ErrorKind> {
-        checked(self.0.transfer(read, write)).await
+        let begun = transfers::begin();
+        checked(&begun, self.0.transfer(read, write).await)
     }
 
     async fn transfer_in_place(&mut self, words: &mut [u8]) -> Result<(), ErrorKind> {
-        checked(self.0.transfer_in_place(words)).await
+        let begun = transfers::begin();
+        checked(&begun, self.0.transfer_in_place(words).await)
     }
 
     async fn flush(&mut self) -> Result<(), ErrorKind> {

@@ -8,7 +8,7 @@
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
 
-use super::transfers::unbroken;
+use super::transfers;
 use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
 use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
 use embassy_futures::select::{Either, select};
@@ -82,11 +82,12 @@ where
         let words = self.waveform.words();
         let (dma, interrupts) = (self.dma.reborrow(), self.interrupts);
         let transfer = self.timer.setup_update_dma_burst(dma, interrupts, Channel::Ch1, Channel::Ch4, words);
+        let begun = transfers::begin();
         self.timer.start();
-        let sent = unbroken(select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN))).await;
+        let sent = select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN)).await;
         drop(resting);
-        match sent? {
-            Either::First(()) => Ok(()),
+        match sent {
+            Either::First(()) => begun.whole(),
             Either::Second(()) => Err(Fault),
         }
     }

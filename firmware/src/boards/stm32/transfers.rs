@@ -3,7 +3,7 @@
 //! Embassy's interrupt handler panics at one. This one is bound to every stream before it, and takes the error away: the
 //! controller has switched the stream off by itself, and Embassy's handler, which comes next, finds nothing to do. So
 //! nobody is woken, and who waits is done when its own time limit wakes it. Embassy then takes a stream that is off for
-//! one that has finished: where that matters, the motors' frames and the sensors' samples, [`unbroken`] makes it a fault.
+//! one that has finished: where that matters, the motors' frames and the sensors' samples, [`Begun`] makes it a fault.
 //! A frame of the link is lost. What the link receives stops; the bytes that follow overrun, and Embassy starts reception
 //! again. Dropping a transfer clears its stream, and the next one begins anew.
 
@@ -17,14 +17,22 @@ use embassy_stm32::{pac, peripherals};
 /// Errors of all streams since boot.
 static ERRORS: AtomicU32 = AtomicU32::new(0);
 
-/// What `transfer` makes of it, and whether there was no error of any stream meanwhile.
-///
-/// # Errors
-/// [`Fault`] if there was.
-pub async fn unbroken<T>(transfer: impl Future<Output = T>) -> Result<T, Fault> {
-    let before = ERRORS.load(Ordering::Relaxed);
-    let output = transfer.await;
-    if ERRORS.load(Ordering::Relaxed) == before { Ok(output) } else { Err(Fault) }
+/// As many errors as there were when something began.
+pub struct Begun(u32);
+
+/// Something begins now.
+pub fn begin() -> Begun {
+    Begun(ERRORS.load(Ordering::Relaxed))
+}
+
+impl Begun {
+    /// Whether no stream has failed since then.
+    ///
+    /// # Errors
+    /// [`Fault`] if one has.
+    pub fn whole(&self) -> Result<(), Fault> {
+        if ERRORS.load(Ordering::Relaxed) == self.0 { Ok(()) } else { Err(Fault) }
+    }
 }
 
 /// Bound to a stream's interrupt before Embassy's handler.
