@@ -8,6 +8,7 @@
 use super::stm32::board::Board;
 use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
+use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088};
 use super::stm32::light::Lamp;
@@ -46,7 +47,7 @@ bind_interrupts!(
         DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
-        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         USART2 => usart::InterruptHandler<USART2>;
         USART3 => usart::BufferedInterruptHandler<USART3>;
@@ -122,7 +123,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let bus = imu::Bus(Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config()));
     let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
     let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());

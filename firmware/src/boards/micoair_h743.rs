@@ -10,6 +10,7 @@ use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
+use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
 use super::stm32::light::Lamp;
@@ -54,8 +55,8 @@ bind_interrupts!(
         DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
-        EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
-        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        EXTI9_5 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
+        EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         SDMMC1 => sdmmc::InterruptHandler<SDMMC1>;
         USART1 => usart::InterruptHandler<USART1>;
@@ -126,11 +127,11 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let bus = imu::Bus(Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config()));
     let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
     let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
     let bus = imu::Bus(Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config()));
     let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
     let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());

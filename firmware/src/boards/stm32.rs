@@ -6,6 +6,7 @@ mod bootloader;
 pub mod card;
 pub mod clock;
 pub mod crystal;
+pub mod edges;
 pub mod executors;
 pub(super) mod fault;
 mod handover;

@@ -23,3 +23,22 @@ fn a_transfer_error_is_taken_away_before_the_handler_that_panics_at_it() {
         }
     }
 }
+
+#[test]
+fn an_edge_is_stamped_before_the_handler_that_ends_it() {
+    for board in BOARDS {
+        let source = source(board);
+        let bound: Vec<_> = source.lines().filter(|line| line.contains("exti::InterruptHandler<")).collect();
+        assert!(!bound.is_empty(), "{board}");
+        for line in bound {
+            assert!(line.contains("=> Stamps, exti::InterruptHandler<"), "{board}: {line}");
+        }
+        // A pin's line is its number in its port, and the channel's.
+        for pin in source.split("ExtiInput::new(p.P").skip(1) {
+            let number = |text: &str| text.chars().take_while(char::is_ascii_digit).collect::<String>();
+            let port = number(&pin[1..]);
+            let numbers = ["p.EXTI", "line: "].map(|mark| pin.split(mark).nth(1).map(number));
+            assert_eq!(numbers, [Some(port.clone()), Some(port)], "{board}");
+        }
+    }
+}

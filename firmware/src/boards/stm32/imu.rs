@@ -1,10 +1,10 @@
 //! The inertial sensors of the boards: chip selects on an SPI bus with DMA, data-ready on an interrupt pin.
 
 use super::clock::SystemClock;
+use super::edges::StampedPin;
 use super::transfers::{self, Begun};
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
-use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::Output;
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::mode::Master;
@@ -51,10 +51,10 @@ impl SpiBus for Bus {
 }
 
 /// A BMI088 as the boards wire it.
-pub type BoardBmi088 = Bmi088<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+pub type BoardBmi088 = Bmi088<Bus, Output<'static>, StampedPin, SystemClock>;
 
 /// A BMI270 as the boards wire it.
-pub type BoardBmi270 = Bmi270<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+pub type BoardBmi270 = Bmi270<Bus, Output<'static>, StampedPin, SystemClock>;
 
 /// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
