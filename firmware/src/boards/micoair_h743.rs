@@ -202,14 +202,15 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
         divr: None,
     });
-    // The same 8 MHz times 24, for the port: the crystal is more exact than USB asks for.
+    // The same 8 MHz times 60, for the port: the crystal is more exact than USB asks for. A PLL that is fed more than 2
+    // MHz must run in its wide range, which the driver chooses above 420 MHz.
     rcc.pll3 = Some(rcc::Pll {
         source,
         prediv,
-        mul: PllMul::MUL24,
+        mul: PllMul::MUL60,
         fracn: None,
         divp: None,
-        divq: Some(PllDiv::DIV4), // 48 MHz
+        divq: Some(PllDiv::DIV10), // 48 MHz
         divr: None,
     });
     rcc.mux.usbsel = rcc::mux::Usbsel::PLL3_Q;

@@ -76,6 +76,12 @@ where
         Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, period, _pins: pins }
     }
 
+    /// Wires motor i to the output `wiring[i]` of those that the board has.
+    pub fn wire(&mut self, wiring: [usize; MOTORS]) {
+        let channels = self.channels;
+        self.channels = wiring.map(|output| channels.get(output).copied().unwrap_or(output));
+    }
+
     async fn send(&mut self) -> Result<(), Fault> {
         let resting = Resting(self.timer.regs_gp16());
         self.timer.enable_update_dma(true);

@@ -55,6 +55,16 @@ impl Cause {
     }
 }
 
+/// Whether the chip is not held in reset while its supply is too low for it: an option, which comes off.
+#[must_use]
+pub fn has_no_brown_out() -> bool {
+    #[cfg(feature = "micoair-h743")]
+    let is_off = embassy_stm32::pac::FLASH.optsr_cur().read().bor_lev() == 0;
+    #[cfg(feature = "crazyflie-bolt")]
+    let is_off = embassy_stm32::pac::FLASH.optcr().read().bor_lev() == 0b11;
+    is_off
+}
+
 /// Reads the flags and clears them, so that the next start tells its own.
 #[must_use]
 pub fn cause() -> Cause {

@@ -9,7 +9,7 @@ use super::executors::{CONTROL, SENSOR, SERVICES};
 use super::handover::quiet;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::{Cause, Chip, flags};
+use super::restart::{self, Cause, Chip, flags};
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
 use crate::boards::chosen::{
@@ -21,12 +21,13 @@ use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::last_words::LastWords;
 use crate::link::port::Line;
-use crate::outputs::Outputs;
+use crate::outputs::{self, Outputs};
 use crate::parameters::storage::Storage;
+use crate::parameters::table::Name;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
-use crate::{boot, card, imu, link, radio, restart, status};
+use crate::{boot, card, imu, link, radio, status};
 use controller_core::flight::Pilot;
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -43,7 +44,7 @@ pub fn run() -> ! {
     bootloader::enter_if_wished(flags() == Cause::Software);
     guard::watch(&mut core.MPU);
     let has_cache = handover::cache_instructions(&mut core);
-    let board = chosen::take();
+    let mut board = chosen::take();
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
@@ -62,6 +63,15 @@ pub fn run() -> ! {
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
+    if let Some(wiring) = outputs::wiring(shared.parameters.get(Name::MotorOrder)) {
+        board.motors.wire(wiring);
+    }
+    if board.transmitter.set_baudrate(shared.parameters.get(Name::SerialRate) as u32).is_err() {
+        shared.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
+    }
+    if restart::has_no_brown_out() {
+        shared.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
+    }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
         shared.recorder.attach(Ring::recover(memory));
     }
@@ -189,7 +199,7 @@ async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
 
 #[embassy_executor::task]
 async fn restart_when_asked(shared: &'static Shared) {
-    restart::run(shared, &SystemClock, &mut Chip).await;
+    crate::restart::run(shared, &SystemClock, &mut Chip).await;
 }
 
 #[embassy_executor::task]
