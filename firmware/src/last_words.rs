@@ -118,9 +118,10 @@ impl Teller {
         let mut rest = words.value.as_str();
         let mut head = "Restarted: ";
         while !rest.is_empty() {
-            let (line, after) = rest.split_at(rest.floor_char_boundary(TEXT_MAX - head.len()));
-            shared.announce(Event::new(Severity::Critical, format_args!("{head}{line}")));
-            (rest, head) = (after, "");
+            // Cut at a whole character, as a text is.
+            let length = rest.floor_char_boundary(TEXT_MAX - head.len());
+            shared.announce(Event::new(Severity::Critical, format_args!("{head}{rest}")));
+            (rest, head) = (rest.get(length..).unwrap_or(""), "");
         }
     }
 }
