@@ -256,11 +256,18 @@ class StackBound:
             self.known[start] = own + deepest, [(self.name(start), own), *way]
         return self.known[start]
 
+    def frame(self, start):
+        """What one function takes for itself, as far as its code says."""
+        return sum(pushed(first, second) or 0 for _, first, second in self.image.halfwords(*self._place(start)))
+
+    def _place(self, start):
+        return start, self.image.functions[start][1]
+
     def _read(self, start):
         """What one function takes for itself, and whom it calls or jumps to."""
         own, callees, name = 0, set(), self.name(start)
         lower, built, unknown = {}, set(), []
-        for address, first, second in self.image.halfwords(start, self.image.functions[start][1]):
+        for address, first, second in self.image.halfwords(*self._place(start)):
             taken = pushed(first, second)
             if taken is None:
                 self.problems.append(f"{name}: moves the stack pointer by a register at {address:#x}")

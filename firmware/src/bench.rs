@@ -1,10 +1,8 @@
 //! What the drivers' tests share: a clock that jumps, and a data-ready pin.
 
-use crate::hardware::Clock;
+use crate::hardware::{Clock, DataReady, Fault};
 use core::cell::Cell;
-use core::convert::Infallible;
-use core::future::{pending, ready};
-use embedded_hal_async::digital::Wait;
+use core::future::pending;
 use std::rc::Rc;
 
 /// A clock on which waiting costs nothing and moves time.
@@ -28,31 +26,23 @@ impl Clock for Jumping {
     }
 }
 
-/// A data-ready pin that rises when asked, or never.
-pub struct Pin(pub Rc<Cell<bool>>);
-
-impl embedded_hal::digital::ErrorType for Pin {
-    type Error = Infallible;
+/// A data-ready pin that rises when asked, a little before whoever waits for it wakes up, or never.
+pub struct Pin {
+    /// Whether it rises.
+    pub rises: Rc<Cell<bool>>,
+    /// How much later who waits wakes up, us.
+    pub late: u64,
+    /// The time.
+    pub clock: Jumping,
 }
 
-impl Wait for Pin {
-    async fn wait_for_high(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_low(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_rising_edge(&mut self) -> Result<(), Infallible> {
-        if self.0.get() { ready(Ok(())).await } else { pending().await }
-    }
-
-    async fn wait_for_falling_edge(&mut self) -> Result<(), Infallible> {
-        pending().await
-    }
-
-    async fn wait_for_any_edge(&mut self) -> Result<(), Infallible> {
-        pending().await
+impl DataReady for Pin {
+    async fn rise(&mut self) -> Result<u64, Fault> {
+        if !self.rises.get() {
+            return pending().await;
+        }
+        let time = self.clock.now();
+        self.clock.jump(time + self.late);
+        Ok(time)
     }
 }

@@ -17,14 +17,13 @@
 //! device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a
 //! step between two samples, they do not.
 
-use crate::hardware::{Clock, Fault, Imu, RawImu};
+use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
 use controller_core::imu::ImuParameters;
 use embedded_hal::digital::OutputPin;
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiBus;
 use nalgebra::Vector3;
 
@@ -185,7 +184,7 @@ pub struct Bmi088<B, S, P, C> {
     gyroscope: Part,
 }
 
-impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
+impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi088<B, S, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope,
     /// high.
     pub fn new(bus: B, selects: [S; 2], data_ready: P, clock: C, mounting: Mounting) -> Self {
@@ -259,7 +258,7 @@ impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi088<B, S, P, C> {
     }
 }
 
-impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Imu for Bmi088<B, S, P, C> {
+impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Imu for Bmi088<B, S, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         if !self.gyroscope.power_up.is_done(self.clock.now()) {
             self.power_up().await?;

@@ -17,14 +17,13 @@
 //! Every sample asks the device who it is. Every wait is bounded. What does not come in time is a [`Fault`]; after
 //! [`RESTART_AFTER`] in a row the next call powers the sensor up anew, which takes about 90 ms.
 
-use crate::hardware::{Clock, Fault, Imu, RawImu};
+use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
 use controller_core::imu::ImuParameters;
 use embedded_hal::digital::OutputPin;
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiBus;
 
 #[cfg(test)]
@@ -153,7 +152,7 @@ pub struct Bmi270<B, S, P, C> {
     cross_sensitivity: Option<f32>,
 }
 
-impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi270<B, S, P, C> {
+impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi270<B, S, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up. `select` is high.
     pub fn new(bus: B, select: S, data_ready: P, clock: C, mounting: Mounting) -> Self {
         let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_TAKES);
@@ -203,7 +202,7 @@ impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Bmi270<B, S, P, C> {
     }
 }
 
-impl<B: SpiBus, S: OutputPin, P: Wait, C: Clock> Imu for Bmi270<B, S, P, C> {
+impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Imu for Bmi270<B, S, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let cross_sensitivity = self.ready().await?;
         let sample = self.measure(cross_sensitivity).await;

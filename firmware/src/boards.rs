@@ -2,6 +2,12 @@
 
 #[cfg(feature = "crazyflie-bolt")]
 pub mod crazyflie_bolt;
+#[cfg(any(feature = "stm32", feature = "mps2"))]
+pub mod guard;
+#[cfg(any(feature = "stm32", feature = "mps2"))]
+pub mod handover;
+#[cfg(any(feature = "stm32", feature = "mps2"))]
+pub mod kept;
 #[cfg(feature = "micoair-h743")]
 pub mod micoair_h743;
 #[cfg(feature = "mps2")]

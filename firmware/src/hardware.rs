@@ -81,6 +81,15 @@ pub trait Imu {
     }
 }
 
+/// A sensor's data-ready pin.
+pub trait DataReady {
+    /// Waits until it rises; when it did, us of the board's clock, however late whoever waits wakes up.
+    ///
+    /// # Errors
+    /// [`Fault`] if the pin cannot tell.
+    fn rise(&mut self) -> impl Future<Output = Result<u64, Fault>>;
+}
+
 /// What the motors are told, once per control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotorCommand {

@@ -14,6 +14,7 @@
 //! | [`hardware`] | what the tasks ask of a board, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task: samples to increments, faults in words, calibration |
+//! | [`last_words`] | why the vehicle restarted by itself, kept over the reset and told |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
 //! | [`mounting`] | how a sensor sits in the vehicle |
 //! | [`outputs`] | thrusts to motor commands |
@@ -52,6 +53,7 @@ pub mod frames;
 pub mod hardware;
 pub mod hil;
 pub mod imu;
+pub mod last_words;
 pub mod link;
 pub mod mounting;
 pub mod outputs;

@@ -11,6 +11,15 @@ use controller_core::allocation::{Rotor, Rotors, ThrustCurve};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::flight::{Output, Stamped};
 
+/// The outputs that the rotors' controllers are wired to, from 0: the first digit of `order` is the first rotor's
+/// output, from 1. None unless each of the outputs is there once.
+#[must_use]
+pub fn wiring(order: f32) -> Option<[usize; MOTORS]> {
+    let order = order as usize;
+    let outputs = [1_000, 100, 10, 1].map(|place| (order / place % 10).wrapping_sub(1));
+    (0..MOTORS).all(|output| outputs.contains(&output)).then_some(outputs)
+}
+
 /// The thrust curves of a vehicle's motors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs([ThrustCurve; MOTORS]);

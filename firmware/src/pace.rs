@@ -4,8 +4,7 @@
 //! one, edge or not, until an edge comes again: a broken line costs a little of a sample's age, and not the vehicle.
 
 use crate::deadline::within;
-use crate::hardware::Clock;
-use embedded_hal_async::digital::Wait;
+use crate::hardware::{Clock, DataReady};
 
 /// A data-ready pin and the clock beside it.
 pub struct Pace<P> {
@@ -17,7 +16,7 @@ pub struct Pace<P> {
     polled: bool,
 }
 
-impl<P: Wait> Pace<P> {
+impl<P: DataReady> Pace<P> {
     /// For a sensor that rises its pin every `period`, us.
     pub fn new(data_ready: P, period: u64) -> Self {
         Self { data_ready, period, last: 0, polled: false }
@@ -33,13 +32,36 @@ impl<P: Wait> Pace<P> {
         let now = clock.now();
         let limit =
             if self.polled { (self.last + self.period).saturating_sub(now) } else { 2 * self.period + self.period / 2 };
-        let edge = within(clock, limit, self.data_ready.wait_for_rising_edge()).await;
+        let edge = within(clock, limit, self.data_ready.rise()).await;
         if matches!(edge, Ok(Err(_))) {
             // A pin that fails at once is none.
             clock.until(now + limit).await;
         }
-        self.polled = !matches!(edge, Ok(Ok(())));
-        self.last = clock.now();
+        let edge = edge.ok().and_then(Result::ok);
+        self.polled = edge.is_none();
+        self.last = edge.unwrap_or_else(|| clock.now());
         self.last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::{Jumping, Pin};
+    use core::cell::Cell;
+    use embassy_futures::block_on;
+    use std::rc::Rc;
+
+    #[test]
+    fn a_sample_counts_from_its_edge_however_late_its_task_wakes_up() {
+        let (clock, rises) = (Jumping::default(), Rc::new(Cell::new(true)));
+        let mut pace = Pace::new(Pin { rises: Rc::clone(&rises), late: 300, clock: clock.clone() }, 1_000);
+        clock.jump(5_000);
+        assert_eq!(block_on(pace.next(&clock)), 5_000);
+        assert_eq!(clock.now(), 5_300);
+        // Where edges stay away, samples are due a period after the last.
+        rises.set(false);
+        let missed = block_on(pace.next(&clock));
+        assert_eq!([missed, block_on(pace.next(&clock))], [7_800, 8_800]);
     }
 }

@@ -63,10 +63,13 @@ pub enum NotTaken {
 impl fmt::Display for NotTaken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::OutOfRange(Name::MotorOrder) => f.write_str("MOT_ORDER: each of the digits 1 to 4, once"),
             Self::OutOfRange(parameter) => {
                 let Row { name, least, most, unit, step, .. } = parameter.row();
-                write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")?;
-                if *step > 1.0 { write!(f, " by {step:.0}") } else { Ok(()) }
+                if *step > 1.0 {
+                    return write!(f, "{name}: allowed are {least:.0} to {most:.0} {unit} by {step:.0}");
+                }
+                write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")
             }
             Self::OnlyTold(parameter) => write!(f, "{}: is only told", parameter.row().name),
             Self::NothingBuilt(parameter) => write!(f, "{}: not yet", parameter.row().name),

@@ -22,6 +22,7 @@
 //! | link | [`Shared::hil`] | motors, sensors | until reboot |
 //! | link | [`Shared::traffic`] | link, status | a count |
 //! | link | [`Shared::replies`] | link, its other half | until sent |
+//! | board | [`Shared::last_words`] | status | until reboot |
 //! | board | [`Shared::clock_doubtful`] | control | until reboot |
 //! | port | [`Shared::on_port`] | link, both halves | until it moves |
 //! | parameters | [`Shared::saving`] | control | while it lasts |
@@ -56,6 +57,7 @@ pub use queue::{Full, Queue};
 pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 
+use crate::last_words::LastWords;
 use crate::link::origin::Origin;
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
@@ -121,6 +123,8 @@ pub struct Shared<M: RawMutex> {
     pub on_port: Flag,
     /// Raised at boot where the clock's crystal does not run: nobody arms.
     pub clock_doubtful: Flag,
+    /// Why the vehicle restarted by itself, where it did.
+    pub last_words: Latest<M, LastWords>,
     /// Whether the kill switch of a radio was on when it was heard last; so it stays.
     pub killed: Latest<M, bool>,
     /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link
@@ -185,6 +189,7 @@ impl<M: RawMutex> Shared<M> {
             has_bootloader: Flag::new(),
             on_port: Flag::new(),
             clock_doubtful: Flag::new(),
+            last_words: Latest::new(),
             killed: Latest::new(),
             sticks: Latest::new(),
             disarm: Flag::new(),

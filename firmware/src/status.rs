@@ -14,6 +14,7 @@ mod euler;
 mod log;
 
 use crate::hardware::{Battery, Clock, Light};
+use crate::last_words::Teller;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::flight::Mode;
@@ -65,6 +66,7 @@ pub async fn run<M: RawMutex>(
 ) -> ! {
     let (mut reading, mut summary, mut warning) = (0, 0, 0);
     let mut is_card_silent = false;
+    let mut teller = Teller::default();
     loop {
         let now = clock.now();
         let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
@@ -73,6 +75,7 @@ pub async fn run<M: RawMutex>(
             reading = now.saturating_add(BATTERY_INTERVAL);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
+        teller.look(shared, now);
         let is_silent = shared.card.is_silent(now);
         if is_silent && !is_card_silent {
             shared.announce(Event::new(Severity::Warning, "Card does not answer: flights are not logged"));

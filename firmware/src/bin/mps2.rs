@@ -29,8 +29,7 @@ mod target {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let Some(core) = cortex_m::Peripherals::take() else { exit::fail("started twice") };
-        mps2::init(core);
+        mps2::init(mps2::begin());
         defmt::info!("{} emulated", firmware::configuration::NAME);
         static PLACE: boot::Place = boot::Place::new();
         let Ok((pilot, outputs)) = boot::start(&PLACE, &SHARED) else {

@@ -246,7 +246,7 @@ fn chip_selects_are_high_after_a_sample_that_is_dropped_half_way() {
     let Bench { accelerometer, gyroscope, .. } = bench(Mounting::Aligned);
     accelerometer.0.borrow_mut().hangs = true;
     let parts = [accelerometer, gyroscope];
-    let pin = Pin(Rc::new(Cell::new(true)));
+    let pin = Pin { rises: Rc::new(Cell::new(true)), late: 0, clock: Jumping::default() };
     let mut imu =
         Bmi088::new(Bus(parts.clone()), parts.clone().map(Select), pin, Patient(Jumping::default()), Mounting::Aligned);
     {

@@ -148,7 +148,7 @@ fn bench(mounting: Mounting) -> Bench {
     };
     chip.reset();
     let chip = Rc::new(RefCell::new(chip));
-    let pin = Pin(Rc::clone(&edges));
+    let pin = Pin { rises: Rc::clone(&edges), late: 0, clock: clock.clone() };
     let imu = Bmi270::new(Bus(Rc::clone(&chip)), Select(Rc::clone(&chip)), pin, clock.clone(), mounting);
     Bench { clock, chip, edges, imu }
 }

@@ -8,6 +8,7 @@
 use super::stm32::board::Board;
 use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
+use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088};
 use super::stm32::light::Lamp;
@@ -15,6 +16,7 @@ use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
@@ -40,12 +42,12 @@ bind_interrupts!(
     /// Interrupts and their handlers.
     #[derive(Debug)]
     pub struct Interrupts {
-        DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
-        DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
-        DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
-        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
-        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
-        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        DMA1_STREAM1 => Errors<DMA1_CH1>, dma::InterruptHandler<DMA1_CH1>;
+        DMA1_STREAM3 => Errors<DMA1_CH3>, dma::InterruptHandler<DMA1_CH3>;
+        DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
+        DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
+        EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         USART2 => usart::InterruptHandler<USART2>;
         USART3 => usart::BufferedInterruptHandler<USART3>;
@@ -118,10 +120,10 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         Output::new(p.PC15, Level::High, Speed::Low),
     ]);
 
-    let bus = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
+    let bus = imu::Bus(Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config()));
     let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
     let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
 
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());

@@ -10,6 +10,7 @@ use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::clock::{self, SystemClock};
 use super::stm32::crystal;
+use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
 use super::stm32::light::Lamp;
@@ -17,6 +18,7 @@ use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
+use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
@@ -46,15 +48,15 @@ bind_interrupts!(
     /// Interrupts and their handlers.
     #[derive(Debug)]
     pub struct Interrupts {
-        DMA1_STREAM0 => dma::InterruptHandler<DMA1_CH0>;
-        DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
-        DMA1_STREAM2 => dma::InterruptHandler<DMA1_CH2>;
-        DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
-        DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
-        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
-        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
-        EXTI9_5 => exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
-        EXTI15_10 => exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
+        DMA1_STREAM0 => Errors<DMA1_CH0>, dma::InterruptHandler<DMA1_CH0>;
+        DMA1_STREAM1 => Errors<DMA1_CH1>, dma::InterruptHandler<DMA1_CH1>;
+        DMA1_STREAM2 => Errors<DMA1_CH2>, dma::InterruptHandler<DMA1_CH2>;
+        DMA1_STREAM3 => Errors<DMA1_CH3>, dma::InterruptHandler<DMA1_CH3>;
+        DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
+        DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
+        EXTI9_5 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
+        EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         SDMMC1 => sdmmc::InterruptHandler<SDMMC1>;
         USART1 => usart::InterruptHandler<USART1>;
@@ -112,9 +114,6 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let has_crystal = crystal::starts();
     let p = embassy_stm32::init(clocks(has_crystal));
     clock::halt_with_the_core();
-    if let Some(mut core) = cortex_m::Peripherals::take() {
-        core.SCB.enable_icache();
-    }
 
     // The motors first: their lines float until here.
     let pins = Pins(
@@ -125,14 +124,14 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     );
     let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
 
-    let bus = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+    let bus = imu::Bus(Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config()));
     let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
     let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
     let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
-    let bus = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
+    let bus = imu::Bus(Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config()));
     let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
-    let data_ready = ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts);
+    let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
     let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
@@ -203,14 +202,15 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
         divr: None,
     });
-    // The same 8 MHz times 24, for the port: the crystal is more exact than USB asks for.
+    // The same 8 MHz times 60, for the port: the crystal is more exact than USB asks for. A PLL that is fed more than 2
+    // MHz must run in its wide range, which the driver chooses above 420 MHz.
     rcc.pll3 = Some(rcc::Pll {
         source,
         prediv,
-        mul: PllMul::MUL24,
+        mul: PllMul::MUL60,
         fracn: None,
         divp: None,
-        divq: Some(PllDiv::DIV4), // 48 MHz
+        divq: Some(PllDiv::DIV10), // 48 MHz
         divr: None,
     });
     rcc.mux.usbsel = rcc::mux::Usbsel::PLL3_Q;

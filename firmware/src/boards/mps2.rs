@@ -20,6 +20,7 @@ pub mod time;
 pub mod uart;
 pub mod watchdog;
 
+use super::{guard, handover};
 use cortex_m::peripheral::NVIC;
 use lines::Interrupt;
 
@@ -34,6 +35,19 @@ const PRIORITIES: [(Interrupt, u8); 7] = [
     (Interrupt::Flight, 0x80),
     (Interrupt::Background, 0xC0),
 ];
+
+/// The core as after a reset, its stack guarded, its instruction cache on where it has one: what a board begins with,
+/// too. The emulated Cortex-M7 takes the cache's bit and keeps none, so what it says of it counts for nothing.
+///
+/// # Panics
+/// The second time.
+#[must_use]
+pub fn begin() -> cortex_m::Peripherals {
+    let mut core = handover::begin_anew(|_| ());
+    guard::watch(&mut core.MPU);
+    let _ = handover::cache_instructions(&mut core);
+    core
+}
 
 /// Starts time and the UARTs; the executors' lines are turned on when they start.
 pub fn init(mut core: cortex_m::Peripherals) {

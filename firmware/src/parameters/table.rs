@@ -1,5 +1,6 @@
 //! What may be set: names, ranges, defaults, units.
 
+use crate::outputs;
 use controller_core::tuning::Percent;
 
 /// The parameters, in the table's order.
@@ -126,6 +127,11 @@ pub enum Name {
     GainPositionVertical,
     /// Gain on vertical velocity errors, percent of the built one.
     GainVelocityVertical,
+    /// Which output each rotor's controller is wired to, a digit a rotor: see [`outputs::wiring`]. Rows from here on are
+    /// taken over at the next boot.
+    MotorOrder,
+    /// The serial line's baud rate.
+    SerialRate,
 }
 
 /// One row.
@@ -174,7 +180,7 @@ const fn gain(parameter: Name, name: &'static str) -> Row {
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 58] = [
+pub const PARAMETERS: [Row; 60] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    1.0),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  1.0),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", 0.0),
@@ -233,6 +239,9 @@ pub const PARAMETERS: [Row; 58] = [
     gain(Name::GainVelocityAcross,    "GAIN_XY_D"),
     gain(Name::GainPositionVertical,  "GAIN_Z_P"),
     gain(Name::GainVelocityVertical,  "GAIN_Z_D"),
+    row(Name::MotorOrder,      "MOT_ORDER",    [1234.0, 4321.0], 1234.0, "", 1.0),
+    // Multiples of 57,600, the greatest by default.
+    row(Name::SerialRate,      "SER_BAUD",     [57_600.0, 921_600.0], 921_600.0, "", 57_600.0),
 ];
 
 impl Name {
@@ -246,7 +255,7 @@ impl Name {
     /// Whether it stands for something of the built configuration.
     #[must_use]
     pub fn is_tuned(self) -> bool {
-        self as u8 > Self::TunedOn as u8
+        (Self::Mass as u8..=Self::GainVelocityVertical as u8).contains(&(self as u8))
     }
 
     /// Every one that does.
@@ -273,6 +282,8 @@ impl Row {
     pub fn allows(&self, value: f32) -> bool {
         // NaN is in no range; a whole number of steps survives the way to an integer and back.
         let steps = (value - self.least) / self.step;
-        (self.least..=self.most).contains(&value) && (self.step == 0.0 || steps as u32 as f32 == steps)
+        (self.least..=self.most).contains(&value)
+            && (self.step == 0.0 || steps as u32 as f32 == steps)
+            && (self.parameter != Name::MotorOrder || outputs::wiring(value).is_some())
     }
 }

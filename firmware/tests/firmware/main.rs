@@ -3,6 +3,7 @@
 #![expect(deprecated, reason = "PING's fields are, and clients still send it")]
 
 mod arming;
+mod boards;
 mod card;
 mod card_cuts;
 mod card_link;
@@ -16,6 +17,7 @@ mod imu;
 mod imu_calibration;
 mod imu_flow;
 mod journal;
+mod last_words;
 mod link_commands;
 mod link_frames;
 mod link_messages;

@@ -5,6 +5,7 @@ use crate::support::chip::{Chip, RECORDS, Words};
 use crate::support::receiver::{Local, report, texts};
 use controller_core::flight::Mode;
 use firmware::hardware::{Fault, Flash, Record};
+use firmware::outputs::wiring;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use std::cell::{Cell, RefCell};
@@ -207,4 +208,35 @@ fn the_table_is_in_order_and_within_mavlinks_limits() {
         assert!(PARAMETERS.iter().filter(|other| other.name == row.name).count() == 1);
         assert_eq!(Name::from_name(row.name), Some(row.parameter));
     }
+}
+
+#[test]
+fn rotors_are_wired_to_outputs_by_a_digit_each() {
+    assert_eq!(wiring(1234.0), Some([0, 1, 2, 3]));
+    // Betaflight's order, and PX4's and ArduPilot's, of the rotors front left, front right, rear right, rear left.
+    assert_eq!(wiring(4213.0), Some([3, 1, 0, 2]));
+    assert_eq!(wiring(3142.0), Some([2, 0, 3, 1]));
+    let whole = (1000..=9999).filter(|order| wiring(*order as f32).is_some()).count();
+    assert_eq!(whole, 24, "every order, and no other number");
+}
+
+#[test]
+fn an_order_that_leaves_a_rotor_without_an_output_is_refused() {
+    let shared = Local::new();
+    for order in [1233.0, 1235.0, 2340.0, 1234.5, 12.0, f32::NAN] {
+        let refused = shared.parameters.set(Name::MotorOrder, order).unwrap_err();
+        assert_eq!(refused.to_string(), "MOT_ORDER: each of the digits 1 to 4, once");
+    }
+    shared.parameters.set(Name::MotorOrder, 4213.0).unwrap();
+    assert_eq!(shared.parameters.get(Name::MotorOrder), 4213.0);
+}
+
+#[test]
+fn the_serial_line_takes_the_usual_rates() {
+    let shared = Local::new();
+    for rate in [57_600.0, 115_200.0, 230_400.0, 460_800.0, 921_600.0] {
+        shared.parameters.set(Name::SerialRate, rate).unwrap();
+    }
+    let refused = shared.parameters.set(Name::SerialRate, 100_000.0).unwrap_err().to_string();
+    assert_eq!(refused, "SER_BAUD: allowed are 57600 to 921600  by 57600");
 }

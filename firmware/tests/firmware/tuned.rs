@@ -109,7 +109,7 @@ fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
     let words = said(&shared, Name::ThrustMax, 4.0);
     assert_eq!(words[0], "THR_MAX: refused, cannot be flown");
     assert!(words[1].starts_with("limits.thrust_max: must be above 4.5"), "{words:?}");
-    assert_eq!(said(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70.00 to 130.00 % by 10"]);
+    assert_eq!(said(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70 to 130 % by 10"]);
     assert_eq!(said(&shared, Name::Mass, f32::NAN), ["MASS: allowed are 0.01 to 100.00 kg"]);
     assert_eq!(said(&shared, Name::TunedOn, 1.0), ["CFG_ID: is only told"]);
     assert_eq!(shared.parameters.set_by_hand().count(), 0);

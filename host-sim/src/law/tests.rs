@@ -65,17 +65,17 @@ fn a_line_that_cannot_be_used_is_named_and_changes_nothing() {
         (vec![(4, "inf")], "x[2]: must be finite"),
         (vec![(5, "1e300")], "v[0]: must be within"),
         (vec![(2, "1e20")], "x[0]: must be within ±1000000, found 1e20"),
-        (vec![(6, "1e10")], "v[1]: must be within ±300, found 1e10"),
-        (vec![(14, "-1e8")], "omega[2]: must be within ±300, found -1e8"),
-        (vec![(18, "1e10")], "reference v[0]: must be within ±300"),
+        (vec![(6, "1e10")], "v[1]: must be within ±10000, found 1e10"),
+        (vec![(14, "-1e8")], "omega[2]: must be within ±10000, found -1e8"),
+        (vec![(18, "1e10")], "reference v[0]: must be within ±10000"),
         (vec![(11, "1.01")], "q: must have unit length"),
         (vec![(11, "0")], "q: must have unit length"),
         (vec![(8, "1e38"), (9, "1e38")], "q.x: must be within ±2"),
         (vec![(23, "-7.81")], "reference a[2]"),
         (vec![(23, "-9")], "reference a[2]"),
-        (vec![(21, "1e9")], "reference a[0]: must be within ±300"),
-        (vec![(24, "1e9")], "reference j[0]: must be within ±10000"),
-        (vec![(31, "1e9")], "yaw_rate: must be within ±300"),
+        (vec![(21, "1e9")], "reference a[0]: must be within ±10000"),
+        (vec![(24, "1e9")], "reference j[0]: must be within ±1000000"),
+        (vec![(31, "1e9")], "yaw_rate: must be within ±10000"),
     ] {
         let problem = disturbed.answer(&line(&changes)).unwrap_err();
         assert!(problem.contains(word) && !problem.contains('\n'), "{problem:?} does not say {word:?}");

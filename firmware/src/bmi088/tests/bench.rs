@@ -172,7 +172,7 @@ pub fn bench(mounting: Mounting) -> Bench {
     let accelerometer = Part::new(&clock, 1, ACCELEROMETER_RESET, 0x1E);
     let gyroscope = Part::new(&clock, 0, GYROSCOPE_RESET, 0x0F);
     let data_ready = Rc::new(Cell::new(true));
-    let pin = Pin(data_ready.clone());
+    let pin = Pin { rises: data_ready.clone(), late: 0, clock: clock.clone() };
     let parts = [accelerometer.clone(), gyroscope.clone()];
     let imu = Bmi088::new(Bus(parts.clone()), parts.map(Select), pin, clock.clone(), mounting);
     Bench { clock, accelerometer, gyroscope, data_ready, imu }

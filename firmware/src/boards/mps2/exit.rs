@@ -2,10 +2,11 @@
 //!
 //! The lines are plain text, not defmt: a fault may come while defmt's encoder is in use.
 
+use crate::boards::guard::Fault;
 use core::fmt::Display;
 use core::panic::PanicInfo;
 use cortex_m as _; // the critical section that printing takes
-use cortex_m_rt::{ExceptionFrame, exception};
+use cortex_m_rt::exception;
 use cortex_m_semihosting::{debug, heprintln};
 
 /// Ends the emulation.
@@ -27,10 +28,8 @@ fn panicked(info: &PanicInfo<'_>) -> ! {
 }
 
 /// The processor could not go on.
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    heprintln!("error: hard fault at {:#010x}, called from {:#010x}", frame.pc(), frame.lr());
-    end(false)
+pub fn faulted(fault: &Fault) -> ! {
+    fail(fault)
 }
 
 /// An interrupt that nobody handles.

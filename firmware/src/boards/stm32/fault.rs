@@ -5,29 +5,39 @@
 //! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves
 //!    whether it was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
 //!    log.
-//! 2. the log gets the panic's message, or the fault's place.
-//! 3. stop frames go on for long enough (25 ms or more) for a probe to fetch the log, which a restart empties.
+//! 2. the panic's message, or the fault's place and registers, go to memory that the restart leaves as it is
+//!    ([`crate::last_words`]), and to the log.
+//! 3. stop frames go on for long enough (27 ms) for a probe to fetch the log, which a restart empties.
 //! 4. the chip restarts.
 //!
 //! `panic-probe` logs before anything else can run. So the panic handler is here.
+//!
+//! Times: a frame takes 0.057 ms and the silence before it 0.08 ms, both by timers that count the chip's clocks, so that
+//! neither depends on caches: 1.4 ms for the first ten frames and 27 ms for the rest, well within the watchdog's 50 ms
+//! (its own clock is exact to a tenth on the H743, and makes 34 to 94 ms of them on the F405). Where something goes wrong
+//! before the clocks are set, all of it takes longer, and there is no watchdog yet.
 //!
 //! What the controllers see: the frame that was going out is cut and discarded by its checksum; stop frames follow, and
 //! then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included,
 //! so it needs no waveform: sixteen periods at the width of a zero.
 //!
-//! What this does not reach: a core that cannot run any code (a stack that overflowed into the fault handler, a clock
-//! that failed). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
+//! A stack that overflowed is no hindrance: a fault begins it anew ([`crate::boards::guard`]).
+//!
+//! What this does not reach: a core that cannot run any code (a clock that failed, a fault in a fault). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
 //! time, and the controllers stop for want of frames within their own time-out. The watchdog is fed once before these
 //! steps, so that the restart is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};
+use crate::boards::guard::Fault;
+use crate::boards::kept;
 use crate::dshot::{BITS, zero_width};
-use crate::ending::Ending;
+use crate::ending::{Ending, FRAMES, LAST_FRAMES};
 use crate::hardware::MOTORS;
+use crate::last_words::LastWords;
 use core::panic::PanicInfo;
-use cortex_m::peripheral::SCB;
-use cortex_m_rt::{ExceptionFrame, exception};
+use cortex_m::peripheral::{SCB, SYST};
+use cortex_m_rt::exception;
 use embassy_stm32::pac::iwdg::vals::Key;
 use embassy_stm32::pac::timer::TimGp16;
 
@@ -35,36 +45,42 @@ use embassy_stm32::pac::timer::TimGp16;
 /// peripheral bus.
 const POLLS: usize = 10_000;
 
-/// Silence before each frame, turns of a loop: 0.08 ms at 400 MHz, if the Cortex-M7 takes one cycle for a turn. It may
-/// take two.
+/// Silence before each frame, cycles of the core: 0.08 ms at 400 MHz.
 #[cfg(feature = "micoair-h743")]
 const SILENCE: u32 = 32_000;
 
-/// Silence before each frame, turns of a loop: 0.08 ms at 168 MHz, as the Cortex-M4 takes three cycles for a turn.
+/// Silence before each frame, cycles of the core: 0.08 ms at 168 MHz.
 #[cfg(feature = "crazyflie-bolt")]
-const SILENCE: u32 = 4_500;
+const SILENCE: u32 = 13_440;
+
+/// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
+const _: () = assert!((FRAMES + LAST_FRAMES) * 140 < 34_000);
 
 static ENDING: Ending = Ending::new();
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
-    end(|| defmt::error!("{}", defmt::Display2Format(info)))
+    end(|| LastWords::panic(info))
 }
 
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    end(|| defmt::error!("fault at {=u32:#010x}, called from {=u32:#010x}", frame.pc(), frame.lr()))
+/// The core could not go on.
+pub fn faulted(fault: &Fault) -> ! {
+    end(|| LastWords::new(fault))
 }
 
 #[exception]
 unsafe fn DefaultHandler(interrupt: i16) -> ! {
-    end(|| defmt::error!("unexpected interrupt {=i16}", interrupt))
+    end(|| LastWords::new(format_args!("unexpected interrupt {interrupt}")))
 }
 
-fn end(log: impl FnOnce()) -> ! {
+fn end(words: impl FnOnce() -> LastWords) -> ! {
     cortex_m::interrupt::disable();
     WATCHDOG.kr().write(|w| w.set_key(Key::RESET));
-    ENDING.act(stop, log);
+    ENDING.act(stop, || {
+        let words = words();
+        kept::keep(&words);
+        defmt::error!("{=str}", words.as_str());
+    });
     SCB::sys_reset()
 }
 
@@ -73,10 +89,27 @@ fn stop(frames: usize) {
     let timer = motor_timer();
     for _ in 0..frames {
         rest(timer);
-        cortex_m::asm::delay(SILENCE);
+        silence();
         let _ = stop_frame(timer);
     }
     rest(timer);
+}
+
+/// Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines let it.
+fn silence() {
+    /// It runs by the core's clock, without an interrupt.
+    const RUN: u32 = 0b101;
+    const HAS_ENDED: u32 = 1 << 16;
+    // SAFETY: nothing else runs any more, and nothing else uses it.
+    let timer = unsafe { &*SYST::PTR };
+    // SAFETY: as above; no interrupt is asked for.
+    unsafe {
+        timer.rvr.write(SILENCE - 1);
+        timer.cvr.write(0);
+        timer.csr.write(RUN);
+    }
+    // A look takes more than a cycle.
+    let _ = (0..SILENCE).find(|_| timer.csr.read() & HAS_ENDED != 0);
 }
 
 /// One stop frame by polling; none if the timer does not run.

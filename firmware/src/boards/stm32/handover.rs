@@ -1,66 +1,27 @@
-//! The first instructions: whatever ran before, here it begins as after a reset.
-//!
-//! A bootloader may hand over from a task of its own operating system (ArduPilot's does): on that task's stack, with
-//! its interrupts armed, its caches and memory protection on, its clocks running. A thread that stays on that stack
-//! overwrites memory that is somebody else's now; a data cache stands between the core and the DMA buffers; an
-//! interrupt without a handler is a fault; a PLL that runs takes no new settings.
+//! What the chips add to [`crate::boards::handover`]: a data cache stands between the core and the DMA buffers, a PLL
+//! that runs takes no new settings, and DMA controllers go on writing to memory.
 
 use cortex_m::Peripherals;
 
-// Before memory is set up, by the runtime's own hook, without using a stack: no interrupt until `begin_anew` has ended
-// those that are armed, the main stack from here on, no interrupt masked by its priority.
-core::arch::global_asm!(
-    ".section .text.__pre_init, \"ax\"",
-    ".global __pre_init",
-    ".type __pre_init, %function",
-    ".thumb_func",
-    "__pre_init:",
-    "cpsid i",
-    "mrs r0, CONTROL",
-    "bic r0, r0, #2",
-    "msr CONTROL, r0",
-    "isb",
-    "movs r0, #0",
-    "msr BASEPRI, r0",
-    "bx lr",
-    ".size __pre_init, . - __pre_init",
-    ".text",
-);
-
-/// The core's own two interrupts that may wait: SysTick (PENDSTCLR) and PendSV (PENDSVCLR).
-const END_PENDING: u32 = 1 << 25 | 1 << 27;
-
-/// Turns off what may be on. Before anything is turned on, once.
-pub fn begin_anew() {
-    // SAFETY: nothing else runs yet, and nobody has the core's peripherals before this returns.
-    let core = unsafe { Peripherals::steal() };
-    // SAFETY: the runtime has set up memory and all handlers; from here on nothing is pending but what this firmware
-    // starts.
-    unsafe {
-        core.SYST.csr.write(0);
-        core.SCB.icsr.write(END_PENDING);
-        core.NVIC.icer.iter().for_each(|lines| lines.write(u32::MAX));
-        core.NVIC.icpr.iter().for_each(|lines| lines.write(u32::MAX));
-        core.MPU.ctrl.write(0);
-    }
+/// Turns off what may be on.
+pub fn quiet(core: &mut Peripherals) {
     #[cfg(feature = "micoair-h743")]
     {
         end_caching(core);
         stop_plls();
     }
+    #[cfg(feature = "crazyflie-bolt")]
+    let _ = core;
     quiet_peripherals();
-    // SAFETY: as above.
-    unsafe { cortex_m::interrupt::enable() };
 }
 
 /// What the data cache holds goes to memory, and nothing goes to the cache any more.
 #[cfg(feature = "micoair-h743")]
-fn end_caching(mut core: Peripherals) {
+fn end_caching(core: &mut Peripherals) {
     if cortex_m::peripheral::SCB::dcache_enabled() {
         core.SCB.disable_dcache(&mut core.CPUID);
     }
 }
-
 /// Looks at a clock that is to change. It changes within microseconds.
 #[cfg(feature = "micoair-h743")]
 const POLLS: usize = 100_000;

@@ -1,22 +1,60 @@
 //! The inertial sensors of the boards: chip selects on an SPI bus with DMA, data-ready on an interrupt pin.
 
 use super::clock::SystemClock;
+use super::edges::StampedPin;
+use super::transfers::{self, Begun};
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
-use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::Output;
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::mode::Master;
-use embassy_stm32::spi::{Config, Spi};
+use embassy_stm32::spi::{self, Config, Spi};
 use embassy_stm32::time::Hertz;
+use embedded_hal_async::spi::{ErrorKind, ErrorType, SpiBus};
 
-type Bus = Spi<'static, Async, Master>;
+/// A bus of whose transfers none counts in which the DMA controller failed.
+pub struct Bus(pub Spi<'static, Async, Master>);
+
+impl ErrorType for Bus {
+    type Error = ErrorKind;
+}
+
+/// What became of a transfer that has begun then.
+fn checked(begun: &Begun, done: Result<(), spi::Error>) -> Result<(), ErrorKind> {
+    done.map_err(|_| ErrorKind::Other).and(begun.whole().map_err(|_| ErrorKind::Other))
+}
+
+impl SpiBus for Bus {
+    async fn read(&mut self, words: &mut [u8]) -> Result<(), ErrorKind> {
+        let begun = transfers::begin();
+        checked(&begun, self.0.read(words).await)
+    }
+
+    async fn write(&mut self, words: &[u8]) -> Result<(), ErrorKind> {
+        let begun = transfers::begin();
+        checked(&begun, self.0.write(words).await)
+    }
+
+    async fn transfer(&mut self, read: &mut [u8], write: &[u8]) -> Result<(), ErrorKind> {
+        let begun = transfers::begin();
+        checked(&begun, self.0.transfer(read, write).await)
+    }
+
+    async fn transfer_in_place(&mut self, words: &mut [u8]) -> Result<(), ErrorKind> {
+        let begun = transfers::begin();
+        checked(&begun, self.0.transfer_in_place(words).await)
+    }
+
+    async fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
 
 /// A BMI088 as the boards wire it.
-pub type BoardBmi088 = Bmi088<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+pub type BoardBmi088 = Bmi088<Bus, Output<'static>, StampedPin, SystemClock>;
 
 /// A BMI270 as the boards wire it.
-pub type BoardBmi270 = Bmi270<Bus, Output<'static>, ExtiInput<'static, Async>, SystemClock>;
+pub type BoardBmi270 = Bmi270<Bus, Output<'static>, StampedPin, SystemClock>;
 
 /// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.

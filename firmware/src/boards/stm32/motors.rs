@@ -8,6 +8,7 @@
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
 
+use super::transfers;
 use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
 use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
 use embassy_futures::select::{Either, select};
@@ -75,17 +76,24 @@ where
         Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, period, _pins: pins }
     }
 
+    /// Wires motor i to the output `wiring[i]` of those that the board has.
+    pub fn wire(&mut self, wiring: [usize; MOTORS]) {
+        let channels = self.channels;
+        self.channels = wiring.map(|output| channels.get(output).copied().unwrap_or(output));
+    }
+
     async fn send(&mut self) -> Result<(), Fault> {
         let resting = Resting(self.timer.regs_gp16());
         self.timer.enable_update_dma(true);
         let words = self.waveform.words();
         let (dma, interrupts) = (self.dma.reborrow(), self.interrupts);
         let transfer = self.timer.setup_update_dma_burst(dma, interrupts, Channel::Ch1, Channel::Ch4, words);
+        let begun = transfers::begin();
         self.timer.start();
         let sent = select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN)).await;
         drop(resting);
         match sent {
-            Either::First(()) => Ok(()),
+            Either::First(()) => begun.whole(),
             Either::Second(()) => Err(Fault),
         }
     }

@@ -3,28 +3,31 @@
 //! Control and the sensor have executors of their own, in interrupts; everything else shares a third, but for the
 //! memory card, which has the thread to itself.
 
+use super::bootloader;
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
+use super::handover::quiet;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::{Cause, Chip, flags};
+use super::restart::{self, Cause, Chip, flags};
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
-use super::{bootloader, handover};
 use crate::boards::chosen::{
     self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
     SERVICES_INTERRUPT,
 };
-use crate::boards::recorder;
+use crate::boards::{guard, handover, kept, recorder};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
+use crate::last_words::LastWords;
 use crate::link::port::Line;
-use crate::outputs::Outputs;
+use crate::outputs::{self, Outputs};
 use crate::parameters::storage::Storage;
+use crate::parameters::table::Name;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
-use crate::{boot, card, imu, link, radio, restart, status};
+use crate::{boot, card, imu, link, radio, status};
 use controller_core::flight::Pilot;
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -37,24 +40,44 @@ type Repeated = repeat::Repeated<CriticalSectionRawMutex>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
-    handover::begin_anew();
+    let mut core = handover::begin_anew(quiet);
     bootloader::enter_if_wished(flags() == Cause::Software);
-    let board = chosen::take();
+    guard::watch(&mut core.MPU);
+    let has_cache = handover::cache_instructions(&mut core);
+    let mut board = chosen::take();
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
+    let kept = kept::take(board.restart.is_power());
+    if let Some(words) = kept.or_else(|| board.restart.words().map(LastWords::new)) {
+        defmt::error!("{=str}", words.as_str());
+        shared.last_words.put(words, 0);
+    }
     if !board.has_crystal {
         shared.clock_doubtful.raise();
         shared.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
     }
+    if !has_cache {
+        shared.announce(Event::new(Severity::Warning, "The instruction cache is not on: slow"));
+    }
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
     let parameters = Storage::load(board.storage, shared);
-    if let Some(memory) = recorder::take(board.restart == Cause::Power) {
+    if let Some(wiring) = outputs::wiring(shared.parameters.get(Name::MotorOrder)) {
+        board.motors.wire(wiring);
+    }
+    if board.transmitter.set_baudrate(shared.parameters.get(Name::SerialRate) as u32).is_err() {
+        shared.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
+    }
+    if restart::has_no_brown_out() {
+        shared.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
+    }
+    if let Some(memory) = recorder::take(board.restart.is_power()) {
         shared.recorder.attach(Ring::recover(memory));
     }
     static PLACE: boot::Place = boot::Place::new();
-    let (pilot, outputs) = boot::start(&PLACE, shared).unwrap();
+    // Without the error's words: what prints them takes 2 KB, and the build refuses such files.
+    let Ok((pilot, outputs)) = boot::start(&PLACE, shared) else { panic!("the embedded scenario has not four rotors") };
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
@@ -177,7 +200,7 @@ async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
 
 #[embassy_executor::task]
 async fn restart_when_asked(shared: &'static Shared) {
-    restart::run(shared, &SystemClock, &mut Chip).await;
+    crate::restart::run(shared, &SystemClock, &mut Chip).await;
 }
 
 #[embassy_executor::task]

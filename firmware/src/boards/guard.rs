@@ -1,0 +1,121 @@
+//! The stack's end: a guard that nobody may touch, and a fault that is handled on a stack of its own.
+//!
+//! ```text
+//! statics | guard | <- stack, growing down | top
+//! ```
+//!
+//! A stack that overflows runs into the guard, and the memory protection unit faults before anything is overwritten. The
+//! handler cannot use that stack any more. What is on it is of no use either, as nothing that was interrupted goes on:
+//! so the handler begins again at its top.
+//!
+//! A function whose frame is larger than the guard could step over it; `.ci/budgets` holds every frame to less.
+
+use core::{fmt, ptr};
+use cortex_m::peripheral::{MPU, SCB};
+use cortex_m_rt::ExceptionFrame;
+
+#[cfg(feature = "mps2")]
+use super::mps2::exit::faulted;
+#[cfg(feature = "stm32")]
+use super::stm32::fault::faulted;
+
+/// Bytes of the guard, a power of two: its place is a multiple of it.
+pub const GUARD: usize = 16 * 1024;
+
+unsafe extern "C" {
+    /// Where the stack begins, and where it would meet what lies below it: the linker's.
+    static _stack_start: u8;
+    static _stack_end: u8;
+}
+
+/// Where the guard begins: as far down as its alignment allows.
+fn guard() -> usize {
+    (&raw const _stack_end).addr().next_multiple_of(GUARD)
+}
+
+/// Guards the stack from here on. What the guard does not cover is as without the unit; a fault's handler is not held
+/// to it.
+pub fn watch(mpu: &mut MPU) {
+    /// Privileged code has the default map elsewhere; the unit is on.
+    const ON: u32 = 0b101;
+    /// No execution; the size as a power of two, less one; on. Nobody may read or write.
+    const NO_ACCESS: u32 = 1 << 28 | (GUARD.trailing_zeros() - 1) << 1 | 1;
+    // SAFETY: nothing lies in the guard but what a stack of this size never reaches.
+    unsafe {
+        mpu.rnr.write(0);
+        mpu.rbar.write(guard() as u32);
+        mpu.rasr.write(NO_ACCESS);
+        mpu.ctrl.write(ON);
+    }
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
+}
+
+/// What the core says of a fault.
+pub struct Fault {
+    /// Where it was, and where that was called from; none where the stack that says so is no stack.
+    pub place: Option<(u32, u32)>,
+    /// The configurable fault status register: what it was.
+    pub status: u32,
+    /// The hard fault status register.
+    pub hard_status: u32,
+    /// The bus fault address register.
+    pub bus_address: u32,
+    /// Whether the stack ran into the guard.
+    pub is_overflow: bool,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_overflow { "stack overflow" } else { "fault" })?;
+        if let Some((place, caller)) = self.place {
+            write!(f, " at {place:#010x} from {caller:#010x}")?;
+        }
+        let Self { status, hard_status, bus_address, .. } = self;
+        write!(f, ", CFSR {status:#010x}, HFSR {hard_status:#010x}, BFAR {bus_address:#010x}")
+    }
+}
+
+impl Fault {
+    fn at(frame: *const ExceptionFrame) -> Self {
+        // SAFETY: registers that only tell; reading has no effect.
+        let core = unsafe { &*SCB::PTR };
+        let (status, memory_address) = (core.cfsr.read(), core.mmfar.read() as usize);
+        let (first, end) = ((&raw const _stack_end).addr(), (&raw const _stack_start).addr());
+        // Where they could not be saved (MSTKERR), nothing is there.
+        let is_saved = status & 0x10 == 0;
+        let is_stack =
+            is_saved && (first..=end - size_of::<ExceptionFrame>()).contains(&frame.addr()) && frame.is_aligned();
+        // SAFETY: aligned, and within the memory that the linker gives to the stack, where any bits are numbers.
+        let frame = is_stack.then(|| unsafe { ptr::read(frame) });
+        // An access to the guard is named (DACCVIOL, MMARVALID).
+        let in_guard = status & 0x82 == 0x82 && (guard()..guard() + GUARD).contains(&memory_address);
+        let is_overflow = !is_saved || in_guard;
+        let place = frame.map(|frame| (frame.pc(), frame.lr()));
+        Self { place, status, hard_status: core.hfsr.read(), bus_address: core.bfar.read(), is_overflow }
+    }
+}
+
+// The stack that the core has saved registers on is the first argument; the main stack begins anew.
+core::arch::global_asm!(
+    ".section .HardFault.guard, \"ax\"",
+    ".global HardFault",
+    ".type HardFault, %function",
+    ".thumb_func",
+    "HardFault:",
+    "tst lr, #4",
+    "ite eq",
+    "mrseq r0, MSP",
+    "mrsne r0, PSP",
+    "ldr r1, =_stack_start",
+    "msr MSP, r1",
+    "isb",
+    "b {handler}",
+    ".size HardFault, . - HardFault",
+    ".text",
+    handler = sym on_fault,
+);
+
+extern "C" fn on_fault(frame: *const ExceptionFrame) -> ! {
+    faulted(&Fault::at(frame))
+}

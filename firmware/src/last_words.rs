@@ -1,0 +1,127 @@
+//! Why the vehicle restarted by itself, in words that outlive the reset.
+//!
+//! ```text
+//! panic, fault -> memory that no start clears -> reset -> Shared::last_words -> STATUSTEXT, card, log
+//! ```
+//!
+//! A board's last acts put them there ([`crate::ending`]), and its next start takes them away. They are told to the first
+//! ground station that is heard, to the card once it is ready, and every [`AGAIN`] until somebody arms.
+
+use crate::shared::{CardState, Event, Severity, Shared, TEXT_MAX};
+use core::fmt::{self, Write};
+use core::panic::PanicInfo;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::calculate_crc;
+
+/// Bytes of the words.
+const LENGTH: usize = 148;
+
+/// Bytes in memory: the words, their length, a checksum. Whole words of any error-correcting code that there is.
+pub const SIZE: usize = 160;
+
+/// What the checksum begins with, so that zeros are no words.
+const SEED: u8 = b'W';
+
+/// Time until they are told again, us.
+pub const AGAIN: u64 = 60_000_000;
+
+/// The end of a source file's path that is told.
+const PATH: usize = 40;
+
+/// The words; what does not fit is cut off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LastWords {
+    bytes: [u8; LENGTH],
+    length: u8,
+}
+
+impl LastWords {
+    /// The words of something.
+    #[must_use]
+    pub fn new(words: impl fmt::Display) -> Self {
+        let mut kept = Self { bytes: [0; LENGTH], length: 0 };
+        // An error says that it is full.
+        let _ = write!(kept, "{words}");
+        kept
+    }
+
+    /// The words of a panic: where, and what it says.
+    #[must_use]
+    pub fn panic(info: &PanicInfo<'_>) -> Self {
+        let (file, line) = info.location().map_or(("", 0), |location| (location.file(), location.line()));
+        let file = file.get(file.len().saturating_sub(PATH)..).unwrap_or(file);
+        Self::new(format_args!("panic at {file}:{line}: {}", info.message()))
+    }
+
+    /// Them.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        self.bytes.get(..self.length.into()).and_then(|bytes| str::from_utf8(bytes).ok()).unwrap_or("")
+    }
+
+    /// As they lie in memory.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; SIZE] {
+        let mut memory = [0; SIZE];
+        let (bytes, rest) = memory.split_at_mut(LENGTH);
+        bytes.copy_from_slice(&self.bytes);
+        rest.iter_mut().take(1).for_each(|length| *length = self.length);
+        if let Some((covered, checksum)) = memory.split_last_chunk_mut::<2>() {
+            *checksum = calculate_crc(covered, SEED).to_le_bytes();
+        }
+        memory
+    }
+
+    /// Out of memory, where there are any.
+    #[must_use]
+    pub fn from_bytes(memory: &[u8; SIZE]) -> Option<Self> {
+        let (covered, checksum) = memory.split_last_chunk::<2>()?;
+        let (bytes, rest) = covered.split_first_chunk::<LENGTH>()?;
+        let is_whole = calculate_crc(covered, SEED) == u16::from_le_bytes(*checksum);
+        is_whole.then_some(Self { bytes: *bytes, length: *rest.first()? })
+    }
+}
+
+impl Write for LastWords {
+    fn write_str(&mut self, words: &str) -> fmt::Result {
+        let free = self.bytes.get_mut(self.length.into()..).unwrap_or_default();
+        let end = words.floor_char_boundary(free.len());
+        if let (Some(to), Some(from)) = (free.get_mut(..end), words.as_bytes().get(..end)) {
+            to.copy_from_slice(from);
+            self.length += end as u8;
+        }
+        if end < words.len() { Err(fmt::Error) } else { Ok(()) }
+    }
+}
+
+/// When and to whom they are told.
+#[derive(Debug, Default)]
+pub struct Teller {
+    /// Who listened when they were told last: a ground station, the card.
+    listened: [bool; 2],
+    /// When they are due again, us.
+    due: u64,
+    is_over: bool,
+}
+
+impl Teller {
+    /// Looks at `now`, us, whether it is time to tell them.
+    pub fn look<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64) {
+        self.is_over |= shared.is_armed();
+        let Some(words) = shared.last_words.get().filter(|_| !self.is_over) else { return };
+        let listening = [shared.ground_station.get().is_some(), shared.card.state() == CardState::Ready];
+        let is_new = listening.iter().zip(&self.listened).any(|(now, before)| *now && !before);
+        if !is_new && now < self.due {
+            return;
+        }
+        *self = Self { listened: listening, due: now.saturating_add(AGAIN), is_over: false };
+        let mut rest = words.value.as_str();
+        let mut head = "Restarted: ";
+        while !rest.is_empty() {
+            // Cut at a whole character, as a text is.
+            let length = rest.floor_char_boundary(TEXT_MAX - head.len());
+            shared.announce(Event::new(Severity::Critical, format_args!("{head}{rest}")));
+            (rest, head) = (rest.get(length..).unwrap_or(""), "");
+        }
+    }
+}

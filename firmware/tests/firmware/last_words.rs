@@ -1,0 +1,92 @@
+//! Why the vehicle restarted, kept over the reset and told.
+
+use crate::support::Simulated;
+use crate::support::receiver::{Local, report, texts};
+use controller_core::flight::Mode;
+use firmware::last_words::{AGAIN, LastWords, SIZE, Teller};
+use firmware::shared::CardState;
+
+const FAULT: &str = "fault at 0x08012344 from 0x08012001, CFSR 0x00008200, HFSR 0x40000000, BFAR 0x00000004";
+
+fn told() -> (Local, Teller) {
+    let shared = Local::new();
+    shared.last_words.put(LastWords::new(FAULT), 0);
+    (shared, Teller::default())
+}
+
+#[test]
+fn words_survive_the_memory_and_nothing_else_passes_for_words() {
+    let words = LastWords::new(FAULT);
+    let memory = words.to_bytes();
+    assert_eq!(LastWords::from_bytes(&memory).map(|words| words.as_str().to_owned()).as_deref(), Some(FAULT));
+    for place in 0..SIZE {
+        let mut spoiled = memory;
+        spoiled[place] ^= 0x10;
+        assert_eq!(LastWords::from_bytes(&spoiled), None, "byte {place}");
+    }
+    assert_eq!(LastWords::from_bytes(&[0; SIZE]), None);
+    assert_eq!(LastWords::from_bytes(&[0xFF; SIZE]), None);
+}
+
+#[test]
+fn words_without_room_are_cut_at_whole_characters() {
+    let long = "ä".repeat(200);
+    let words = LastWords::new(&long);
+    assert!(long.starts_with(words.as_str()) && words.as_str().chars().count() == 74);
+}
+
+#[test]
+fn the_first_ground_station_that_is_heard_is_told_why_the_vehicle_restarted() {
+    let (shared, mut teller) = told();
+    teller.look(&shared, 0);
+    let first = texts(&shared);
+    assert_eq!(first.concat(), format!("Restarted: {FAULT}"));
+    assert!(first.iter().all(|line| line.len() <= 50));
+    teller.look(&shared, 50_000);
+    assert!(texts(&shared).is_empty());
+    shared.ground_station.put((), 100_000);
+    teller.look(&shared, 100_000);
+    assert_eq!(texts(&shared), first);
+    teller.look(&shared, 150_000);
+    assert!(texts(&shared).is_empty());
+}
+
+#[test]
+fn the_card_is_told_once_it_is_ready() {
+    let (shared, mut teller) = told();
+    teller.look(&shared, 0);
+    assert!(shared.card.events.take().is_none());
+    shared.card.set(CardState::Ready, 3_000_000);
+    teller.look(&shared, 3_000_000);
+    assert!(shared.card.events.take().is_some());
+}
+
+#[test]
+fn it_is_told_again_until_somebody_arms() {
+    let (shared, mut teller) = told();
+    let mut count = |time| {
+        teller.look(&shared, time);
+        texts(&shared).len()
+    };
+    assert_eq!([count(0), count(AGAIN - 1), count(AGAIN), count(AGAIN + 1)], [2, 0, 2, 0]);
+    report(&shared, Mode::Idling, 2 * AGAIN);
+    assert_eq!(count(2 * AGAIN), 0);
+    report(&shared, Mode::Ready, 3 * AGAIN);
+    assert_eq!(count(3 * AGAIN), 0);
+}
+
+#[test]
+fn the_status_task_tells_it() {
+    struct Dark;
+    impl firmware::hardware::Light for Dark {
+        fn set(&mut self, _on: bool) {}
+    }
+    impl firmware::hardware::Battery for Dark {
+        async fn voltage(&mut self) -> Option<f32> {
+            None
+        }
+    }
+    let ((shared, _), clock) = (told(), Simulated::default());
+    clock.run(1_000_000, firmware::status::run(Dark, Dark, &clock, &shared), |_| ());
+    assert_eq!(texts(&shared).concat(), format!("Restarted: {FAULT}"));
+}
