@@ -17,6 +17,8 @@ mod imu_calibration;
 mod imu_flow;
 mod journal;
 mod link_commands;
+mod link_crowd;
+mod link_explained;
 mod link_frames;
 mod link_messages;
 mod link_parameters;

@@ -1,0 +1,71 @@
+//! Requests that wait for control, which takes one a tick.
+//!
+//! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest. So there is room for
+//! every request, none waits for more than the others, [`REQUESTS`] ticks, and nobody who repeats one keeps another out.
+
+use super::reply::Asked;
+use controller_core::flight::Request;
+use core::cell::RefCell;
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use heapless::Vec;
+
+/// How many may wait: each kind twice.
+pub const REQUESTS: usize = 14;
+
+/// Requests in the order of their coming.
+pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Vec<Asked, REQUESTS>>>);
+
+impl<M: RawMutex> Requests<M> {
+    /// None.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Mutex::new(RefCell::new(Vec::new())))
+    }
+
+    /// Puts a request behind the others and takes away the one of its kind, to be answered. The same again becomes one,
+    /// to be answered as often.
+    pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
+        let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
+        self.0.lock(|waiting| {
+            let mut waiting = waiting.try_borrow_mut().ok()?;
+            let place = waiting.iter().position(|other| way(other) == way(&asked));
+            let mut before = place.map(|place| waiting.remove(place));
+            if let Some(same) = before.take_if(|before| (before.request, before.order) == (asked.request, asked.order))
+            {
+                asked.times = asked.times.saturating_add(same.times);
+            }
+            // There is room for each kind twice.
+            let _ = waiting.push(asked);
+            before
+        })
+    }
+
+    /// Takes the first one.
+    #[must_use]
+    pub fn take(&self) -> Option<Asked> {
+        self.0.lock(|waiting| {
+            let mut waiting = waiting.try_borrow_mut().ok()?;
+            (!waiting.is_empty()).then(|| waiting.remove(0))
+        })
+    }
+}
+
+/// What replaces what.
+const fn kind(request: &Request) -> u8 {
+    match request {
+        Request::Arm => 0,
+        Request::Disarm => 1,
+        Request::TakeOff(_) => 2,
+        Request::FlySetpoints => 3,
+        Request::Hold | Request::GoTo(_) => 4,
+        Request::Land => 5,
+        Request::MotorTest(_) | Request::MotorSetting(_) => 6,
+    }
+}
+
+impl<M: RawMutex> Default for Requests<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
