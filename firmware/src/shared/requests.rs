@@ -23,16 +23,15 @@ impl<M: RawMutex> Requests<M> {
         Self(Mutex::new(RefCell::new(Vec::new())))
     }
 
-    /// Puts a request behind the others and takes away the one of its kind, to be answered. The same again becomes one,
-    /// to be answered as often.
+    /// Puts a request behind the others and takes away the one of its kind, to be answered. By the same sender's same
+    /// command it is one, to be answered as often.
     pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
         let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {
             let mut waiting = waiting.try_borrow_mut().ok()?;
             let place = waiting.iter().position(|other| way(other) == way(&asked));
             let mut before = place.map(|place| waiting.remove(place));
-            if let Some(same) = before.take_if(|before| (before.request, before.order) == (asked.request, asked.order))
-            {
+            if let Some(same) = before.take_if(|before| before.order == asked.order) {
                 asked.times = asked.times.saturating_add(same.times);
             }
             // There is room for each kind twice.

@@ -80,14 +80,15 @@ fn the_latest_of_a_kind_wins_and_the_one_before_it_is_answered() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     fed.message(&take_off(3.0), 0);
-    fed.message(&take_off(5.0), 0);
+    fed.bytes(&from(254, 190, 1, &take_off(5.0)), 0);
     let order = ordered(MavCmd::MAV_CMD_NAV_TAKEOFF);
     let rejected = order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
     assert_eq!(shared.answers.take(), Some(Reply::Command(rejected)));
     assert_eq!(requests(&shared), [Request::TakeOff(Some(5.0))]);
-    // The same again is asked once and answered as often as it came.
-    (0..3).for_each(|_| fed.message(&take_off(3.0), 0));
+    // One sender's is asked once and answered as often as it came.
+    [2.0, 2.0, 3.0].iter().for_each(|height| fed.message(&take_off(*height), 0));
     let [asked] = asked(&shared)[..] else { panic!() };
+    assert_eq!(asked.request, Request::TakeOff(Some(3.0)));
     shared.answer(&asked, Err(Refusal::NotIdling));
     let answers = std::iter::from_fn(|| shared.answers.take());
     assert_eq!(answers.count(), 3);

@@ -146,6 +146,7 @@ impl<'m> Pilot<'m> {
     }
 
     /// Whether a setpoint may be flown.
+    #[inline(never)] // it would be copied to where setpoints are heard, asked for and taken
     pub(super) fn check(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
         // First, because what is no place is outside of any fence.
         setpoint.check().map_err(|error| Refusal::Setpoint(field(error)))?;
