@@ -35,7 +35,7 @@ const LIST_INTERVAL: u64 = 20_000;
 const REPORT_AGE_MAX: u64 = 1_000_000;
 
 /// Answers to commands that are remembered, to be given again.
-const ANSWERED: usize = 8;
+const ANSWERED: usize = 4;
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.

@@ -1,7 +1,9 @@
 //! What people were told a moment ago, so that nobody fills the line with one text.
 
-use super::event::{Event, Text};
+use super::event::Event;
 use core::cell::Cell;
+use core::hash::{Hash, Hasher};
+use core::mem::discriminant;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -12,9 +14,9 @@ const REMEMBERED: usize = 8;
 /// How long a text is not said again, ms.
 const SILENCE: u32 = 1_000;
 
-/// The last texts, each by a checksum, and when they were said, ms.
+/// The last texts, each by its kind's hash, and when they were said, ms.
 pub(super) struct Lately<M: RawMutex> {
-    said: Mutex<M, Cell<[(u16, u32); REMEMBERED]>>,
+    said: Mutex<M, Cell<[(u32, u32); REMEMBERED]>>,
     /// The time of control's last tick, ms; zero before the first, when nothing is held back.
     now: AtomicU32,
 }
@@ -30,16 +32,22 @@ impl<M: RawMutex> Lately<M> {
         self.now.store((now / 1_000) as u32, Ordering::Relaxed);
     }
 
-    /// Whether the same was said within a second; if not, it is remembered. A change of mode is always news.
+    /// Whether the same words, or a refusal of that kind, were said within a second; if not, it is remembered. What else
+    /// there is to say control says once.
     pub fn has_said(&self, event: &Event) -> bool {
         let now = self.now.load(Ordering::Relaxed);
-        if now == 0 || matches!(event, Event::Mode(_)) {
-            return false;
+        let mut sum = Sum(0x811C_9DC5);
+        // Not put into words: that takes stack which control has not.
+        match event {
+            _ if now == 0 => return false,
+            Event::Words(_, text) => sum.write(text.as_str().as_bytes()),
+            Event::Refused(refusal) => discriminant(refusal).hash(&mut sum),
+            _ => return false,
         }
-        let sum = mavlink::calculate_crc(Text::new(event).as_str().as_bytes(), 0);
+        let sum = sum.0;
         self.said.lock(|cell| {
             let mut said = cell.get();
-            let is_recent = |&(text, at): &(u16, u32)| text == sum && at != 0 && now.wrapping_sub(at) < SILENCE;
+            let is_recent = |&(text, at): &(u32, u32)| text == sum && at != 0 && now.wrapping_sub(at) < SILENCE;
             if said.iter().any(is_recent) {
                 return true;
             }
@@ -49,5 +57,18 @@ impl<M: RawMutex> Lately<M> {
             cell.set(said);
             false
         })
+    }
+}
+
+/// The FNV hash, of 32 bits.
+struct Sum(u32);
+
+impl Hasher for Sum {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |sum, byte| (sum ^ u32::from(*byte)).wrapping_mul(16_777_619));
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.into()
     }
 }

@@ -1,7 +1,8 @@
 //! Requests that wait for control, which takes one a tick.
 //!
-//! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest. So there is room for
-//! every request, none waits for more than the others, [`REQUESTS`] ticks, and nobody who repeats one keeps another out.
+//! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest: nobody who repeats one
+//! keeps another out. Where there is no room, a lesser one of the link makes some. So landing, disarming and the pilot's
+//! switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
 use controller_core::flight::Request;
@@ -10,8 +11,8 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
 
-/// How many may wait: each kind twice.
-pub const REQUESTS: usize = 14;
+/// How many may wait: the five that the radio asks for, landing and disarming by the link, and one of the others.
+pub const REQUESTS: usize = 8;
 
 /// Requests in the order of their coming.
 pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Vec<Asked, REQUESTS>>>);
@@ -23,18 +24,19 @@ impl<M: RawMutex> Requests<M> {
         Self(Mutex::new(RefCell::new(Vec::new())))
     }
 
-    /// Puts a request behind the others and takes away the one of its kind, to be answered. By the same sender's same
-    /// command it is one, to be answered as often.
+    /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no room,
+    /// to be answered. Of one sender's command of one kind it is one, to be answered as often.
     pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
         let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {
             let mut waiting = waiting.try_borrow_mut().ok()?;
-            let place = waiting.iter().position(|other| way(other) == way(&asked));
+            let alike = waiting.iter().position(|other| way(other) == way(&asked));
+            let place = alike.or_else(|| waiting.iter().position(is_lesser).filter(|_| waiting.is_full()));
             let mut before = place.map(|place| waiting.remove(place));
-            if let Some(same) = before.take_if(|before| before.order == asked.order) {
+            if let Some(same) = before.take_if(|before| alike.is_some() && before.order == asked.order) {
                 asked.times = asked.times.saturating_add(same.times);
             }
-            // There is room for each kind twice.
+            // There is room now.
             let _ = waiting.push(asked);
             before
         })
@@ -48,6 +50,11 @@ impl<M: RawMutex> Requests<M> {
             (!waiting.is_empty()).then(|| waiting.remove(0))
         })
     }
+}
+
+/// Whether it makes room for others.
+fn is_lesser(asked: &Asked) -> bool {
+    asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
 }
 
 /// What replaces what.

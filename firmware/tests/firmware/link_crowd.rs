@@ -10,7 +10,7 @@ use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
-use firmware::shared::{Asked, Reply};
+use firmware::shared::{Asked, REQUESTS, Reply};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavResult, MavType, PositionTargetTypemask,
@@ -70,9 +70,17 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
         shared.request(Asked { request, order: None, times: 1 });
     }
-    let asked = asked(&shared);
+    let asked = std::iter::from_fn(|| shared.requests.take()).collect::<Vec<_>>();
     let by_radio = asked.iter().filter(|asked| asked.order.is_none()).count();
-    assert_eq!((asked.len(), by_radio), (10, 5), "{asked:?}");
+    assert_eq!((asked.len(), by_radio), (REQUESTS, 5), "{asked:?}");
+    // And all of them, the link's landing and disarming too, whatever comes behind.
+    let urgent = [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5])];
+    urgent.iter().for_each(|message| fed.message(message, 0));
+    for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
+        shared.request(Asked { request, order: None, times: 1 });
+    }
+    lesser().iter().for_each(|message| fed.message(message, 0));
+    assert_eq!(requests(&shared)[..2], [Request::Land, Request::Disarm]);
 }
 
 #[test]
