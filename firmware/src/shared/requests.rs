@@ -9,19 +9,19 @@ use controller_core::flight::Request;
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use heapless::Vec;
+use heapless::Deque;
 
 /// How many may wait: the five that the radio asks for, landing and disarming by the link, and one of the others.
 pub const REQUESTS: usize = 8;
 
 /// Requests in the order of their coming.
-pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Vec<Asked, REQUESTS>>>);
+pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<Asked, REQUESTS>>>);
 
 impl<M: RawMutex> Requests<M> {
     /// None.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Mutex::new(RefCell::new(Vec::new())))
+        Self(Mutex::new(RefCell::new(Deque::new())))
     }
 
     /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no room,
@@ -32,12 +32,12 @@ impl<M: RawMutex> Requests<M> {
             let mut waiting = waiting.try_borrow_mut().ok()?;
             let alike = waiting.iter().position(|other| way(other) == way(&asked));
             let place = alike.or_else(|| waiting.iter().position(is_lesser).filter(|_| waiting.is_full()));
-            let mut before = place.map(|place| waiting.remove(place));
+            let mut before = place.and_then(|place| remove(&mut waiting, place));
             if let Some(same) = before.take_if(|before| alike.is_some() && before.order == asked.order) {
                 asked.times = asked.times.saturating_add(same.times);
             }
             // There is room now.
-            let _ = waiting.push(asked);
+            let _ = waiting.push_back(asked);
             before
         })
     }
@@ -45,11 +45,23 @@ impl<M: RawMutex> Requests<M> {
     /// Takes the first one.
     #[must_use]
     pub fn take(&self) -> Option<Asked> {
-        self.0.lock(|waiting| {
-            let mut waiting = waiting.try_borrow_mut().ok()?;
-            (!waiting.is_empty()).then(|| waiting.remove(0))
-        })
+        self.0.lock(|waiting| waiting.try_borrow_mut().ok()?.pop_front())
     }
+}
+
+/// Takes the one at a place, by handing all of them round: nothing here may panic in control's tick.
+fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
+    let mut removed = None;
+    for index in 0..waiting.len() {
+        let asked = waiting.pop_front()?;
+        if index == place {
+            removed = Some(asked);
+        } else {
+            // There is room: it was there.
+            let _ = waiting.push_back(asked);
+        }
+    }
+    removed
 }
 
 /// Whether it makes room for others.
