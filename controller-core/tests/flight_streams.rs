@@ -6,7 +6,7 @@ use controller_core::allocation::Rotors;
 use controller_core::estimator::{Increment, PoseMeasurement};
 use controller_core::flight::rules::{COASTING_MAX, DESCENDING_MAX, IDLING_MAX, IMU_AGE_MAX, MOTOR_TEST_MAX};
 use controller_core::flight::{
-    Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Reason, Request, Setting, Stamped,
+    Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Request, Setting, Stamped,
 };
 use controller_core::prelude::*;
 use flight::outputs::check_output;
@@ -241,8 +241,7 @@ impl Judge {
             assert!(before.is_armed());
         }
         if let Output::Idle = outcome.output {
-            let held = outcome.transition.is_some_and(|transition| transition.reason == Reason::HeldOnGround);
-            assert!(before == Mode::Idling || held || arrival.request == Some(Request::Arm));
+            assert!(before == Mode::Idling || arrival.request == Some(Request::Arm));
         }
         for (mode, since, most) in [
             (Mode::Descending, &mut self.descending_since, DESCENDING_MAX),

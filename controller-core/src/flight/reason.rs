@@ -39,7 +39,7 @@ worded! {
         /// Holding was requested and granted.
         HoldCommanded = "Holding position by command",
         /// It stands where it was armed, and holds, or flies setpoints that lift nothing.
-        HeldOnGround = "Idling: nothing lifts it off the ground",
+        HeldOnGround = "Landing: nothing lifts it off the ground",
         /// Landing was requested and granted.
         LandCommanded = "Landing by command",
         /// The vehicle stands on the ground.

@@ -14,7 +14,7 @@ worded! {
     ///            | Locked |   disarm  |  |  | disarm, nothing  +--------+
     ///            +--------+           |  |  | commanded        | Idling |
     ///                                 |  |  +----------------- +--------+
-    ///  +-----------+    motor test    |  |       nothing lifts it  ^ take off, or fly setpoints
+    ///  +-----------+    motor test    |  |                         | take off, or fly setpoints
     ///  | MotorTest | <----------------+  | landed                  v
     ///  +-----------+          |          |           +---------------------------+
     ///            +---------+  |          +-----------| TakingOff, Flying,        |
