@@ -273,8 +273,9 @@ impl<M: RawMutex> Shared<M> {
         self.lately.pass(now);
     }
 
-    /// Tells people what they were not told within the last second: the ground station, the log and the card. Where a queue is full the event is dropped and counted:
-    /// what came first is the cause, what follows is mostly its consequence.
+    /// Tells people what they were not told within the last second: the ground station, the log and the card. Where a
+    /// queue is full the event is dropped and counted: what came first is the cause, what follows is mostly its
+    /// consequence.
     pub fn announce(&self, event: Event) {
         if self.lately.has_said(&event) {
             return;

@@ -334,8 +334,8 @@ fn set_mode(call: &Call, armed: bool) -> Action {
 /// Knows a command that was delivered twice.
 ///
 /// A command sent again on purpose carries a new sequence number and acts again. The same frame twice may be the link's
-/// doing, and must not start a second motor test, nor arm what was disarmed in between: it is acknowledged once more, and
-/// does nothing. One that goes on being delivered acts once a second.
+/// doing, and must not start a second motor test, nor arm what was disarmed in between: it is acknowledged once more,
+/// and does nothing. One that goes on being delivered acts once a second.
 #[derive(Debug, Default)]
 pub struct Repetitions(Deque<Delivered, REMEMBERED>);
 

@@ -3,10 +3,11 @@
 //! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions.
 //! Nothing that lies within another frame's payload is taken for a frame:
 //!
-//! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped whole.
-//!   Nothing says whether it is one, but where a frame has just ended, or been skipped, another begins.
-//! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may have
-//!   begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX`] bytes at most.
+//! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped
+//!   whole. Nothing says whether it is one, but where a frame has just ended, or been skipped, another begins.
+//! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may
+//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX`] bytes
+//!   at most.
 //!
 //! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
 //! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an

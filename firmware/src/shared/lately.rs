@@ -32,8 +32,8 @@ impl<M: RawMutex> Lately<M> {
         self.now.store((now / 1_000) as u32, Ordering::Relaxed);
     }
 
-    /// Whether the same words, or a refusal of that kind, were said within a second; if not, it is remembered. What else
-    /// there is to say control says once.
+    /// Whether the same words, or a refusal of that kind, were said within a second; if not, it is remembered. What
+    /// else there is to say control says once.
     pub fn has_said(&self, event: &Event) -> bool {
         let now = self.now.load(Ordering::Relaxed);
         let mut sum = Sum(0x811C_9DC5);

@@ -1,8 +1,8 @@
 //! Requests that wait for control, which takes one a tick.
 //!
 //! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest: nobody who repeats one
-//! keeps another out. Where there is no room, a lesser one of the link makes some. So landing, disarming and the pilot's
-//! switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
+//! keeps another out. Where there is no room, a lesser one of the link makes some. So landing, disarming and the
+//! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
 use controller_core::flight::Request;
@@ -24,8 +24,8 @@ impl<M: RawMutex> Requests<M> {
         Self(Mutex::new(RefCell::new(Deque::new())))
     }
 
-    /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no room,
-    /// to be answered. Of one sender's command of one kind it is one, to be answered as often.
+    /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no
+    /// room, to be answered. Of one sender's command of one kind it is one, to be answered as often.
     pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
         let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {

@@ -283,8 +283,8 @@ proptest! {
         }
         // Noise may hold the last ones back until more bytes come.
         bytes.extend([0; FRAME_MAX]);
-        let found = parsed(&bytes).into_iter().filter(|&(message, sequence)| message == ODOMETRY_DATA::ID && sequence < 100);
-        let found: Vec<_> = found.collect();
+        let is_last = |&(message, sequence): &(u32, u8)| message == ODOMETRY_DATA::ID && sequence < 100;
+        let found: Vec<_> = parsed(&bytes).into_iter().filter(is_last).collect();
         let expected: Vec<_> = (0..noise.len()).map(|sequence| (ODOMETRY_DATA::ID, sequence as u8)).collect();
         prop_assert_eq!(found, expected);
     }

@@ -153,8 +153,8 @@ impl<'m> Pilot<'m> {
         require(self.fence.allows(setpoint), Refusal::OutsideFence)
     }
 
-    /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by arming,
-    /// so before that it is not asked.
+    /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by
+    /// arming, so before that it is not asked.
     pub(super) fn hear_setpoint(&mut self, setpoint: &Setpoint, now: u64) {
         match self.check(setpoint) {
             Err(refusal) if self.mode.is_armed() || refusal != Refusal::OutsideFence => {
