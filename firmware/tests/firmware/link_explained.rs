@@ -10,7 +10,7 @@ use mavlink::dialects::common::{
     MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult, MavParamType, MavResult, PARAM_REQUEST_READ_DATA,
     PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA, VICON_POSITION_ESTIMATE_DATA, VISION_POSITION_ESTIMATE_DATA,
 };
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 #[test]
 fn vision_messages_are_poses() {
@@ -29,7 +29,7 @@ fn vision_messages_are_poses() {
         Fed::new(&shared).bytes(&bytes, 77);
         let pose = newest(&shared).unwrap();
         assert_eq!((pose.time, pose.value.position()), (77, Vector3::new(2.0, 1.0, 3.0)));
-        let difference = pose.value.attitude().coords - Quaternion::from(*attitude).coords;
+        let difference = pose.value.attitude().coords - attitude.coords;
         assert!(difference.norm() < 1e-5, "{:?}", pose.value);
     }
     let shared = Local::new();
