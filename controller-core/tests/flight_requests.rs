@@ -3,7 +3,7 @@
 mod flight;
 
 use controller_core::flight::rules::SETPOINTS_WANTED_MAX;
-use controller_core::flight::{Battery, Mode, Outcome, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
+use controller_core::flight::{Battery, Mode, Outcome, Output, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Flight, go_to};
@@ -117,7 +117,10 @@ fn a_setpoint_that_is_refused_begins_no_flight_and_says_why() {
     flight.ticks(SETPOINT_AGE_MAX / PERIOD);
     flight.inputs.setpoint = Some(far());
     let outcome = ask(&mut flight, Request::FlySetpoints);
-    assert_eq!((outcome.mode, outcome.answer), (Mode::Holding, Some(Err(Refusal::NoSetpoints))));
+    assert_eq!((outcome.mode, outcome.answer), (Mode::Holding, Some(Err(Refusal::OutsideFence))));
+    // What came is known for a second.
+    flight.ticks(SETPOINT_AGE_MAX / PERIOD);
+    assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Err(Refusal::NoSetpoints)));
 }
 
 #[test]
@@ -193,4 +196,89 @@ fn a_landing_that_is_granted_without_a_pose_gives_way_to_what_is_asked_for_later
         assert_eq!(ask(&mut flight, request).answer, Some(Ok(())));
     }
     assert_eq!(flight.ticks(2_000).mode, Mode::Holding);
+}
+
+#[test]
+fn asking_again_for_what_is_so_is_granted_and_changes_nothing() {
+    let mut flight = Flight::idling();
+    let outcome = ask(&mut flight, Request::Arm);
+    assert_eq!((outcome.answer, outcome.mode), (Some(Ok(())), Mode::Idling));
+    let from = flight.body.position.z;
+    for height in [Some(3.0), Some(3.0), None] {
+        let outcome = ask(&mut flight, Request::TakeOff(height));
+        // Another height is another flight.
+        let answer = if height.is_some() { Ok(()) } else { Err(Refusal::NotIdling) };
+        assert_eq!((outcome.answer, outcome.mode), (Some(answer), Mode::TakingOff), "{height:?}");
+        flight.ticks(150);
+    }
+    assert_eq!(ask(&mut flight, Request::Arm).answer, Some(Ok(())));
+    assert_eq!(flight.ticks(2_000).mode, Mode::Holding);
+    assert!((flight.body.position.z - from - 3.0).abs() < 0.1, "{}", flight.body.position.z - from);
+    assert_eq!(ask(&mut flight, Request::Land).answer, Some(Ok(())));
+    assert_eq!(ask(&mut flight, Request::Land).answer, Some(Ok(())));
+}
+
+#[test]
+fn who_lands_what_has_landed_is_told_so() {
+    let mut flight = Flight::idling();
+    for _ in 0..2 {
+        assert_eq!(ask(&mut flight, Request::Land).answer, Some(Ok(())));
+        assert_eq!(flight.ticks(1).output, Output::Stop);
+    }
+}
+
+/// A vehicle that holds on the ground disarms within two ticks.
+fn disarms(flight: &mut Flight) {
+    flight.until(Reason::HeldOnGround, 1);
+    let (_, landed) = flight.until(Reason::Landed, 1);
+    assert_eq!((landed.output, landed.mode), (Output::Stop, Mode::Checks));
+}
+
+#[test]
+fn a_hold_on_the_ground_ends_the_take_off_and_does_not_stand_there_with_thrust() {
+    // While the rotors come up, and just behind that.
+    for ticks in [1, 50, 99, 110] {
+        let mut flight = Flight::idling();
+        assert_eq!(ask(&mut flight, Request::TakeOff(None)).mode, Mode::TakingOff);
+        flight.ticks(ticks);
+        assert_eq!(ask(&mut flight, Request::Hold).answer, Some(Ok(())));
+        disarms(&mut flight);
+        flight.ticks(150);
+        // It may take off again.
+        for request in [Request::Arm, Request::TakeOff(None)] {
+            assert_eq!(ask(&mut flight, request).answer, Some(Ok(())), "{ticks}");
+        }
+        assert_eq!(flight.ticks(2_000).mode, Mode::Holding);
+    }
+}
+
+#[test]
+fn a_station_or_a_stream_that_is_lost_on_the_ground_leaves_no_thrust_there() {
+    let mut flight = Flight::idling();
+    flight.present.ground_station = false;
+    flight.ticks(200);
+    ask(&mut flight, Request::TakeOff(None));
+    flight.until(Reason::GroundStationLost, 60);
+    disarms(&mut flight);
+    let mut flight = idling_with_setpoints_wanted();
+    assert_eq!(stream(&mut flight, velocity(0.0), 10).mode, Mode::Flying);
+    flight.until(Reason::SetpointsLost, 110);
+    disarms(&mut flight);
+}
+
+#[test]
+fn setpoints_that_lift_nothing_off_the_ground_end_after_ten_seconds() {
+    let mut flight = Flight::idling();
+    assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Ok(())));
+    assert_eq!(stream(&mut flight, velocity(0.0), 990).mode, Mode::Flying);
+    let outcome = stream(&mut flight, velocity(0.0), 20);
+    assert_eq!(outcome.output, Output::Stop, "{:?}", outcome.mode);
+}
+
+#[test]
+fn a_point_is_flown_to_from_the_air_only() {
+    let mut flight = Flight::idling();
+    ask(&mut flight, Request::TakeOff(None));
+    let outcome = ask(&mut flight, Request::GoTo(go_to(0.0, 0.0, 1.0)));
+    assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::NotInTheAir)), Mode::TakingOff));
 }

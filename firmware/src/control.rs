@@ -100,6 +100,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// One tick, from what the other tasks have put down to the motors' command.
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
+        self.shared.pass(now);
         let increments: Vec<Increment, INCREMENTS> = waiting(&self.shared.increments);
         let poses: Vec<_, POSES> = waiting(&self.shared.poses);
         increments.iter().for_each(|increment| self.integrate(increment));
@@ -109,7 +110,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let outcome = self.pilot.tick(&inputs);
         if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
             let order = asked.and_then(|asked| asked.order);
-            self.shared.commander.put(order.map(|order| order.sender.0), now);
+            self.shared.commander.put(order.map(|order| order.sender), now);
         }
         self.tell(&outcome, asked);
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());

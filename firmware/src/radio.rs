@@ -21,7 +21,7 @@
 pub mod sticks;
 
 use crate::hardware::Clock;
-use crate::shared::{Asked, Event, Full, Severity, Shared};
+use crate::shared::{Asked, Event, Severity, Shared};
 use controller_core::flight::{Mode, Request};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -110,15 +110,13 @@ pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
     shared: &'a Shared<M>,
     last: Option<(Frame, u64)>,
-    /// Whether a hold is still to be asked for: a silent transmitter does not ask again.
-    hold_due: bool,
 }
 
 impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing heard yet.
     #[must_use]
     pub fn new(shared: &'a Shared<M>) -> Self {
-        Self { parser: CrsfParser::new(), shared, last: None, hold_due: false }
+        Self { parser: CrsfParser::new(), shared, last: None }
     }
 
     /// Takes bytes that came at `now`, us, and acts on the frames of channels that they complete.
@@ -140,7 +138,6 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         self.shared.ground_station.put((), now);
         self.shared.killed.put(frame.killed, now);
         self.shared.sticks.put(frame.flies == Switch::High, now);
-        self.hold_due = false;
         // Switches act when they are moved while somebody is heard.
         if let Some((before, _)) = self.last.replace((frame, now)) {
             self.moved(&before, &frame);
@@ -156,11 +153,10 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     pub fn listen(&mut self, now: u64) {
         if self.last.is_some_and(|(_, heard)| now.saturating_sub(heard) > SILENCE) {
             self.last = None;
-            self.hold_due = self.shared.sticks.get().is_some_and(|sticks| sticks.value);
             self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
-        }
-        if self.hold_due {
-            self.hold_due = self.is_flown() && self.request(Request::Hold).is_err();
+            if self.is_flown() && self.shared.sticks.get().is_some_and(|sticks| sticks.value) {
+                self.ask(Request::Hold);
+            }
         }
     }
 
@@ -205,11 +201,6 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     }
 
     fn ask(&self, request: Request) {
-        // Where there is no room, the next frame asks again, or its pilot does.
-        let _ = self.request(request);
-    }
-
-    fn request(&self, request: Request) -> Result<(), Full> {
-        self.shared.request(Asked { request, order: None })
+        self.shared.request(Asked { request, order: None, times: 1 });
     }
 }

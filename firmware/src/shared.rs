@@ -42,11 +42,13 @@
 mod card;
 mod event;
 mod flag;
+mod lately;
 mod latest;
 mod library;
 mod queue;
 mod reply;
 mod report;
+mod requests;
 
 pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use event::{Event, Severity, TEXT_MAX, Text};
@@ -56,8 +58,10 @@ pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
 pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
+pub use requests::{REQUESTS, Requests};
 
 use crate::last_words::LastWords;
+use self::lately::Lately;
 use crate::link::origin::Origin;
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
@@ -69,9 +73,6 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use mavlink::dialects::common::MavResult;
-
-/// Requests that wait for control, which takes one a tick.
-pub const REQUESTS: usize = 4;
 
 /// IMU increments that wait for control, which takes all of them: 40 ms.
 pub const INCREMENTS: usize = 8;
@@ -106,7 +107,7 @@ pub struct Shared<M: RawMutex> {
     /// The newest setpoint. An unread one is replaced: only the last counts.
     pub setpoint: Latest<M, Setpoint>,
     /// Requests for control, in the order they came. Put them in with [`Self::request`].
-    pub requests: Queue<M, Asked, REQUESTS>,
+    pub requests: Requests<M>,
     /// Raised while parameters are written to flash: nothing begins to turn.
     pub saving: Flag,
     /// Raised while a changed configuration is certified: nothing begins to turn.
@@ -133,8 +134,8 @@ pub struct Shared<M: RawMutex> {
     /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with
     /// [`Self::request_disarm`].
     pub disarm: Flag,
-    /// The station on the link that armed the vehicle, by its system, and when; none if somebody else did.
-    pub commander: Latest<M, Option<u8>>,
+    /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
+    pub commander: Latest<M, Option<(u8, u8)>>,
     /// Answers to requests. Put them in with [`Self::answer`].
     pub answers: Queue<M, Reply, REPLIES>,
     /// Where the local frame is on the globe, if a ground station has said so.
@@ -163,6 +164,7 @@ pub struct Shared<M: RawMutex> {
     pub card: CardStatus<M>,
     /// What the link wants to know of the card's files.
     pub library: Library<M>,
+    lately: Lately<M>,
     /// Events that found one of the queues full.
     lost: AtomicU32,
     lost_increments: AtomicU32,
@@ -180,7 +182,7 @@ impl<M: RawMutex> Shared<M> {
             poses: Queue::new(),
             ground_station: Latest::new(),
             setpoint: Latest::new(),
-            requests: Queue::new(),
+            requests: Requests::new(),
             saving: Flag::new(),
             judging: Flag::new(),
             restarting: Flag::new(),
@@ -208,6 +210,7 @@ impl<M: RawMutex> Shared<M> {
             recorder: Recorder::new(),
             card: CardStatus::new(),
             library: Library::new(),
+            lately: Lately::new(),
             lost: AtomicU32::new(0),
             lost_increments: AtomicU32::new(0),
         }
@@ -227,12 +230,11 @@ impl<M: RawMutex> Shared<M> {
         self.lost_increments.load(Ordering::Relaxed)
     }
 
-    /// Asks control for something.
-    ///
-    /// # Errors
-    /// [`Full`] if too many wait already; the sender is to be told to try again.
-    pub fn request(&self, asked: Asked) -> Result<(), Full> {
-        self.requests.put(asked)
+    /// Asks control for something, in place of what the link, or the radio, asked for of that kind: that is answered.
+    pub fn request(&self, asked: Asked) {
+        if let Some(before) = self.requests.put(asked) {
+            self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+        }
     }
 
     /// Disarms within one tick, in the air as well. Requests that wait came earlier, so none of them may arm
@@ -250,9 +252,18 @@ impl<M: RawMutex> Shared<M> {
         if let Err(refusal) = result {
             self.announce(Event::Refused(refusal));
         }
+        self.acknowledge(
+            asked,
+            if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED },
+        );
+    }
+
+    /// Answers a request as often as it came.
+    fn acknowledge(&self, asked: &Asked, result: MavResult) {
         let Some(order) = asked.order else { return };
-        let result = if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED };
-        let _ = self.answers.put(Reply::Command(order.answered(result)));
+        for _ in 0..asked.times {
+            let _ = self.answers.put(Reply::Command(order.answered(result)));
+        }
         self.outgoing.signal(());
     }
 
@@ -262,9 +273,18 @@ impl<M: RawMutex> Shared<M> {
         self.outgoing.signal(());
     }
 
-    /// Tells people: the ground station, the log and the card. Where a queue is full the event is dropped and counted:
-    /// what came first is the cause, what follows is mostly its consequence.
+    /// Control's time, us, by which texts are held back.
+    pub fn pass(&self, now: u64) {
+        self.lately.pass(now);
+    }
+
+    /// Tells people what they were not told within the last second: the ground station, the log and the card. Where a
+    /// queue is full the event is dropped and counted: what came first is the cause, what follows is mostly its
+    /// consequence.
     pub fn announce(&self, event: Event) {
+        if self.lately.has_said(&event) {
+            return;
+        }
         let is_logged = self.card.state() != CardState::Ready || self.card.events.put(event.clone()).is_ok();
         if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged {
             self.lost.fetch_add(1, Ordering::Relaxed);

@@ -47,7 +47,7 @@ fn a_vehicle_that_an_updraft_all_but_stops_in_its_descent_has_not_landed() {
 fn a_take_off_that_does_not_leave_the_ground_ends() {
     // It held its position on the ground, with its rotors turning, for as long as its reference was within reach.
     let flown = flown(Phase::Spooling, Failure::HeldDown, None);
-    assert!(since(&flown, Reason::TrackingLost).is_some_and(|since| since < 12.0), "{:?}", flown.path);
+    assert!(since(&flown, Reason::HeldOnGround).is_some_and(|since| since < 9.0), "{:?}", flown.path);
 }
 
 #[test]

@@ -79,8 +79,9 @@ pub(super) struct Chain<'m> {
     mass: f32,
     gravity: f32,
     period: f32,
-    /// The height of the take-off, m, world.
+    /// The height of the take-off, m, world, and above where it began.
     rising_to: f32,
+    rising_by: f32,
     /// The last tick's.
     reference: Reference,
     thrusts: Option<Thrusts>,
@@ -136,6 +137,7 @@ impl<'m> Chain<'m> {
             gravity: vehicle.gravity,
             period,
             rising_to: 0.0,
+            rising_by: 0.0,
             reference: resting(&Vector3::zeros(), &Heading::FORWARD),
             thrusts: None,
             flown: None,
@@ -174,8 +176,13 @@ impl<'m> Chain<'m> {
     /// # Errors
     /// Names the field the governor refuses.
     pub fn rise(&mut self, height: f32) -> Result<(), &'static str> {
-        self.rising_to = self.reference.position.z + height;
+        (self.rising_to, self.rising_by) = (self.reference.position.z + height, height);
         self.rise_on()
+    }
+
+    /// Whether it makes for a place `height` above the one that it was at, m, to the millimetre.
+    pub fn rises(&self, height: f32) -> bool {
+        (self.rising_by - height).abs() < 1e-3
     }
 
     fn rise_on(&mut self) -> Result<(), &'static str> {

@@ -113,8 +113,8 @@ impl<'m> Pilot<'m> {
     fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let followed = self.follow(estimate);
         let seen = self.look(inputs, estimate);
-        if let Some(setpoint) = inputs.setpoint.as_ref().filter(|setpoint| self.may_come(setpoint)) {
-            self.newest.keep(setpoint, inputs.now);
+        if let Some(setpoint) = &inputs.setpoint {
+            self.hear_setpoint(setpoint, inputs.now);
         }
         self.take_back(inputs);
         let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));

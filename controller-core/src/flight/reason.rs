@@ -38,6 +38,8 @@ worded! {
         SetpointsCommanded = "Flying setpoints",
         /// Holding was requested and granted.
         HoldCommanded = "Holding position by command",
+        /// It stands where it was armed, and holds, or flies setpoints that lift nothing.
+        HeldOnGround = "Landing: nothing lifts it off the ground",
         /// Landing was requested and granted.
         LandCommanded = "Landing by command",
         /// The vehicle stands on the ground.
@@ -101,6 +103,7 @@ impl Reason {
             | Self::TakenOff
             | Self::SetpointsCommanded
             | Self::HoldCommanded
+            | Self::HeldOnGround
             | Self::LandCommanded
             | Self::Landed
             | Self::PoseRegained

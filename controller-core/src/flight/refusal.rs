@@ -136,7 +136,7 @@ impl fmt::Display for Refusal {
         f.write_str(match self {
             Self::Grounded(grounded) => return grounded.fmt(f),
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
-            Self::Setpoint(field) => return write!(f, "Setpoint refused: {field:.32}"),
+            Self::Setpoint(field) => return write!(f, "Refused: {field:.28} out of range"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",

@@ -1,6 +1,7 @@
 //! What somebody may ask for, and the setpoints that come beside it.
 
 use super::motor::{MotorSetting, MotorTest};
+use super::refusal::Refusal;
 use crate::governor::{Motion, Setpoint};
 
 /// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
@@ -30,14 +31,25 @@ pub enum Request {
     MotorSetting(MotorSetting),
 }
 
-/// The newest setpoint that may be flown.
+/// The newest setpoint that may be flown, and the newest refusal of one, each with its time, us.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Newest(Option<(Setpoint, u64)>);
+pub(super) struct Newest(Option<(Setpoint, u64)>, Option<(Refusal, u64)>);
 
 impl Newest {
     /// Keeps one that came at `now`, us.
     pub fn keep(&mut self, setpoint: &Setpoint, now: u64) {
         self.0 = Some((*setpoint, now));
+    }
+
+    /// Remembers why one that came at `now`, us, is not flown.
+    pub fn refuse(&mut self, refusal: Refusal, now: u64) {
+        self.1 = Some((refusal, now));
+    }
+
+    /// Why there is none at `now`, us.
+    pub fn refused(&self, now: u64) -> Refusal {
+        let recent = self.1.filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX);
+        recent.map_or(Refusal::NoSetpoints, |(refusal, _)| refusal)
     }
 
     /// It, if it is fresh at `now`, us.

@@ -43,7 +43,7 @@ pub const DESCENDING_MAX: u64 = 30_000_000;
 /// a second is for their jitter.
 pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
 
-/// How long an armed vehicle may idle on the ground, us.
+/// How long an armed vehicle may idle on the ground, us, or fly setpoints that do not lift it.
 pub const IDLING_MAX: u64 = 10_000_000;
 
 /// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and

@@ -3,7 +3,7 @@
 //! | command | does |
 //! |---|---|
 //! | 400 COMPONENT_ARM_DISARM | asks the flight rules to arm (1) or disarm (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
-//! | 22 NAV_TAKEOFF | asks to take off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT` says |
+//! | 22 NAV_TAKEOFF | asks to take off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT` says. By COMMAND_INT in a global frame, and from here only |
 //! | 21 NAV_LAND | asks to land here |
 //! | 176 DO_SET_MODE | PX4's custom modes: asks to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
 //! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
@@ -118,7 +118,7 @@ impl From<&COMMAND_INT_DATA> for Call {
 /// What to do about a command while armed or not, where the local frame is at `origin` and home at `home`, m, NED.
 #[must_use]
 pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) -> Action {
-    let [first, second, .., seventh] = call.parameters;
+    let [first, second, ..] = call.parameters;
     match call.command {
         MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match first {
             0.0 if second == FORCE => Action::ForceDisarm,
@@ -126,11 +126,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
             1.0 => Action::Ask(Request::Arm),
             _ => denied("Arm: parameter 1 is 1 to arm, 0 to disarm"),
         },
-        MavCmd::MAV_CMD_NAV_TAKEOFF => {
-            // Most clients that name no height send NaN, some zero.
-            let height = Some(seventh).filter(|height| !height.is_nan() && *height != 0.0);
-            Action::Ask(Request::TakeOff(height))
-        }
+        MavCmd::MAV_CMD_NAV_TAKEOFF => take_off(call, origin, home),
         MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
         MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call),
@@ -145,9 +141,13 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         },
         MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
         MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Tell(Reply::IntervalOf(kind))),
-        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => {
-            of_kind(first, |kind| Action::Tell(Reply::Interval { kind, interval: second as i64 }))
-        }
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => of_kind(first, |kind| match kind {
+            // By it others know that the vehicle is there.
+            Kind::Heartbeat if !(0.0..=HEARTBEAT).contains(&second) => {
+                denied("HEARTBEAT: once a second, or more often")
+            }
+            _ => Action::Tell(Reply::Interval { kind, interval: second as i64 }),
+        }),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is no number"),
         // What older clients say for REQUEST_MESSAGE.
         MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Send(Kind::HomePosition),
@@ -160,11 +160,43 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
 /// AVAILABLE_MODES.
 const MODES_NUMBER: f32 = 435.0;
 
+/// The longest time between heartbeats, us.
+const HEARTBEAT: f32 = 1e6;
+
 /// Something about the message of this number; unsupported if it is none of ours.
 fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
     // A number that is none, or negative, becomes that of HEARTBEAT: not asked for that way.
     let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| streams::of_number(number as u32));
     kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), act)
+}
+
+/// How high above home, m, an altitude in this frame is; none in a frame that is not of the globe.
+fn above_home(frame: MavFrame, altitude: f32, home: f32) -> Option<f32> {
+    match frame {
+        MavFrame::MAV_FRAME_GLOBAL | MavFrame::MAV_FRAME_GLOBAL_INT => Some(altitude - home),
+        MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => Some(altitude),
+        _ => None,
+    }
+}
+
+/// How far from home a take-off may be asked for, m.
+const HERE: f32 = 2.0;
+
+/// Taking off, straight up. Most clients that name no height or place send NaN or the greatest number, some zero.
+fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
+    let [.., altitude] = call.parameters;
+    let is_named = !altitude.is_nan() && altitude != 0.0;
+    let Some((latitude, longitude, frame)) = call.place else {
+        return Action::Ask(Request::TakeOff(is_named.then_some(altitude)));
+    };
+    let Some(height) = above_home(frame, altitude, origin.place(home).altitude) else {
+        return unsupported("Take-off: in a global frame only");
+    };
+    let away = origin.local(&Place { latitude, longitude, altitude }) - home;
+    if (latitude, longitude) != (0, 0) && latitude != i32::MAX && away.xy().norm_squared() > HERE * HERE {
+        return denied("Take-off: from here, not from another place");
+    }
+    Action::Ask(Request::TakeOff(is_named.then_some(height)))
 }
 
 /// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the
@@ -174,13 +206,11 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     let Some((latitude, longitude, frame)) = call.place else {
         return unsupported("Reposition: by COMMAND_INT only");
     };
-    let altitude = match frame {
-        MavFrame::MAV_FRAME_GLOBAL | MavFrame::MAV_FRAME_GLOBAL_INT => altitude,
-        MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
-            origin.place(home).altitude + altitude
-        }
-        _ => return unsupported("Reposition: in a global frame only"),
+    let base = origin.place(home).altitude;
+    let Some(height) = above_home(frame, altitude, base) else {
+        return unsupported("Reposition: in a global frame only");
     };
+    let altitude = base + height;
     if !altitude.is_finite() || [latitude, longitude].contains(&i32::MAX) {
         return denied("Reposition: needs a place and an altitude");
     }
@@ -303,26 +333,51 @@ fn set_mode(call: &Call, armed: bool) -> Action {
 
 /// Knows a command that was delivered twice.
 ///
-/// A command sent again on purpose carries a new sequence number and acts again: arming twice is refused by the flight
-/// rules, disarming twice is disarming. The same frame twice is the link's doing, and must not start a second motor
-/// test, nor arm what was disarmed in between. One that goes on being delivered acts once a second.
+/// A command sent again on purpose carries a new sequence number and acts again. The same frame twice may be the link's
+/// doing, and must not start a second motor test, nor arm what was disarmed in between: it is acknowledged once more,
+/// and does nothing. One that goes on being delivered acts once a second.
 #[derive(Debug, Default)]
-pub struct Repetitions(Deque<(Header, u16, u64), REMEMBERED>);
+pub struct Repetitions(Deque<Delivered, REMEMBERED>);
+
+/// A frame that was acted on, with the number of its command.
+#[derive(Debug)]
+struct Delivered {
+    header: Header,
+    checksum: u16,
+    command: u16,
+    time: u64,
+}
+
+/// What a command's frame is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Delivery {
+    /// One to act on.
+    New,
+    /// One again that was acted on.
+    Again,
+    /// The same, and its sender has sent that command in another frame since.
+    Overtaken,
+}
 
 impl Repetitions {
-    /// Whether this command's frame is one again that was acted on.
-    pub fn is_repeated(&mut self, frame: &Frame<'_>) -> bool {
-        let is_same = |(header, checksum, time): &(Header, u16, u64)| {
-            (*header, *checksum) == (frame.header, frame.checksum) && frame.time.saturating_sub(*time) < REPETITION
+    /// What this frame of a command is.
+    pub fn look(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
+        let Frame { header, checksum, time, .. } = *frame;
+        let is_same = |before: &Delivered| {
+            (before.header, before.checksum) == (header, checksum) && time.saturating_sub(before.time) < REPETITION
         };
-        if self.0.iter().any(is_same) {
-            return true;
+        if let Some(place) = self.0.iter().position(is_same) {
+            let sender = (header.system, header.component);
+            let is_later =
+                |later: &Delivered| ((later.header.system, later.header.component), later.command) == (sender, command);
+            let is_overtaken = self.0.iter().skip(place + 1).any(is_later);
+            return if is_overtaken { Delivery::Overtaken } else { Delivery::Again };
         }
         if self.0.is_full() {
             self.0.pop_front();
         }
         // There is room for it now.
-        let _ = self.0.push_back((frame.header, frame.checksum, frame.time));
-        false
+        let _ = self.0.push_back(Delivered { header, checksum, command, time });
+        Delivery::New
     }
 }

@@ -1,16 +1,20 @@
 //! MAVLink frames: found in a stream of bytes, and checked.
 //!
 //! [`Parser`] takes one byte at a time and hands out frames whose checksum is right, of both protocol versions.
-//! Whatever is not a frame (noise, truncated frames, frames of other dialects) is given up from its first byte only,
-//! and the bytes behind it are looked at again, so a good frame behind a broken one is still found.
+//! Nothing that lies within another frame's payload is taken for a frame:
+//!
+//! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped
+//!   whole. Nothing says whether it is one, but where a frame has just ended, or been skipped, another begins.
+//! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may
+//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX`] bytes
+//!   at most.
 //!
 //! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
 //! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an
 //! old pose never comes out as a fresh one.
 //!
 //! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot
-//! be told from noise. Frames of `common` without a use here are checked and skipped whole: bytes inside them that
-//! look like a frame (a log being sent) do nothing.
+//! be told from noise. A sender that pauses in a frame for longer than [`FRAME_AGE_MAX`] begins anew, for all we know.
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
@@ -90,6 +94,10 @@ impl Frame<'_> {
 enum Candidate {
     /// A frame of so many bytes, checked.
     Frame(usize),
+    /// Perhaps a frame of so many bytes that is not understood.
+    Foreign(usize),
+    /// Perhaps a frame of so many bytes with a wrong checksum.
+    Broken(usize),
     /// Perhaps a frame, once more bytes are there.
     Incomplete,
     /// Nothing that starts here.
@@ -102,6 +110,10 @@ pub struct Parser {
     length: usize,
     /// The frame last handed out, still at the start of the buffer.
     taken: usize,
+    /// Whether the buffer begins where a frame should.
+    is_aligned: bool,
+    /// What ends within so many bytes from the start of the buffer may be part of something else.
+    barred: usize,
     /// No byte of the buffer arrived before this, us.
     since: u64,
     discarded: u32,
@@ -111,7 +123,7 @@ impl Parser {
     /// Nothing received yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { buffer: [0; FRAME_MAX], length: 0, taken: 0, since: 0, discarded: 0 }
+        Self { buffer: [0; FRAME_MAX], length: 0, taken: 0, is_aligned: true, barred: 0, since: 0, discarded: 0 }
     }
 
     /// Takes the next byte, which arrived at `now` (us), and returns a frame if there is one. There may be more: ask
@@ -121,7 +133,7 @@ impl Parser {
         self.taken = 0;
         if now.saturating_sub(self.since) > FRAME_AGE_MAX || self.length == FRAME_MAX {
             self.discarded = self.discarded.wrapping_add(self.length as u32);
-            self.length = 0;
+            (self.length, self.is_aligned, self.barred) = (0, false, 0);
         }
         if self.length == 0 {
             self.since = now;
@@ -148,17 +160,26 @@ impl Parser {
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
         self.remove(self.taken);
         self.taken = 0;
-        let mut noise = 0;
+        let mut passed = 0;
         let found = loop {
-            match candidate(self.buffer.get(noise..self.length).unwrap_or(&[])) {
-                Candidate::Frame(length) => break Some(length),
+            let rest = self.buffer.get(passed..self.length).unwrap_or(&[]);
+            match candidate(rest) {
+                Candidate::Frame(length) if passed + length > self.barred => break Some(length),
+                Candidate::Frame(length) => passed += length,
+                Candidate::Foreign(length) if self.is_aligned && rest.len() < length => break None,
+                Candidate::Foreign(length) if self.is_aligned => passed += length,
+                Candidate::Foreign(length) | Candidate::Broken(length) => {
+                    (self.is_aligned, self.barred) = (false, self.barred.max(passed + length));
+                    passed += 1;
+                }
                 Candidate::Incomplete => break None,
-                Candidate::Noise => noise += 1,
+                Candidate::Noise => (self.is_aligned, passed) = (false, passed + 1),
             }
         };
-        self.discarded = self.discarded.wrapping_add(noise as u32);
-        self.remove(noise);
+        self.discarded = self.discarded.wrapping_add(passed as u32);
+        self.remove(passed);
         self.taken = found?;
+        (self.is_aligned, self.barred) = (true, 0);
         frame(self.buffer.get(..self.taken)?, self.since)
     }
 
@@ -173,6 +194,7 @@ impl Parser {
         if count > 0 {
             self.buffer.copy_within(count.min(self.length)..self.length, 0);
             self.length = self.length.saturating_sub(count);
+            self.barred = self.barred.saturating_sub(count);
         }
     }
 }
@@ -189,22 +211,26 @@ fn candidate(bytes: &[u8]) -> Candidate {
         [] => return Candidate::Incomplete,
         [START_V1, ..] => (HEADER_V1, 0),
         [START_V2] | [START_V2, _] => return Candidate::Incomplete,
-        [START_V2, _, 0, ..] => (HEADER_V2, 0),
-        [START_V2, _, SIGNED, ..] => (HEADER_V2, SIGNATURE),
+        [START_V2, _, flags, ..] => (HEADER_V2, if flags & SIGNED == 0 { 0 } else { SIGNATURE }),
         _ => return Candidate::Noise,
     };
     let (Some(&payload), Some(message)) = (bytes.get(1), message(bytes)) else { return Candidate::Incomplete };
-    // Messages without such a number, in the dialect or not, cannot be told from noise.
-    let Some(extra) = extra(message) else { return Candidate::Noise };
     let end = header + usize::from(payload);
+    let length = end + CHECKSUM + signature;
+    // Messages without such a number, in the dialect or not, cannot be told from noise.
+    let Some(extra) = extra(message).filter(|_| is_understood(bytes)) else { return Candidate::Foreign(length) };
     let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
         return Candidate::Incomplete;
     };
     if calculate_crc(checked, extra) != u16::from_le_bytes([low, high]) {
-        return Candidate::Noise;
+        return Candidate::Broken(length);
     }
-    let length = end + CHECKSUM + signature;
     if bytes.len() < length { Candidate::Incomplete } else { Candidate::Frame(length) }
+}
+
+/// Whether all incompatibility flags are known.
+fn is_understood(bytes: &[u8]) -> bool {
+    !matches!(*bytes, [START_V2, _, flags, ..] if flags & !SIGNED != 0)
 }
 
 /// What a message's definition puts into its checksum; none for a message outside the dialect.

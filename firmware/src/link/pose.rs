@@ -1,9 +1,10 @@
-//! Poses: ODOMETRY and ATT_POS_MOCAP, checked and turned into the law's frames.
+//! Poses: ODOMETRY, ATT_POS_MOCAP and the vision messages, checked and turned into the law's frames.
 //!
 //! | message | accepted | besides |
 //! |---|---|---|
 //! | ODOMETRY | position in LOCAL_NED or LOCAL_FRD, velocity in BODY_FRD or in the frame of the position | quality, reset counter, covariance |
 //! | ATT_POS_MOCAP | FRD to NED | nothing |
+//! | VISION_POSITION_ESTIMATE, GLOBAL_VISION_POSITION_ESTIMATE, VICON_POSITION_ESTIMATE | NED, roll, pitch and yaw of FRD | covariance; reset counter, but of VICON's |
 //!
 //! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are
 //! zero) has its poses stamped as they arrive. What a pose takes at least, from the camera to here, is known where its
@@ -24,9 +25,13 @@ use crate::frames;
 use controller_core::estimator::PoseMeasurement;
 use controller_core::flight::{Pose, PoseError, Stamped, Velocity};
 use controller_core::math;
+use controller_core::rotation::half_rotation;
 use core::fmt;
 use mavlink::MessageData;
-use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA, TIMESYNC_DATA};
+use mavlink::dialects::common::{
+    ATT_POS_MOCAP_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, MavFrame, ODOMETRY_DATA, TIMESYNC_DATA,
+    VICON_POSITION_ESTIMATE_DATA, VISION_POSITION_ESTIMATE_DATA,
+};
 use nalgebra::{Quaternion, Vector3};
 
 /// How long a source must have been silent before another is listened to, us.
@@ -35,6 +40,22 @@ pub const SOURCE_SILENCE: u64 = 1_000_000;
 /// Where ODOMETRY's extension fields lie, which the message's type does not have.
 const RESET_COUNTER: usize = ODOMETRY_DATA::ENCODED_LEN;
 const QUALITY: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
+
+/// And a vision message's, a float each of the covariance, and behind it the reset counter.
+const VISION_RESET_COUNTER: usize = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 84;
+
+/// Whether a message of this number is a pose.
+#[must_use]
+pub const fn is_pose(message: u32) -> bool {
+    matches!(message, ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID) || is_vision(message)
+}
+
+const fn is_vision(message: u32) -> bool {
+    matches!(
+        message,
+        VISION_POSITION_ESTIMATE_DATA::ID | VICON_POSITION_ESTIMATE_DATA::ID | GLOBAL_VISION_POSITION_ESTIMATE_DATA::ID
+    )
+}
 
 /// Why a pose was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,6 +136,12 @@ impl Poses {
                 let ATT_POS_MOCAP_DATA { time_usec, q, x, y, z } = message;
                 let still = Velocity::World(Vector3::zeros());
                 (PoseMeasurement::new(&pose([x, y, z], q, still)?), time_usec)
+            }
+            message if is_vision(message) => {
+                // All three have the same fields in the same places.
+                let alike = Frame { message: VISION_POSITION_ESTIMATE_DATA::ID, ..*frame };
+                let message: VISION_POSITION_ESTIMATE_DATA = alike.decode().ok_or(PoseRefusal::Frame)?;
+                (vision(frame, &message)?, message.usec)
             }
             _ => return Ok(None),
         };
@@ -225,12 +252,35 @@ pub(crate) fn odometry(frame: &Frame<'_>, message: &ODOMETRY_DATA) -> Result<Pos
         _ => return Err(PoseRefusal::Frame),
     };
     let measured = PoseMeasurement::with_velocity(&pose([x, y, z], q, velocity)?);
-    // The diagonal of the upper triangle, row by row: x, y, z, roll, pitch, yaw.
-    let [xx, .., yy, _, _, _, _, zz, _, _, _, rr, _, _, pp, _, hh] = message.pose_covariance;
-    let measured = measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh]));
+    let measured = deviations(measured, &message.pose_covariance);
     // Zeros at the end are cut off, and older senders do not know these fields.
     let extension = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
     Ok(measured.quality(extension(QUALITY).cast_signed()).reset_counter(extension(RESET_COUNTER)))
+}
+
+/// The pose in a vision message, which came in `frame`.
+fn vision(frame: &Frame<'_>, message: &VISION_POSITION_ESTIMATE_DATA) -> Result<PoseMeasurement, PoseRefusal> {
+    let &VISION_POSITION_ESTIMATE_DATA { x, y, z, roll, pitch, yaw, .. } = message;
+    let [roll, pitch, yaw] = [Vector3::x() * roll, Vector3::y() * pitch, Vector3::z() * yaw];
+    let turned = half_rotation(&(yaw * 0.5)) * half_rotation(&(pitch * 0.5)) * half_rotation(&(roll * 0.5));
+    let [i, j, k, w] = turned.coords.into();
+    let still = Velocity::World(Vector3::zeros());
+    let measured = PoseMeasurement::new(&pose([x, y, z], [w, i, j, k], still)?);
+    // Zeros at the end are cut off, and older senders do not know these fields.
+    let extension = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
+    let number = |index: usize| {
+        let place = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 4 * index;
+        f32::from_le_bytes([0, 1, 2, 3].map(|byte| extension(place + byte)))
+    };
+    let measured = deviations(measured, &core::array::from_fn(number));
+    Ok(measured.reset_counter(extension(VISION_RESET_COUNTER)))
+}
+
+/// With what a covariance says, if it does.
+fn deviations(measured: PoseMeasurement, covariance: &[f32; 21]) -> PoseMeasurement {
+    // The diagonal of the upper triangle, row by row: x, y, z, roll, pitch, yaw.
+    let [xx, .., yy, _, _, _, _, zz, _, _, _, rr, _, _, pp, _, hh] = *covariance;
+    measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh]))
 }
 
 /// The root of the greatest of three variances; NaN if any of them says nothing.

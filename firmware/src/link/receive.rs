@@ -9,7 +9,7 @@ use super::COMPONENT;
 use super::command::Repetitions;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
-use super::pose::Poses;
+use super::pose::{Poses, is_pose};
 use super::set_mode::SetMode;
 use super::setpoint::{Here, setpoint};
 use crate::hardware::Clock;
@@ -23,16 +23,17 @@ use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
+use foreign::Foreign;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ATT_POS_MOCAP_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA,
-    LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA,
-    MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA,
-    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    TIMESYNC_DATA,
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA,
+    LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA,
+    MISSION_REQUEST_LIST_DATA, MavType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, TIMESYNC_DATA,
 };
 
 mod commands;
+mod foreign;
 mod parameters;
 mod places;
 mod recordings;
@@ -99,11 +100,15 @@ pub struct Receiver<'a, M: RawMutex> {
     setpoint_refused: Occasionally,
     stranger_refused: Occasionally,
     log_refused: Occasionally,
+    parameter_refused: Occasionally,
     /// When the time may be told again, us.
     next_time_told: u64,
     traffic: Traffic,
     /// The last setpoint that was refused because the sticks fly.
     kept: Option<Stamped<Setpoint>>,
+    /// Whose setpoints are flown, system and component, and when the last came, us.
+    owner: Option<Stamped<(u8, u8)>>,
+    foreign: Foreign,
 }
 
 impl<'a, M: RawMutex> Receiver<'a, M> {
@@ -119,9 +124,12 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             setpoint_refused: Occasionally::default(),
             stranger_refused: Occasionally::default(),
             log_refused: Occasionally::default(),
+            parameter_refused: Occasionally::default(),
             next_time_told: 0,
             traffic: Traffic::default(),
             kept: None,
+            owner: None,
+            foreign: Foreign::default(),
         }
     }
 
@@ -133,11 +141,11 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
-        self.commander.hear(frame.header.system, self.shared.commander.get(), frame.time);
+        let sender = (frame.header.system, frame.header.component);
+        self.commander.hear(sender, self.shared.commander.get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
-            // In a simulation the simulator says where the vehicle is.
-            ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID if !self.shared.hil.is_raised() => self.pose(frame),
+            message if is_pose(message) => self.pose(frame),
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
             COMMAND_LONG_DATA::ID => self.command(frame, frame.decode::<COMMAND_LONG_DATA>().as_ref()),
             COMMAND_INT_DATA::ID => self.command(frame, frame.decode::<COMMAND_INT_DATA>().as_ref()),
@@ -156,7 +164,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             LOG_REQUEST_END_DATA::ID => self.decoded(frame, Self::end_reading),
             LOG_ERASE_DATA::ID => self.decoded(frame, Self::erase_recordings),
             PARAM_SET_DATA::ID => self.decoded(frame, Self::set_parameter),
-            _ => {}
+            _ => self.foreign(frame),
         }
     }
 
@@ -188,14 +196,19 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    /// Any ground station's or companion computer's will do.
+    /// Any ground station's will do. A companion computer's does not: it goes on when nobody watches any more.
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
-        if matches!(message.mavtype, MavType::MAV_TYPE_GCS | MavType::MAV_TYPE_ONBOARD_CONTROLLER) {
+        if message.mavtype == MavType::MAV_TYPE_GCS {
             self.shared.ground_station.put((), frame.time);
+            self.commander.meet((frame.header.system, frame.header.component));
         }
     }
 
     fn pose(&mut self, frame: &Frame<'_>) {
+        // In a simulation the simulator says where the vehicle is.
+        if self.shared.hil.is_raised() {
+            return;
+        }
         // Milliseconds, within 0 and 150, as the table has it.
         let delay = (self.shared.parameters.get(Name::PoseDelay) * 1e3) as u64;
         match self.poses.take(frame, delay) {
@@ -223,7 +236,16 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 self.refused();
                 self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
             }
-            Ok(setpoint) => self.shared.setpoint.put(setpoint, frame.time),
+            Ok(setpoint) => {
+                let value = (frame.header.system, frame.header.component);
+                if self.owner.is_some_and(|owner| owner.value != value && owner.age(frame.time) <= SETPOINT_AGE_MAX) {
+                    self.refused();
+                    let words = "Setpoint refused: another sender's are flown";
+                    return self.setpoint_refused.warn(self.shared, frame.time, words);
+                }
+                self.owner = Some(Stamped { value, time: frame.time });
+                self.shared.setpoint.put(setpoint, frame.time);
+            }
             Err(refusal) => {
                 self.refused();
                 self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));

@@ -2,6 +2,7 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
+use super::acknowledgement::Acknowledgement;
 use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::origin::Origin;
@@ -18,6 +19,7 @@ use crate::shared::{Event, MissionList, Reply, Severity, Shared};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
+use heapless::Deque;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavResult,
@@ -31,6 +33,9 @@ const LIST_INTERVAL: u64 = 20_000;
 
 /// The greatest age of a report that is still sent, and of a voltage, us.
 const REPORT_AGE_MAX: u64 = 1_000_000;
+
+/// Answers to commands that are remembered, to be given again.
+const ANSWERED: usize = 4;
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.
@@ -62,6 +67,8 @@ struct Speaker<'a, M: RawMutex> {
     writer: Writer,
     /// Lost events that were told of.
     told: u32,
+    /// The last answers to commands.
+    answered: Deque<Acknowledgement, ANSWERED>,
 }
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
@@ -73,6 +80,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             download: Download::new(),
             writer: Writer::new(),
             told: 0,
+            answered: Deque::new(),
         }
     }
 
@@ -165,7 +173,19 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
-            Reply::Command(acknowledgement) => self.say(&acknowledgement),
+            Reply::Command(acknowledgement) => {
+                self.say(&acknowledgement);
+                if self.answered.is_full() {
+                    self.answered.pop_front();
+                }
+                // There is room for it now.
+                let _ = self.answered.push_back(acknowledgement);
+            }
+            Reply::Again(order) => {
+                let last = self.answered.iter().rev().find(|answered| answered.order == order).cloned();
+                let system = self.system();
+                return self.writer.write_some(system, last);
+            }
             Reply::Ping(ping) => self.say(&ping),
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
             Reply::Parameter(name) => self.parameter(name),

@@ -18,6 +18,8 @@ pub struct Asked {
     pub request: Request,
     /// The command it came by, if it came over the link.
     pub order: Option<Order>,
+    /// How often it came before it was taken, and is to be answered.
+    pub times: u8,
 }
 
 /// A calibration to be begun, or the end of the one under way; and the command that asked for it, to be answered.
@@ -50,6 +52,8 @@ pub struct MissionList {
 pub enum Reply {
     /// COMMAND_ACK.
     Command(Acknowledgement),
+    /// COMMAND_ACK, as the last time, if that is not still to come.
+    Again(Order),
     /// PING, sent back.
     Ping(Ping),
     /// TIMESYNC: the time of day.

@@ -66,13 +66,17 @@ fn every_single_wrong_byte_is_noticed() {
 }
 
 #[test]
-fn a_truncated_frame_costs_nothing_but_itself() {
+fn a_truncated_frame_costs_itself_and_what_lies_where_its_payload_should() {
     let (whole, next) = (v2(1, &odometry()), v2(2, &arm()));
     for length in 0..whole.len() {
         // The frames behind it may only come out once enough bytes show that the first was broken.
-        let bytes = [&whole[..length], &next, &v2(3, &odometry()), &v2(4, &odometry())].concat();
-        let expected = [(COMMAND_LONG_DATA::ID, 2), (ODOMETRY_DATA::ID, 3)];
-        assert!(parsed(&bytes).starts_with(&expected), "{length} bytes: {:?}", parsed(&bytes));
+        let frames = [v2(3, &odometry()), v2(4, &odometry()), v2(5, &odometry())].concat();
+        let found = parsed(&[&whole[..length], &next, &frames].concat());
+        // From within a header nothing says how long the frame was to be.
+        let next_whole = if (1..10).contains(&length) { 5 } else { 3 };
+        assert!(found.contains(&(ODOMETRY_DATA::ID, next_whole)), "{length}: {found:?}");
+        let reaches_beyond = length + next.len() > whole.len();
+        assert_eq!(found.contains(&(COMMAND_LONG_DATA::ID, 2)), length == 0 || reaches_beyond, "{length}: {found:?}");
     }
 }
 
@@ -80,6 +84,65 @@ fn a_truncated_frame_costs_nothing_but_itself() {
 fn a_repeated_frame_comes_out_twice_for_its_reader_to_judge() {
     let frame = v2(1, &arm());
     assert_eq!(parsed(&[frame.clone(), frame].concat()), [(COMMAND_LONG_DATA::ID, 1); 2]);
+}
+
+/// A frame that carries `inner`, of a message that the dialect does not have, or with these incompatibility flags.
+fn carrying(inner: &[u8], message: u32, flags: u8) -> Vec<u8> {
+    let mut payload = [7; 100];
+    payload[10..10 + inner.len()].copy_from_slice(inner);
+    let mut bytes = v2_of_payload(1, message, 77, &payload);
+    bytes[2] = flags;
+    bytes.extend(std::iter::repeat_n(0, if flags & 1 == 1 { 13 } else { 0 }));
+    bytes
+}
+
+#[test]
+fn a_command_inside_a_frame_that_is_not_understood_is_never_taken() {
+    let (inner, next) = (v2(9, &arm()), v2(2, &arm()));
+    let unknown = 0x0001_2345;
+    for inner in [inner, v1(9, &arm())] {
+        for (message, flags) in [(unknown, 0), (unknown, 1), (unknown, 2), (LOGGING_DATA_DATA::ID, 2)] {
+            let outer = carrying(&inner, message, flags);
+            for noise in [&[][..], &[0x55], &[0xFE, 3]] {
+                let bytes = [noise, &outer, &next, &v2(3, &odometry()), &v2(4, &odometry())].concat();
+                let found = parsed(&bytes);
+                assert!(!found.contains(&(COMMAND_LONG_DATA::ID, 9)), "{message:#x} {flags} {noise:?}");
+                let expected = (COMMAND_LONG_DATA::ID, 2);
+                assert!(!noise.is_empty() || found.contains(&expected), "{message:#x} {flags}");
+                assert!(found.contains(&(ODOMETRY_DATA::ID, 4)), "{message:#x} {flags} {noise:?}");
+            }
+        }
+        // Version 1, of a number that the dialect does not have.
+        let mut bytes = vec![0xFE, inner.len() as u8, 1, 255, 190, 229];
+        bytes.extend([&inner[..], &[0, 0]].concat());
+        assert_eq!(parsed(&[bytes, next.clone()].concat()), [(COMMAND_LONG_DATA::ID, 2)]);
+    }
+}
+
+#[test]
+fn a_command_inside_a_broken_frame_is_never_taken() {
+    let mut log = LOGGING_DATA_DATA::default();
+    let hidden = v2(1, &arm());
+    log.data[..hidden.len()].copy_from_slice(&hidden);
+    let good = v2(2, &log);
+    for place in [4, 12, good.len() - 1] {
+        let mut bytes = good.clone();
+        bytes[place] ^= 0x10;
+        let found = parsed(&[bytes, v2(3, &odometry()), v2(4, &odometry())].concat());
+        assert_eq!(found, [(ODOMETRY_DATA::ID, 3), (ODOMETRY_DATA::ID, 4)], "{place}");
+    }
+}
+
+#[test]
+fn a_command_behind_an_unknown_flag_is_not_taken() {
+    for flag in 1..8 {
+        let mut bytes = v2(1, &arm());
+        bytes[2] = 1 << flag;
+        let end = bytes.len() - 2;
+        let checksum = mavlink::calculate_crc(&bytes[1..end], COMMAND_LONG_DATA::EXTRA_CRC);
+        bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+        assert_eq!(parsed(&[bytes, v2(2, &arm())].concat()), [(COMMAND_LONG_DATA::ID, 2)]);
+    }
 }
 
 #[test]
@@ -164,7 +227,8 @@ fn a_frame_behind_noise_is_as_old_as_the_noise() {
             next = parser.next_frame();
         }
     }
-    assert_eq!(found, [(1, 1_000), (2, 1_000)]);
+    // The first lies where the payload of the noise's frame would.
+    assert_eq!(found, [(2, 1_000)]);
 }
 
 #[test]
@@ -206,17 +270,21 @@ proptest! {
     }
 
     #[test]
-    fn good_frames_between_noise_are_all_found(
+    fn good_frames_are_found_again_behind_noise_and_the_frame_that_it_may_seem_to_begin(
         noise in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 6),
     ) {
         let mut bytes = Vec::new();
         for (sequence, noise) in noise.iter().enumerate() {
             bytes.extend(noise);
+            // As long as the longest frame, so that whatever the noise seems to begin ends before the next.
+            bytes.extend(v2(100, &odometry()));
+            bytes.extend(v2(100, &odometry()));
             bytes.extend(v2(sequence as u8, &odometry()));
         }
         // Noise may hold the last ones back until more bytes come.
         bytes.extend([0; FRAME_MAX]);
-        let found: Vec<_> = parsed(&bytes).into_iter().filter(|&(message, _)| message == ODOMETRY_DATA::ID).collect();
+        let is_last = |&(message, sequence): &(u32, u8)| message == ODOMETRY_DATA::ID && sequence < 100;
+        let found: Vec<_> = parsed(&bytes).into_iter().filter(is_last).collect();
         let expected: Vec<_> = (0..noise.len()).map(|sequence| (ODOMETRY_DATA::ID, sequence as u8)).collect();
         prop_assert_eq!(found, expected);
     }

@@ -19,6 +19,8 @@ mod imu_flow;
 mod journal;
 mod last_words;
 mod link_commands;
+mod link_crowd;
+mod link_explained;
 mod link_frames;
 mod link_messages;
 mod link_parameters;

@@ -102,7 +102,7 @@ fn every_event_fits_its_text_and_matters_as_it_should() {
     let others = [Reason::Armed, Reason::Disarmed, Reason::Landed, Reason::PoseRegained, Reason::TakenOff];
     assert!(own.iter().all(|reason| reason.is_own_doing()) && !others.iter().any(|reason| reason.is_own_doing()));
     let refused = Event::Refused(Refusal::Setpoint("setpoint.position"));
-    assert_eq!(words(&refused), "Setpoint refused: setpoint.position");
+    assert_eq!(words(&refused), "Refused: setpoint.position out of range");
     assert_eq!(refused.severity(), Severity::Warning);
     let input = Event::Input(InputError::NotFinite { field: "state.position" });
     assert_eq!((words(&input).as_str(), input.severity()), ("state.position: must be finite", Severity::Critical));

@@ -56,6 +56,8 @@ impl<'m> Pilot<'m> {
         // Whatever is asked for in the tick of a disarm command came before it.
         require(!inputs.disarm, Refusal::DisarmCommanded)?;
         match request {
+            // It is so: who heard no answer asks again.
+            Request::Arm if self.mode.is_armed() => require(!inputs.killed, Refusal::Killed),
             Request::Arm => {
                 permission::to_turn_motors(self.mode)?;
                 self.begin(inputs, estimate)
@@ -66,7 +68,9 @@ impl<'m> Pilot<'m> {
             Request::TakeOff(height) => self.take_off(height, inputs, estimate),
             Request::FlySetpoints => {
                 permission::to_fly_setpoints(self.mode)?;
-                require(!self.mode.is_guided() || self.has_setpoint(inputs.now), Refusal::NoSetpoints)?;
+                if self.mode.is_guided() {
+                    self.has_setpoint(inputs.now)?;
+                }
                 self.wanted_since = Some(inputs.now);
                 Ok(())
             }
@@ -79,10 +83,12 @@ impl<'m> Pilot<'m> {
             }
             Request::GoTo(setpoint) => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                require(self.is_airborne(), Refusal::NotInTheAir)?;
                 self.accept(&setpoint)
             }
             Request::Land => {
-                let may = self.mode == Mode::Idling || self.mode.flies();
+                let has_landed = matches!(self.mode, Mode::Checks | Mode::Ready);
+                let may = has_landed || self.mode.is_armed();
                 // If poses are lost in this tick, it is remembered.
                 self.must_still_land = self.mode.flies();
                 require(may, Refusal::NotInTheAir)
@@ -105,8 +111,11 @@ impl<'m> Pilot<'m> {
         inputs: &Inputs,
         estimate: &Estimate,
     ) -> Result<(), Refusal> {
-        require(self.mode == Mode::Idling, Refusal::NotIdling)?;
         let height = height.unwrap_or(self.settings.take_off_height);
+        if self.mode == Mode::TakingOff && self.chain.as_ref().is_ok_and(|chain| chain.rises(height)) {
+            return Ok(());
+        }
+        require(self.mode == Mode::Idling, Refusal::NotIdling)?;
         require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
         require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
         self.begin(inputs, estimate)?;
@@ -132,24 +141,32 @@ impl<'m> Pilot<'m> {
     }
 
     pub(super) fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
-        require(self.fence.allows(setpoint), Refusal::OutsideFence)?;
+        self.check(setpoint)?;
         self.with_chain(|chain| chain.accept(setpoint).map_err(Refusal::Setpoint))
     }
 
     /// Whether a setpoint may be flown.
+    #[inline(never)] // it would be copied to where setpoints are heard, asked for and taken
     pub(super) fn check(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
-        require(self.fence.allows(setpoint), Refusal::OutsideFence)?;
-        setpoint.check().map_err(|error| Refusal::Setpoint(field(error)))
+        // First, because what is no place is outside of any fence.
+        setpoint.check().map_err(|error| Refusal::Setpoint(field(error)))?;
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)
     }
 
-    /// Whether a setpoint is one to remember: what is refused does not keep a stream alive. The fence is placed by
+    /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by
     /// arming, so before that it is not asked.
-    pub(super) fn may_come(&self, setpoint: &Setpoint) -> bool {
-        if self.mode.is_armed() { self.check(setpoint).is_ok() } else { setpoint.check().is_ok() }
+    pub(super) fn hear_setpoint(&mut self, setpoint: &Setpoint, now: u64) {
+        match self.check(setpoint) {
+            Err(refusal) if self.mode.is_armed() || refusal != Refusal::OutsideFence => {
+                self.newest.refuse(refusal, now);
+            }
+            _ => self.newest.keep(setpoint, now),
+        }
     }
 
-    /// Whether there is a setpoint to be flown now.
-    pub(super) fn has_setpoint(&self, now: u64) -> bool {
-        self.newest.fresh(now).is_some_and(|setpoint| self.fence.allows(setpoint))
+    /// Whether there is a setpoint to be flown now, and why not.
+    pub(super) fn has_setpoint(&self, now: u64) -> Result<(), Refusal> {
+        let setpoint = self.newest.fresh(now).ok_or_else(|| self.newest.refused(now))?;
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)
     }
 }

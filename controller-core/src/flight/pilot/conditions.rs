@@ -25,7 +25,7 @@ impl Pilot<'_> {
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
         // What was granted since goes before a landing that could not go on.
         self.must_still_land &= granted.is_none_or(|request| request == Request::Land);
-        let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now);
+        let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now).is_ok();
         let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
@@ -60,12 +60,14 @@ impl Pilot<'_> {
             (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
             _ => false,
         };
+        let stands = self.chain.as_ref().is_ok_and(Chain::is_standing);
         let patience = (self.settings.ground_station_patience * 1e6) as u64;
         conditions
             .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
             .with(Condition::Uncertified, self.chain.is_err())
             .with(Condition::MotorTestOver, self.bench.is_over(elapsed))
             .with(Condition::IdlingOver, elapsed >= IDLING_MAX)
+            .with(Condition::HeldOnGround, stands && (self.mode == Mode::Holding || elapsed >= IDLING_MAX))
             .with(Condition::TakenOff, self.chain.as_ref().is_ok_and(Chain::has_risen))
             .with(Condition::Landed, seen.landed)
             .with(Condition::Crashed, seen.crashed)

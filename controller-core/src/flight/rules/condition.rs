@@ -33,6 +33,8 @@ listed! {
         LandRequested,
         /// Idling has lasted [`super::IDLING_MAX`].
         IdlingOver,
+        /// The vehicle stands where it was armed, and holds, or has done what it does for [`super::IDLING_MAX`].
+        HeldOnGround,
         /// The reference has come to rest at the height of the take-off.
         TakenOff,
         /// The vehicle stands on the ground though it is going down.

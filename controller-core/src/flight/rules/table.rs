@@ -22,7 +22,7 @@ const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row 
 
 /// The rules. Within a mode, an upper row goes before a lower one.
 #[rustfmt::skip]
-pub const TABLE: [Row; 99] = {
+pub const TABLE: [Row; 101] = {
     use Condition::*;
     use Mode::*;
     [
@@ -94,6 +94,7 @@ pub const TABLE: [Row; 99] = {
         row(Flying,     TrackingLost,        Landing,    Reason::TrackingLost),
         row(Flying,     Saturated,           Landing,    Reason::Saturated),
         row(Flying,     Overrun,             Landing,    Reason::Overrun),
+        row(Flying,     HeldOnGround,        Landing,    Reason::HeldOnGround),
         row(Flying,     LandRequested,       Landing,    Reason::LandCommanded),
         row(Flying,     HoldRequested,       Holding,    Reason::HoldCommanded),
         row(Flying,     GroundStationSilent, Holding,    Reason::GroundStationLost),
@@ -111,6 +112,7 @@ pub const TABLE: [Row; 99] = {
         row(Holding,    TrackingLost,        Landing,    Reason::TrackingLost),
         row(Holding,    Saturated,           Landing,    Reason::Saturated),
         row(Holding,    Overrun,             Landing,    Reason::Overrun),
+        row(Holding,    HeldOnGround,        Landing,    Reason::HeldOnGround),
         row(Holding,    LandRequested,       Landing,    Reason::LandCommanded),
         row(Holding,    GroundStationGone,   Landing,    Reason::GroundStationGone),
         row(Holding,    SetpointsRequested,  Flying,     Reason::SetpointsCommanded),

@@ -68,7 +68,7 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
             _ => None,
         };
         if let Some(request) = asked {
-            let _ = shared.request(Asked { request, order: None });
+            shared.request(Asked { request, order: None, times: 1 });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {

@@ -3,7 +3,7 @@
 use super::Receiver;
 use crate::frames;
 use crate::link::acknowledgement::{Order, command_of};
-use crate::link::command::{Action, Call, action};
+use crate::link::command::{Action, Call, Delivery, action};
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
 use crate::link::set_mode::SetMode;
@@ -60,13 +60,18 @@ impl<M: RawMutex> Receiver<'_, M> {
         if !self.is_addressed(system, component) {
             return;
         }
-        if self.repetitions.is_repeated(frame) {
-            self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
-            return;
-        }
         let call = Call::from(message);
         let (order, armed) = (Order { command: call.command as u16, sender }, self.shared.commander.get());
-        let result = if !self.shared.is_armed() || self.commander.may(&call, sender.0, armed, frame.time) {
+        let delivery = self.repetitions.look(frame, order.command);
+        if delivery != Delivery::New {
+            self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
+            self.shared.reply(match delivery {
+                Delivery::Overtaken => Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED)),
+                _ => Reply::Again(order),
+            });
+            return;
+        }
+        let result = if !self.shared.is_armed() || self.commander.may(&call, sender, armed, frame.time) {
             match self.act(&call, order, frame.time) {
                 Some(result) => result,
                 None => return,
@@ -86,10 +91,15 @@ impl<M: RawMutex> Receiver<'_, M> {
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
                 if request == Request::FlySetpoints {
+                    if let Some(name) = self.unflown(now) {
+                        let words = format_args!("No OFFBOARD by {name}");
+                        self.shared.announce(Event::new(Severity::Warning, words));
+                        return Some(MavResult::MAV_RESULT_DENIED);
+                    }
                     self.take_over(now);
                 }
-                let asked = self.shared.request(Asked { request, order: Some(order) });
-                return asked.err().map(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+                self.shared.request(Asked { request, order: Some(order), times: 1 });
+                return None;
             }
             Action::ForceDisarm => self.shared.request_disarm(),
             Action::EnterHil => self.shared.hil.raise(),

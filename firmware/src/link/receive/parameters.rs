@@ -9,6 +9,7 @@ use crate::shared::{Event, Reply, Severity};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA};
+use mavlink::types::CharArray;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn list_parameters(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_LIST_DATA) {
@@ -17,32 +18,37 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
     }
 
-    pub(super) fn read_parameter(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_READ_DATA) {
+    pub(super) fn read_parameter(&mut self, frame: &Frame<'_>, message: &PARAM_REQUEST_READ_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
             // A negative index: by name.
             let name = match usize::try_from(message.param_index) {
                 Ok(index) => Name::from_index(index),
                 Err(_) => message.param_id.to_str().ok().and_then(Name::from_name),
             };
-            self.reply_with_parameter(name);
+            self.reply_with_parameter(name, frame.time, &message.param_id);
         }
     }
 
-    pub(super) fn set_parameter(&mut self, _: &Frame<'_>, message: &PARAM_SET_DATA) {
+    pub(super) fn set_parameter(&mut self, frame: &Frame<'_>, message: &PARAM_SET_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
             let name = message.param_id.to_str().ok().and_then(Name::from_name);
             if let Some(name) = name {
                 self.set(name, message.param_value, message.param_type);
             }
-            self.reply_with_parameter(name);
+            self.reply_with_parameter(name, frame.time, &message.param_id);
         }
     }
 
-    /// Its value, as it is now, answers every question about a parameter.
-    pub(super) fn reply_with_parameter(&mut self, name: Option<Name>) {
+    /// Its value, as it is now, answers every question about a parameter. Of one that is not there nothing can be sent:
+    /// who asks is told at `now`, us.
+    pub(super) fn reply_with_parameter(&mut self, name: Option<Name>, now: u64, asked: &CharArray<16>) {
         match name {
             Some(name) => self.shared.reply(Reply::Parameter(name)),
-            None => self.refused(),
+            None => {
+                self.refused();
+                let words = format_args!("No parameter {}", asked.to_str().unwrap_or(""));
+                self.parameter_refused.warn(self.shared, now, words);
+            }
         }
     }
 

@@ -27,6 +27,13 @@ pub fn v2<D: MessageData>(sequence: u8, message: &D) -> Vec<u8> {
     raw.raw_bytes().to_vec()
 }
 
+/// A version 2 frame of this sender's.
+pub fn from<D: MessageData>(system_id: u8, component_id: u8, sequence: u8, message: &D) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.serialize_message_data(MavHeader { system_id: system_id.into(), component_id, sequence }, message);
+    raw.raw_bytes().to_vec()
+}
+
 /// A version 1 frame.
 pub fn v1<D: MessageData>(sequence: u8, message: &D) -> Vec<u8> {
     let mut raw = MAVLinkV1MessageRaw::new();

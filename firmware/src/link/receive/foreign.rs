@@ -1,0 +1,71 @@
+//! What other vehicles understand and this one does not: said once for each message, or answered.
+
+#![expect(deprecated, reason = "superseded messages: clients still send them")]
+
+use super::Receiver;
+use crate::link::frame::Frame;
+use crate::shared::{Event, MissionList, Reply, Severity};
+use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use mavlink::MessageData;
+use mavlink::dialects::common::{
+    MANUAL_CONTROL_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavMissionResult, RC_CHANNELS_OVERRIDE_DATA,
+    SET_ACTUATOR_CONTROL_TARGET_DATA, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA,
+};
+
+/// Messages that others fly: number, at which byte of the payload the target system is, name. The setpoints first.
+const NOT_FLOWN: [(u32, usize, &str); 5] = [
+    (SET_ATTITUDE_TARGET_DATA::ID, 36, SET_ATTITUDE_TARGET_DATA::NAME),
+    (SET_POSITION_TARGET_GLOBAL_INT_DATA::ID, 50, SET_POSITION_TARGET_GLOBAL_INT_DATA::NAME),
+    (SET_ACTUATOR_CONTROL_TARGET_DATA::ID, 41, SET_ACTUATOR_CONTROL_TARGET_DATA::NAME),
+    (MANUAL_CONTROL_DATA::ID, 10, MANUAL_CONTROL_DATA::NAME),
+    (RC_CHANNELS_OVERRIDE_DATA::ID, 16, RC_CHANNELS_OVERRIDE_DATA::NAME),
+];
+const SETPOINTS: usize = 3;
+
+/// Where a mission item says whom it is for, after seven numbers of four bytes and two of two.
+const TARGET: usize = 32;
+
+/// What came that is not flown.
+#[derive(Debug, Default)]
+pub(super) struct Foreign {
+    /// What was explained, bit by bit as [`NOT_FLOWN`].
+    explained: u8,
+    /// The last setpoint's name.
+    setpoint: Option<Stamped<&'static str>>,
+}
+
+impl<M: RawMutex> Receiver<'_, M> {
+    /// Explains or answers a message that is not understood.
+    pub(super) fn foreign(&mut self, frame: &Frame<'_>) {
+        // Zeros at the end are cut off.
+        let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
+        if [MISSION_ITEM_DATA::ID, MISSION_ITEM_INT_DATA::ID].contains(&frame.message) {
+            if self.is_addressed(byte(TARGET), byte(TARGET + 1)) {
+                let sender = (frame.header.system, frame.header.component);
+                let list = MissionList { sender, list: byte(MISSION_ITEM_DATA::ENCODED_LEN) };
+                self.shared.reply(Reply::Mission(list, MavMissionResult::MAV_MISSION_UNSUPPORTED));
+            }
+            return;
+        }
+        let found = NOT_FLOWN.iter().enumerate().find(|(_, (message, ..))| *message == frame.message);
+        let Some((index, &(.., name))) = found.filter(|(_, (_, target, _))| self.is_addressed(byte(*target), 0)) else {
+            return;
+        };
+        self.refused();
+        if index < SETPOINTS {
+            self.foreign.setpoint = Some(Stamped { value: name, time: frame.time });
+        }
+        if self.foreign.explained >> index & 1 == 0 {
+            self.foreign.explained |= 1 << index;
+            self.shared.announce(Event::new(Severity::Warning, format_args!("Not flown: {name}")));
+        }
+    }
+
+    /// The setpoints that come at `now`, us, and cannot be flown, where there are no others.
+    pub(super) fn unflown(&self, now: u64) -> Option<&'static str> {
+        let is_flown = self.owner.is_some_and(|owner| owner.age(now) <= SETPOINT_AGE_MAX);
+        let recent = self.foreign.setpoint.filter(|setpoint| !is_flown && setpoint.age(now) <= SETPOINT_AGE_MAX);
+        recent.map(|setpoint| setpoint.value)
+    }
+}

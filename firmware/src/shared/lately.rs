@@ -1,0 +1,74 @@
+//! What people were told a moment ago, so that nobody fills the line with one text.
+
+use super::event::Event;
+use core::cell::Cell;
+use core::hash::{Hash, Hasher};
+use core::mem::discriminant;
+use core::sync::atomic::{AtomicU32, Ordering};
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// Texts that are remembered.
+const REMEMBERED: usize = 8;
+
+/// How long a text is not said again, ms.
+const SILENCE: u32 = 1_000;
+
+/// The last texts, each by its kind's hash, and when they were said, ms.
+pub(super) struct Lately<M: RawMutex> {
+    said: Mutex<M, Cell<[(u32, u32); REMEMBERED]>>,
+    /// The time of control's last tick, ms; zero before the first, when nothing is held back.
+    now: AtomicU32,
+}
+
+impl<M: RawMutex> Lately<M> {
+    /// Nothing said.
+    pub const fn new() -> Self {
+        Self { said: Mutex::new(Cell::new([(0, 0); REMEMBERED])), now: AtomicU32::new(0) }
+    }
+
+    /// It is `now`, us.
+    pub fn pass(&self, now: u64) {
+        self.now.store((now / 1_000) as u32, Ordering::Relaxed);
+    }
+
+    /// Whether the same words, or a refusal of that kind, were said within a second; if not, it is remembered. What
+    /// else there is to say control says once.
+    pub fn has_said(&self, event: &Event) -> bool {
+        let now = self.now.load(Ordering::Relaxed);
+        let mut sum = Sum(0x811C_9DC5);
+        // Not put into words: that takes stack which control has not.
+        match event {
+            _ if now == 0 => return false,
+            Event::Words(_, text) => sum.write(text.as_str().as_bytes()),
+            Event::Refused(refusal) => discriminant(refusal).hash(&mut sum),
+            _ => return false,
+        }
+        let sum = sum.0;
+        self.said.lock(|cell| {
+            let mut said = cell.get();
+            let is_recent = |&(text, at): &(u32, u32)| text == sum && at != 0 && now.wrapping_sub(at) < SILENCE;
+            if said.iter().any(is_recent) {
+                return true;
+            }
+            said.rotate_right(1);
+            let [first, ..] = &mut said;
+            *first = (sum, now);
+            cell.set(said);
+            false
+        })
+    }
+}
+
+/// The FNV hash, of 32 bits.
+struct Sum(u32);
+
+impl Hasher for Sum {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |sum, byte| (sum ^ u32::from(*byte)).wrapping_mul(16_777_619));
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.into()
+    }
+}

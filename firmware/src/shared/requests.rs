@@ -1,0 +1,89 @@
+//! Requests that wait for control, which takes one a tick.
+//!
+//! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest: nobody who repeats one
+//! keeps another out. Where there is no room, a lesser one of the link makes some. So landing, disarming and the
+//! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
+
+use super::reply::Asked;
+use controller_core::flight::Request;
+use core::cell::RefCell;
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use heapless::Deque;
+
+/// How many may wait: the five that the radio asks for, landing and disarming by the link, and one of the others.
+pub const REQUESTS: usize = 8;
+
+/// Requests in the order of their coming.
+pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<Asked, REQUESTS>>>);
+
+impl<M: RawMutex> Requests<M> {
+    /// None.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Mutex::new(RefCell::new(Deque::new())))
+    }
+
+    /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no
+    /// room, to be answered. Of one sender's command of one kind it is one, to be answered as often.
+    pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
+        let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
+        self.0.lock(|waiting| {
+            let mut waiting = waiting.try_borrow_mut().ok()?;
+            let alike = waiting.iter().position(|other| way(other) == way(&asked));
+            let place = alike.or_else(|| waiting.iter().position(is_lesser).filter(|_| waiting.is_full()));
+            let mut before = place.and_then(|place| remove(&mut waiting, place));
+            if let Some(same) = before.take_if(|before| alike.is_some() && before.order == asked.order) {
+                asked.times = asked.times.saturating_add(same.times);
+            }
+            // There is room now.
+            let _ = waiting.push_back(asked);
+            before
+        })
+    }
+
+    /// Takes the first one.
+    #[must_use]
+    pub fn take(&self) -> Option<Asked> {
+        self.0.lock(|waiting| waiting.try_borrow_mut().ok()?.pop_front())
+    }
+}
+
+/// Takes the one at a place, by handing all of them round: nothing here may panic in control's tick.
+fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
+    let mut removed = None;
+    for index in 0..waiting.len() {
+        let asked = waiting.pop_front()?;
+        if index == place {
+            removed = Some(asked);
+        } else {
+            // There is room: it was there.
+            let _ = waiting.push_back(asked);
+        }
+    }
+    removed
+}
+
+/// Whether it makes room for others.
+fn is_lesser(asked: &Asked) -> bool {
+    asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
+}
+
+/// What replaces what.
+const fn kind(request: &Request) -> u8 {
+    match request {
+        Request::Arm => 0,
+        Request::Disarm => 1,
+        Request::TakeOff(_) => 2,
+        Request::FlySetpoints => 3,
+        Request::Hold | Request::GoTo(_) => 4,
+        Request::Land => 5,
+        Request::MotorTest(_) | Request::MotorSetting(_) => 6,
+    }
+}
+
+impl<M: RawMutex> Default for Requests<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
