@@ -87,7 +87,7 @@ pub enum Name {
     TrackingErrorMax,
     /// The configuration that the following rows were tuned on. Told, never set.
     TunedOn,
-    /// Mass. The rows from here on are certified when they are set, and taken over at the next boot: see
+    /// Mass. The rows from here to the last gain are certified when they are set, and taken over at the next boot: see
     /// [`super::tuned`].
     Mass,
     /// Limit of the thrust.
@@ -126,6 +126,8 @@ pub enum Name {
     GainPositionVertical,
     /// Gain on vertical velocity errors, percent of the built one.
     GainVelocityVertical,
+    /// Whether what is not signed is refused, once there is a key. Taken over at once.
+    SignedOnly,
 }
 
 /// One row.
@@ -174,7 +176,7 @@ const fn gain(parameter: Name, name: &'static str) -> Row {
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 58] = [
+pub const PARAMETERS: [Row; 59] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    1.0),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  1.0),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", 0.0),
@@ -233,6 +235,7 @@ pub const PARAMETERS: [Row; 58] = [
     gain(Name::GainVelocityAcross,    "GAIN_XY_D"),
     gain(Name::GainPositionVertical,  "GAIN_Z_P"),
     gain(Name::GainVelocityVertical,  "GAIN_Z_D"),
+    row(Name::SignedOnly,      "SIGN_ONLY",    [0.0, 1.0],   1.0,  "",    1.0),
 ];
 
 impl Name {
@@ -246,7 +249,7 @@ impl Name {
     /// Whether it stands for something of the built configuration.
     #[must_use]
     pub fn is_tuned(self) -> bool {
-        self as u8 > Self::TunedOn as u8
+        (Self::Mass as u8..=Self::GainVelocityVertical as u8).contains(&(self as u8))
     }
 
     /// Every one that does.
