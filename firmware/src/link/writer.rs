@@ -22,6 +22,8 @@ impl Writer {
     pub fn write(&mut self, system: u8, message: &impl MessageData) {
         let header = MavHeader { system_id: system.into(), component_id: COMPONENT, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
+        // Not the last one's: signed, perhaps.
+        *self.frame.incompatibility_flags_mut() = 0;
         self.frame.serialize_message_data(header, message);
     }
 
