@@ -11,7 +11,7 @@
 //! stamp of any forgotten stream, and at boot what flash says. That is kept ahead of the clock, by [`AHEAD`] when it is
 //! written and [`LEAST_AHEAD`] at least, because nothing can be written in flight.
 
-use super::frame::{Frame, SIGNED, Version};
+use super::frame::{FRAME_MAX, Frame, SIGNED, Version};
 use core::cell::RefCell;
 use core::fmt;
 use embassy_sync::blocking_mutex::Mutex;
@@ -24,7 +24,7 @@ use sha2::{Digest, Sha256};
 pub const KEY: usize = 32;
 
 /// Words that are kept in flash: the key, and the floor.
-pub const WORDS: usize = KEY / 4 + 2;
+pub const WORDS: usize = KEY / size_of::<u32>() + 2;
 
 /// 10 us since 2015 began, by somebody's clock; 48 bits.
 pub type Stamp = u64;
@@ -44,27 +44,37 @@ pub const STREAMS: usize = 8;
 /// Bytes of a signature behind the stamp.
 const VALUE: usize = 6;
 
-/// Bytes of the checksum, and of all that follows the payload of a signed frame.
+/// Bytes of the checksum, and of link and stamp behind it.
 const CHECKSUM: usize = 2;
-const TAIL: usize = CHECKSUM + 1 + 6 + VALUE;
+const LINK_AND_STAMP: usize = 7;
 
 /// The number of the vehicle's own link.
 const LINK: u8 = 0;
 
 /// What both ends share. It is never shown, and zeros are none.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Key([u8; KEY]);
+pub struct Key([u32; KEY / size_of::<u32>()]);
 
 impl Key {
     /// The key of these bytes, if they are one.
     #[must_use]
     pub fn new(bytes: [u8; KEY]) -> Option<Self> {
-        (bytes != [0; KEY]).then_some(Self(bytes))
+        let mut words = [0; _];
+        words.iter_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = u32::from_le_bytes(*bytes));
+        Self::of_words(words)
     }
 
-    /// The signature of a frame in two parts, of which the second ends with link and stamp.
-    fn sign(&self, frame: &[u8], rest: &[u8]) -> [u8; VALUE] {
-        let digest = Sha256::new().chain_update(self.0).chain_update(frame).chain_update(rest).finalize();
+    fn of_words(words: [u32; KEY / size_of::<u32>()]) -> Option<Self> {
+        (words != [0; _]).then_some(Self(words))
+    }
+
+    /// The signature of a frame that ends with link and stamp.
+    fn sign(&self, frame: &[u8]) -> [u8; VALUE] {
+        let mut bytes = [0; KEY + FRAME_MAX];
+        let (key, rest) = bytes.split_at_mut(KEY);
+        key.as_chunks_mut().0.iter_mut().zip(self.0).for_each(|(bytes, word)| *bytes = word.to_le_bytes());
+        rest.iter_mut().zip(frame).for_each(|(place, byte)| *place = *byte);
+        let digest = Sha256::digest(bytes.get(..KEY + frame.len()).unwrap_or(&bytes));
         let mut value = [0; VALUE];
         value.iter_mut().zip(digest).for_each(|(value, byte)| *value = byte);
         value
@@ -197,14 +207,13 @@ impl<M: RawMutex> Signing<M> {
     /// [`Refusal`].
     pub fn judge(&self, frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal> {
         let Some(key) = self.key() else { return Ok(()) };
-        let Some((rest, link_and_stamp, value)) = parts(frame) else {
+        let Some((signed, [link, stamp @ ..], value)) = parts(frame) else {
             return if must_be_signed { Err(Refusal::Unsigned) } else { Ok(()) };
         };
         // In the same time wherever they differ.
-        if key.sign(rest, &link_and_stamp).iter().zip(value).fold(0, |all, (a, b)| all | (a ^ b)) != 0 {
+        if key.sign(signed).iter().zip(value).fold(0, |all, (a, b)| all | (a ^ b)) != 0 {
             return Err(Refusal::Forged);
         }
-        let [link, stamp @ ..] = link_and_stamp;
         let id = [link, frame.header.system, frame.header.component];
         let is_new = self.with(|state| state.admit(id, number(stamp), frame.time)).unwrap_or(false);
         if is_new { Ok(()) } else { Err(Refusal::Replayed) }
@@ -219,15 +228,17 @@ impl<M: RawMutex> Signing<M> {
         };
         let Some((key, stamp)) = self.with(next).flatten() else { return };
         let (end, extra) = (frame.raw_bytes().len(), MavMessage::extra_crc(frame.message_id()));
-        if let Some((checked, rest)) = frame.as_mut_slice().split_at_mut_checked(end - CHECKSUM)
-            && let ([_, _, flags, ..], Some((tail, _))) = (&mut *checked, rest.split_first_chunk_mut::<TAIL>())
+        *frame.incompatibility_flags_mut() |= SIGNED;
+        if let Some((checked, tail)) = frame.as_mut_slice().split_at_mut_checked(end - CHECKSUM)
+            && let Some((tail, _)) = tail.split_first_chunk_mut()
         {
-            *flags |= SIGNED;
             let [low, high] = calculate_crc(&checked[1..], extra).to_le_bytes();
             let [a, b, c, d, e, f, ..] = stamp.to_le_bytes();
-            let signed = [low, high, LINK, a, b, c, d, e, f];
-            let [g, h, i, j, k, l] = key.sign(checked, &signed);
-            *tail = [low, high, LINK, a, b, c, d, e, f, g, h, i, j, k, l];
+            *tail = [low, high, LINK, a, b, c, d, e, f];
+        }
+        let (signed, value) = frame.as_mut_slice().split_at_mut(end + LINK_AND_STAMP);
+        if let Some((value, _)) = value.split_first_chunk_mut() {
+            *value = key.sign(signed);
         }
     }
 
@@ -248,23 +259,17 @@ impl<M: RawMutex> Signing<M> {
                 return None;
             }
             (state.kept, state.changed) = (clock.saturating_add(AHEAD), false);
-            let mut words = [0; WORDS];
-            let bytes = state.key.map_or([0; KEY], |key| key.0);
-            let key = bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
-            let floor = [state.kept as u32, (state.kept >> u32::BITS) as u32];
-            words.iter_mut().zip(key.chain(floor)).for_each(|(word, value)| *word = value);
-            Some(words)
+            let [a, b, c, d, e, f, g, h] = state.key.map_or([0; _], |key| key.0);
+            Some([a, b, c, d, e, f, g, h, state.kept as u32, (state.kept >> u32::BITS) as u32])
         })
         .flatten()
     }
 
     /// Takes what was in flash at boot: nothing that was accepted before is accepted again.
     pub fn restore(&self, words: &[u32; WORDS]) {
-        let [key @ .., low, high] = words;
-        let mut bytes = [0; KEY];
-        bytes.as_chunks_mut().0.iter_mut().zip(key).for_each(|(bytes, word)| *bytes = word.to_le_bytes());
-        let kept = Stamp::from(*high) << u32::BITS | Stamp::from(*low);
-        self.with(|state| *state = State { key: Key::new(bytes), newest: kept, floor: kept, kept, ..State::new() });
+        let [key @ .., low, high] = *words;
+        let (key, kept) = (Key::of_words(key), Stamp::from(high) << u32::BITS | Stamp::from(low));
+        self.with(|state| *state = State { key, newest: kept, floor: kept, kept, ..State::new() });
     }
 }
 
@@ -279,12 +284,11 @@ fn number([a, b, c, d, e, f]: [u8; 6]) -> Stamp {
     Stamp::from_le_bytes([a, b, c, d, e, f, 0, 0])
 }
 
-/// A signed frame's parts: up to its checksum, link and stamp, the signature.
-fn parts<'a>(frame: &Frame<'a>) -> Option<(&'a [u8], [u8; 7], [u8; VALUE])> {
+/// A signed frame's parts: what is signed, link and stamp at its end, the signature.
+fn parts<'a>(frame: &Frame<'a>) -> Option<(&'a [u8], [u8; LINK_AND_STAMP], [u8; VALUE])> {
     if frame.version == Version::V1 || frame.bytes.get(2)? & SIGNED == 0 {
         return None;
     }
-    let (rest, value) = frame.bytes.split_last_chunk()?;
-    let (checked, link_and_stamp) = rest.split_last_chunk()?;
-    Some((checked, *link_and_stamp, *value))
+    let (signed, value) = frame.bytes.split_last_chunk()?;
+    Some((signed, *signed.last_chunk()?, *value))
 }

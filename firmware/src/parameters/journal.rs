@@ -35,17 +35,8 @@ pub enum Kind {
     Signing,
 }
 
-impl Kind {
-    const ALL: [Self; 2] = [Self::Parameters, Self::Signing];
-
-    /// What its checksums are changed by.
-    const fn seal(self) -> u32 {
-        match self {
-            Self::Parameters => 0,
-            Self::Signing => 0x4E47_4953,
-        }
-    }
-}
+/// What the checksums of each kind are changed by.
+const SEALS: [u32; 2] = [0, 0x4E47_4953];
 
 /// The journal and where it goes on.
 pub struct Journal<F> {
@@ -82,9 +73,8 @@ impl<F: Flash> Journal<F> {
             ends[place / F::RECORDS] = place + 1;
             let Ok(record) = record else { continue };
             let Some(kind) = kind(&record) else { continue };
-            let number = &mut numbers[kind as usize];
-            if record[0] > *number {
-                (*number, self.newest[kind as usize]) = (record[0], Some(place));
+            if record[0] > numbers[kind] {
+                (numbers[kind], self.newest[kind]) = (record[0], Some(place));
             }
             if record[0] > self.number {
                 (self.number, self.sector) = (record[0], place / F::RECORDS);
@@ -122,41 +112,38 @@ impl<F: Flash> Journal<F> {
             self.flash.erase(other)?;
             self.next = other * F::RECORDS;
         }
-        for left in Kind::ALL {
-            if let Some(place) = self.newest[left as usize]
-                && left != kind
-                && place / F::RECORDS != self.next / F::RECORDS
-            {
-                let record = self.flash.read(place)?;
-                self.write(left, record)?;
-            }
+        // What would be left behind in the other sector.
+        let left = 1 - kind as usize;
+        if let Some(place) = self.newest[left].filter(|place| place / F::RECORDS != self.next / F::RECORDS) {
+            let record = self.flash.read(place)?;
+            self.write(left, record)?;
         }
         let mut record = [BLANK; _];
         record[1] = words.len() as u32;
         record[VALUES..VALUES_END].iter_mut().zip(words).for_each(|(place, word)| *place = *word);
-        self.write(kind, record)
+        self.write(kind as usize, record)
     }
 
     /// Writes a record to the next place, with a number of its own.
-    fn write(&mut self, kind: Kind, mut record: Record) -> Result<(), Fault> {
+    fn write(&mut self, kind: usize, mut record: Record) -> Result<(), Fault> {
         let place = self.next;
         self.next += 1;
         self.number = self.number.wrapping_add(1);
         record[0] = self.number;
-        record[VALUES_END] = checksum(&record) ^ kind.seal();
+        record[VALUES_END] = checksum(&record) ^ SEALS[kind];
         self.flash.write(place, &record)?;
         if self.flash.read(place)? != record {
             return Err(Fault);
         }
-        (self.newest[kind as usize], self.sector) = (Some(place), place / F::RECORDS);
+        (self.newest[kind], self.sector) = (Some(place), place / F::RECORDS);
         Ok(())
     }
 }
 
 /// What a record holds, if it is whole.
-fn kind(record: &Record) -> Option<Kind> {
-    let checksum = checksum(record);
-    Kind::ALL.into_iter().find(|kind| record[VALUES_END] == checksum ^ kind.seal())
+fn kind(record: &Record) -> Option<usize> {
+    let seal = record[VALUES_END] ^ checksum(record);
+    SEALS.iter().position(|known| *known == seal)
 }
 
 /// CRC-32 (that of Ethernet) of all but the last word, each taken low byte first.
