@@ -29,7 +29,7 @@ use mavlink::dialects::common::{
     LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA,
     MISSION_COUNT_DATA, MISSION_REQUEST_LIST_DATA, MavType, ODOMETRY_DATA, PARAM_REQUEST_LIST_DATA,
     PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    TIMESYNC_DATA,
+    SETUP_SIGNING_DATA, TIMESYNC_DATA,
 };
 
 mod commands;
@@ -37,8 +37,6 @@ mod parameters;
 mod places;
 mod recordings;
 mod signatures;
-
-use signatures::SetupSigning;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -166,7 +164,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             MISSION_CLEAR_ALL_DATA::ID => self.decoded(frame, Self::mission_clear),
             FILE_TRANSFER_PROTOCOL_DATA::ID => self.file(frame),
             TIMESYNC_DATA::ID => self.decoded(frame, Self::time_sync),
-            SetupSigning::ID => self.set_up_signing(frame),
+            SETUP_SIGNING_DATA::ID => self.decoded(frame, Self::set_up_signing),
             Ping::ID => self.decoded(frame, Self::ping),
             PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
             PARAM_REQUEST_READ_DATA::ID => self.decoded(frame, Self::read_parameter),
