@@ -246,27 +246,30 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
 
 #[test]
 fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
+    const ARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
     let key = Key::new([0x5A; 32]);
     let mut flown = Flown::boot_with(STUDY, &[], None, key);
+    // A ground station is heard if it signs, and not before.
     flown.pass(5.0);
-    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
-    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
-    assert_eq!((flown.mode(), flown.said("Refused: not signed")), (Mode::Ready, true));
+    assert_eq!(flown.mode(), Mode::Checks);
     flown.signing.set(key, key::now(), 0);
     flown.pass(1.0);
-    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
+    flown.signing.set(None, 0, 0);
+    flown.command(ARM, 1.0);
+    assert_eq!((flown.mode(), flown.said("Refused: not signed")), (Mode::Ready, true));
+    flown.signing.set(key, key::now(), 0);
+    flown.command(ARM, 1.0);
     assert_eq!(flown.mode(), Mode::Idling, "{:?}", flown.sitl.texts);
-    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 0.0);
+    flown.command(ARM, 0.0);
     flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
     flown.pass(6.0);
     // The key outlasts a restart, and so does what was heard: this client did not hear how far the stamps have come.
-    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
-    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
-    assert_eq!((flown.mode(), flown.said("its time stamp was heard before")), (Mode::Ready, true));
-    flown.signing.set(None, 0, 0);
+    flown.command(ARM, 1.0);
+    assert_eq!((flown.mode(), flown.said("its time stamp was heard before")), (Mode::Checks, true));
     flown.signing.set(key, key::now() + 2 * AHEAD, 0);
     flown.pass(1.0);
-    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(ARM, 1.0);
     assert_eq!(flown.mode(), Mode::Idling, "{:?}", flown.sitl.texts);
 }
 
