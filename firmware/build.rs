@@ -47,7 +47,7 @@ fn scenario(target: &Path) -> Result<(), String> {
     let name = env::var("SCENARIO").unwrap_or_else(|_| DEFAULT.to_owned());
     let file = top.join(&name);
     println!("cargo::rerun-if-changed={}", file.display());
-    let text = fs::read_to_string(&file)
+    let text = scenario::text::read(&file)
         .map_err(|error| format!("SCENARIO {name}: cannot be read from the top of the repository: {error}"))?;
     let embedded = embed::embedded(&text, &name)?;
     if let Some(warning) = embedded.warning {

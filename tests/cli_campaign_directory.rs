@@ -73,18 +73,21 @@ fn a_damaged_result_is_refused_by_merge_and_flown_again_by_its_campaign() {
 }
 
 #[test]
-fn two_campaigns_at_a_time_do_not_share_a_directory() {
+fn two_runs_at_a_time_do_not_share_a_directory() {
     let directory = directory("shared");
     let campaign = ["campaign", "h.toml", "--flights", "20", "--out", "out"];
+    let flight = ["fly", "h.toml", "--out", "out"];
     fs::create_dir(directory.join("out")).unwrap();
-    // As another campaign holds it, for as long as it lives.
+    // As another run holds it, for as long as it lives.
     let other = fs::File::open(directory.join("out")).unwrap();
     other.try_lock().unwrap();
-    let refused = host_sim(&directory, &campaign);
-    let message = stderr(&refused);
-    assert_eq!((status(&refused), message.lines().count()), (2, 1), "{message}");
-    assert!(message.contains("out: another campaign is under way in it"), "{message}");
-    assert_eq!(files(&directory.join("out")), [""; 0]);
+    for command in [&campaign[..], &flight] {
+        let refused = host_sim(&directory, command);
+        let message = stderr(&refused);
+        assert_eq!((status(&refused), message.lines().count()), (2, 1), "{message}");
+        assert!(message.contains("out: cannot be written: another run writes into it; wait for its end"), "{message}");
+        assert_eq!(files(&directory.join("out")), [""; 0]);
+    }
     drop(other);
     assert_eq!(status(&host_sim(&directory, &campaign)), 1);
 }

@@ -143,3 +143,29 @@ fn tune_does_not_ask_for_less_than_certify_does() {
     }
     assert_eq!(files(&directory), ["start.toml"]);
 }
+
+#[test]
+fn a_flight_that_is_not_certified_fails_and_its_last_line_names_the_claim() {
+    let directory = directory("uncertified");
+    std::fs::write(directory.join("weak.toml"), with(PAPER, "torque_max", "torque_max = [0.5, 0.5, 0.3]")).unwrap();
+    let output = host_sim(&directory, &["fly", "weak.toml", "--out", "out"]);
+    let text = stdout(&output);
+    let last = text.lines().last().unwrap();
+    assert_eq!(status(&output), 1, "{text}");
+    assert!(
+        last.starts_with("NOT every claim holds (commands, certificate); log, figures and report in out"),
+        "{last}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_without_an_end_is_refused_and_not_read_to_exhaustion() {
+    let directory = directory("endless");
+    for command in ["certify", "fly", "tune", "campaign", "compare", "law"] {
+        let output = host_sim(&directory, &[command, "/dev/zero"]);
+        let message = stderr(&output);
+        assert_eq!((status(&output), message.lines().count()), (2, 1), "{command}: {message}");
+        assert!(message.contains("/dev/zero: cannot be read: longer than"), "{command}: {message}");
+    }
+}

@@ -36,7 +36,8 @@ fn thrust_to_weight(scenario: &Scenario) -> f64 {
 fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_constant_given() {
     assert_eq!(files().len(), 13);
     println!(
-        "| vehicle | rotors | thrust / weight | height lost, m | within 0.1 m, s | tightest, margin |\n|---|---|---|---|---|---|"
+        "| vehicle | rotors | thrust / weight | height lost, m | within 0.1 m, s | tightest, margin |\n\
+         |---|---|---|---|---|---|"
     );
     for file in files() {
         let text = fs::read_to_string(&file).unwrap();

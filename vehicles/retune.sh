@@ -32,7 +32,8 @@ sibling() {
 for name; do
     case $name in
         hummingbird | study) search "vehicles/$name.toml" ;;
-        paper) search scenarios/paper-tuned.toml --generations 150 --population 48 --margin 0.05 --position-error 0.001 --mrp-error 0.0001 ;;
+        paper) search scenarios/paper-tuned.toml --generations 150 --population 48 --margin 0.05 \
+            --position-error 0.001 --mrp-error 0.0001 ;;
         *) echo "unknown: $name" >&2; exit 2 ;;
     esac
     [ "$name" = paper ] || sibling "$name"

@@ -10,16 +10,16 @@
 //! | [`force`] | an estimate of the force the model does not know | 2 |
 //! | [`turning`] | the thrust direction turns as fast as the vehicle can follow | 3 |
 //! | [`budget`] | how fast that is: the thrust and torque at hand | 4 |
-//! | [`heading`] | the desired frame may lag in heading, so that yaw is asked for no more than it has | 5 |
+//! | [`heading`] | the desired frame may lag in heading, so that yaw never needs more torque than it has | 5 |
 //! | [`attitude`] | levels for tilt and yaw; damping takes what the potential leaves; errors projected over the rotors' lag | 6 |
 //! | [`torque_bias`] | an estimate of a constant torque | 7 |
 //! | [`thrust_range`] | a least and a greatest thrust that follow the torque | 8 |
-//! | [`thrust_scale`] | an estimate of what the rotors deliver of what is commanded | 9 |
-//! | [`actuators`] | what the rotors were commanded, through their lag and delay: what the estimates compare with | 10 |
+//! | [`thrust_scale`] | an estimate of the delivered thrust over the commanded thrust | 9 |
+//! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
 //! | [`net`] | proven gains, if a flight does not arrive with the own ones | 13 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
-//! | [`learning`] | what the three estimates learn of an interval | 2, 7, 9 |
-//! | [`memory`] | what it remembers from one tick to the next | |
+//! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
+//! | [`memory`] | the law's memory from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`constants`], [`parameters`] | all of its constants, declared once, validated | |
 //! | [`defaults`] | every constant from a vehicle's numbers | 14 |

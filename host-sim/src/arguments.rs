@@ -63,8 +63,9 @@ certificate, and it says nothing about stability. And small motions about hover 
 that is an analysis of the sampled loops, each of which must be stable with 1.5 times its gain, with 1 / 1.5 of it, and with
 2 ms more delay. docs/certificate.md and docs/sampled-loop.md tell how to read the tables.
 
-Under the extended law the report ends with what the vehicle can do, and with what limits it or what it fails in: what that means, and which
-number to change in which direction. Constants that the file leaves out follow from the vehicle's numbers; --show prints them all.";
+Under the extended law the report ends with the vehicle's abilities, and with the inequality that limits it or those
+that fail: their meaning, and which number to change in which direction. Constants that the file leaves out follow from
+the vehicle's numbers; --show prints them all.";
 
 /// One command.
 #[derive(Subcommand)]
@@ -93,8 +94,7 @@ pub enum Command {
         #[arg(long)]
         show: bool,
     },
-    /// Refine a vehicle's constants by trial flights: everything certifies; then the least of what a pilot feels. About
-    /// a minute.
+    /// Refine a vehicle's constants by trial flights: certified first, then pleasant to fly. About a minute.
     #[command(after_help = TUNE_HELP)]
     Tune(TuneArguments),
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
@@ -167,44 +167,47 @@ pub struct TuneArguments {
 }
 
 const TUNE_HELP: &str = "\
-A search starts from the file's constants, or from those that follow from the vehicle's numbers, and never ends with worse ones: the start is
-judged first. Under the extended law fourteen constants are searched and the others follow from them, unless the file has them;
-only what does not follow from the vehicle's numbers is written. Under the paper's law nine gains and the thrust floor are searched.
+A search starts from the file's constants, or from those that follow from the vehicle's numbers, and never ends with
+worse ones: the start is judged first. Under the extended law fourteen constants are searched and the others follow
+from them, unless the file has them; only constants that do not follow from the vehicle's numbers are written. Under
+the paper's law nine gains and the thrust floor are searched.
 
-What is required of every candidate, all of it:
+Every candidate must meet all of these:
 - the certificate holds, each inequality with --margin to spare;
-- the sampled loops bear --gain-margin, its inverse, and --delay-margin more delay; so do they with k_p and k_v times --gain-margin;
+- the sampled loops bear --gain-margin, its inverse, and --delay-margin more delay; so do they with k_p and k_v times
+  --gain-margin;
 - from upside down it is within 0.1 m of its place for good before three quarters of --recovery are over;
 - a law that estimates leaves at most 10 mm of a gust;
 - no limit cuts a command, in any trial;
 - the file's own flight reaches its reference in time, and ends with at most --position-error and --mrp-error.
 
-What is made small is the weighted sum of the figures in the table that is printed, before and after: what `compare` measures. Most are
-flown on four models: the vehicle as the file says, and with mass, thrust, centre of mass, lag and delay off. The same file and seed give the
-same constants. Progress shows on stderr, through a pipe as well.
+The search minimises the weighted sum of the figures in the table that it prints, before and after: the figures of
+`compare`. Most are flown on four models: the vehicle as the file says, and with mass, thrust, centre of mass, lag and
+delay off. The same file and seed give the same constants. Progress shows on stderr, through a pipe as well.
 
-Exit status 0: the start or better is written; 1: no candidate met the requirements, and the line on stderr says which the closest failed.
-Interrupted, a search writes the best it has found so far and says so; the exit status is then 129, 130 or 143. If it has found
-nothing yet, it writes nothing.";
+Exit status 0: the start or better is written; 1: no candidate met the requirements, and the line on stderr says which
+one the closest candidate failed. Interrupted, a search writes the best it has found so far and says so; the exit
+status is then 129, 130 or 143. If it has found nothing yet, it writes nothing.";
 
 const COMPARE_HELP: &str = "\
-Each figure is better the less it is; rows that begin with a star are those where another law does better than ours. docs/rivals.md says
-what the laws are and what is fair about it. Random flights are those of `campaign --law NAME`, the same for every law.
+Each figure is better the less it is; a star begins each row in which another law does better than ours. docs/rivals.md
+describes the laws and why the comparison is fair. Random flights are those of `campaign --law NAME`, the same for
+every law.
 
 The rivals' gains are built in for the Hummingbird, the study vehicle and the paper's. For any other vehicle they are
 searched first, each rival's as hard as `tune` searches ours by default. That takes minutes; progress shows on stderr.
-gains.toml, beside compare.csv, has what was found, for --gains. A rival of which no gains fly every trial to its end is
-left out, and named.
+gains.toml, beside compare.csv, has the gains found, for --gains. If no gains of a rival fly every trial to its end, the
+rival is left out, and named.
 
-Exit status 0: every random flight of ours settles, and no command of it is cut or leaves its certified bounds; 1: one does not, or the
-scenario is not certified.";
+Exit status 0: every random flight of ours settles, and none of its commands is cut or leaves its certified bounds; 1:
+one does not, or the scenario is not certified.";
 
 const LAW_HELP: &str = "\
 One line of 33 numbers in, one line of 4 numbers out, flushed, until end of input. SI units, rad, world z up.
   in:   t dt | x(3) v(3) | q(4) as x y z w, body to world | omega(3) body |
         reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
   out:  thrust [N], torque x y z [N m]; not clipped to any limit
-The output uses the filters as they stand, which then advance by the line's dt (0 < dt <= 0.1 s, and under
+The output uses the filters as they stand, which then advance by the line's dt (0.00025 to 0.1 s, and under
 the extended law at most 0.6 over the greater estimates.force_bandwidth). A line that cannot be used, or is longer than 64 KB, is
 answered by \"error: ...\" on its turn and changes nothing.";
 

@@ -1,9 +1,7 @@
 //! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
-//! side by side.
-//!
-//! The sharp form and the rotors decide about the paper law's commands, all inequalities about the extended law's, the
-//! sampled loops below them about small motions: a scenario is certified if both hold ([`scenario::verdict`]). The
-//! certificate itself is about limits, not about how well a vehicle flies.
+//! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
+//! extended law's. The sampled loops below them decide about small motions. A scenario is certified if both hold
+//! ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
 
 mod advice;
 mod blame;
@@ -46,7 +44,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     Ok((text, verdict.refusal().is_none()))
 }
 
-/// The verdict and what it rests on alone.
+/// The verdict and its reasons alone.
 ///
 /// # Errors
 /// As [`certify`].
@@ -54,7 +52,7 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::of(scenario)?))
 }
 
-/// What keeps the vehicle from flying or, where nothing does, what is nearest to.
+/// What keeps the vehicle from flying; if nothing does, the tightest inequality.
 fn limits(verdict: &Verdict) -> String {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();
@@ -85,7 +83,7 @@ fn papers(scenario: &Scenario, certificate: &PaperCertificate) -> Result<String,
     Ok(text)
 }
 
-/// The extended law: its inequalities, rotors among them, and what it can command.
+/// The extended law: its inequalities, rotors among them, and its greatest commands.
 fn extended(certificate: &ExtendedCertificate) -> String {
     let head = ["inequality", "available", "", "required", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
@@ -109,7 +107,7 @@ fn extended(certificate: &ExtendedCertificate) -> String {
         )
 }
 
-/// The verdict, what it rests on, and what a reader looks for first.
+/// The verdict, its reasons, and the figures that a reader looks for first.
 fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let failing = |inequalities: &[Inequality]| {
         let names: Vec<&str> = inequalities.iter().filter(|i| !i.holds()).map(|i| i.name).collect();

@@ -7,10 +7,11 @@
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
 //! ```
 //!
-//! It claims besides that its sampled loops are stable with [`LoopMargin::LEAST`], and that it reached its reference,
-//! position and attitude, within the first 90 % of its duration and stayed near it ([`crate::flown`] says how near).
-//! The paper's own scenario claims the figures of Section VI as well; for any other, how closely it tracked is reported
-//! without a verdict.
+//! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
+//! [`LoopMargin::LEAST`]; that it reached its reference, position and attitude, within the first 90 % of its duration and
+//! stayed near it ([`crate::flown`] says how near); and that once there it never strayed further than the file's
+//! `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the errors of
+//! its last quarter are reported without a verdict.
 
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
@@ -51,9 +52,11 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
     let duration = scenario.timing.duration();
     let steady = format!("steady state (last {} s)", short(duration / 4.0));
     let mut claims = vec![
+        commands(verdict),
         loops(verdict),
         near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration),
         near(format!("within {NEAR_MRP} of its attitude (MRP) for good"), flown.attitude_reached(), duration),
+        tracking(scenario, flown),
         at_most(
             format!("position error, {steady}"),
             flown.steady_position_error,
@@ -89,8 +92,33 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
 pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let duration = scenario.timing.duration();
     let own = near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration);
-    let reported = claims(scenario, verdict, flown).into_iter().skip(2).map(|claim| Claim { holds: None, ..claim });
+    let reported = claims(scenario, verdict, flown).into_iter().skip(3).map(|claim| Claim { holds: None, ..claim });
     std::iter::once(own).chain(reported).collect()
+}
+
+/// Whether every inequality holds that bounds what may be commanded.
+fn commands(verdict: &Verdict) -> Claim {
+    let failing = verdict.certificate().inequalities().find(|inequality| !inequality.holds());
+    Claim {
+        claim: "commands, certificate".to_owned(),
+        required: "every inequality".to_owned(),
+        flown: failing.map_or_else(|| "certified".to_owned(), |inequality| format!("fails in {inequality}")),
+        holds: Some(failing.is_none()),
+    }
+}
+
+/// How far the flight strayed from its reference on the way. One that was never there fails by arriving too late.
+fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
+    let tolerance = scenario.tolerance;
+    Claim {
+        claim: "farthest from the reference, once there".to_owned(),
+        required: format!("<= {} m", short(tolerance)),
+        flown: flown.strayed.map_or_else(
+            || "never there".to_owned(),
+            |(greatest, time)| format!("{} m, at {} s", short(greatest), short(time)),
+        ),
+        holds: flown.strayed.map(|(greatest, _)| greatest <= tolerance),
+    }
 }
 
 /// Whether small motions die out, with something to spare.
@@ -170,6 +198,18 @@ fn within(claim: String, flown: (f64, f64), required: (f64, f64)) -> Claim {
 #[must_use]
 pub fn all_hold(claims: &[Claim]) -> bool {
     claims.iter().all(|claim| claim.holds != Some(false))
+}
+
+/// The verdict on a flight in one line: which claims fail, by their names.
+#[must_use]
+pub fn verdict_line(claims: &[Claim]) -> String {
+    let failing: Vec<&str> =
+        claims.iter().filter(|claim| claim.holds == Some(false)).map(|claim| claim.claim.as_str()).collect();
+    if failing.is_empty() {
+        "every claim holds".to_owned()
+    } else {
+        format!("NOT every claim holds ({})", failing.join("; "))
+    }
 }
 
 /// The claims as an aligned table for a terminal.

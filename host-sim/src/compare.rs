@@ -2,8 +2,9 @@
 //!
 //! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle,
 //! allocation, sensors and clock. The table has every figure, less is better, and marks the rows that ours loses;
-//! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. What is claimed of ours, and
-//! decides the exit status: every random flight settles, and no command of it is cut or leaves its certified bounds.
+//! `compare.csv` has them in full, two
+//! pictures the courses, `report.html` all of it. Our claim decides the exit status: every random flight of our law
+//! settles, and none of its commands is cut or leaves its certified bounds.
 
 pub mod page;
 pub mod pictures;
@@ -12,6 +13,7 @@ pub mod scenes;
 pub mod shown;
 
 use crate::campaign::step;
+use crate::directory_lock::DirectoryLock;
 use crate::flier::{Flier, LawChoice};
 use crate::interrupt::Interrupt;
 use crate::plots::canvas::PlotError;
@@ -26,12 +28,12 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What came of a comparison.
+/// The result of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The table.
     pub text: String,
-    /// Whether what is claimed of ours holds.
+    /// Whether our claim holds.
     pub holds: bool,
     /// compare.csv, report.html and the pictures, by name.
     pub files: Vec<(&'static str, String)>,
@@ -50,7 +52,7 @@ pub enum CompareError {
     Plot(PlotError),
     /// A file or directory could not be written.
     Output(PathBuf, io::Error),
-    /// Somebody sent this signal.
+    /// This signal interrupted it.
     Interrupted(u8),
 }
 
@@ -165,7 +167,7 @@ pub fn compare(
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
 
-/// Whether `directory` could be written into, or made: for asking before long work. Nothing is left behind.
+/// Whether `directory` can be made and written into: a check before long work that leaves no files behind.
 ///
 /// # Errors
 /// [`CompareError::Output`].
@@ -184,7 +186,7 @@ pub fn write(comparison: &Comparison, directory: &Path) -> Result<(), CompareErr
         let path = path.to_owned();
         |error| CompareError::Output(path, error)
     };
-    std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
     for (name, text) in &comparison.files {
         let path = directory.join(name);
         WholeFile::write(&path, text).map_err(failed(&path))?;

@@ -4,6 +4,9 @@
 //! has *reached* its reference once it is near it and stays near it until the end: in position within
 //! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. A vehicle that stands on the ground does not
 //! fly: it is away from its reference wherever that is.
+//!
+//! A flight is *there* once it has been near in both for [`THERE_FOR`]. From then on it is on its way with its
+//! reference, and the greatest distance from it counts as tracking error: before, it recovers or approaches.
 
 use crate::flight::{Flight, FlightError, Tick};
 use scenario::Scenario;
@@ -12,6 +15,8 @@ use scenario::Scenario;
 pub const NEAR_POSITION: f64 = 0.2;
 /// How near to the desired attitude, norm of the modified Rodrigues parameters: 11 degrees.
 pub const NEAR_MRP: f64 = 0.05;
+/// For how long a flight must be near before it is there, us: a vehicle that passes by is not.
+const THERE_FOR: u64 = 1_000_000;
 /// Extremes of no value at all.
 const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
@@ -22,6 +27,7 @@ pub struct Flown {
     /// Until when the vehicle was, or may have been, away from its reference in position and in attitude, us.
     away_until_us: (u64, u64),
     period_us: u64,
+    there: bool,
     last_sign: Option<f32>,
     start_height: Option<f64>,
     /// Ticks seen.
@@ -44,6 +50,8 @@ pub struct Flown {
     pub steady_mrp_error: f64,
     /// Start minus lowest height, m.
     pub height_lost: f64,
+    /// Greatest position error since it was there, m, and when, s; none before.
+    pub strayed: Option<(f64, f64)>,
 }
 
 impl Flown {
@@ -55,6 +63,7 @@ impl Flown {
             steady_from_us: timing.ticks.saturating_sub((timing.ticks / 4).max(1)) * timing.period_us,
             away_until_us: (0, 0),
             period_us: timing.period_us,
+            there: false,
             last_sign: None,
             start_height: None,
             ticks: 0,
@@ -67,6 +76,7 @@ impl Flown {
             steady_position_error: 0.0,
             steady_mrp_error: 0.0,
             height_lost: 0.0,
+            strayed: None,
         }
     }
 
@@ -98,6 +108,10 @@ impl Flown {
         }
         if mrp_error > NEAR_MRP {
             self.away_until_us.1 = tick.time_us + self.period_us;
+        }
+        self.there |= tick.time_us >= self.away_until_us.0.max(self.away_until_us.1) + THERE_FOR;
+        if self.there && self.strayed.is_none_or(|(greatest, _)| position_error > greatest) {
+            self.strayed = Some((position_error, tick.time_us as f64 / 1e6));
         }
         if tick.time_us >= self.steady_from_us {
             self.steady_position_error = self.steady_position_error.max(position_error);

@@ -1,6 +1,7 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
 use crate::claims::{self, Claim};
+use crate::directory_lock::DirectoryLock;
 use crate::flier::{Flier, LawChoice};
 use crate::flight::{Flight, FlightError, Tick};
 use crate::flown::Flown;
@@ -107,7 +108,7 @@ pub fn fly(
     let verdict = Verdict::of(scenario)?;
     let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
     let mut flight = flier.flight(scenario)?;
-    std::fs::create_dir_all(directory).map_err(failed(directory))?;
+    let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
     for path in TEXTS.map(|name| directory.join(name)) {
         WholeFile::try_name(&path).map_err(failed(&path))?;
     }

@@ -43,7 +43,8 @@ const FIELDS: [(&str, &[&str]); 13] = [
 ];
 const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
-/// Longest dt, s.
+/// Shortest and longest dt, s.
+const LEAST_PERIOD: f64 = 2.5e-4;
 const GREATEST_PERIOD: f64 = 0.1;
 
 /// Longest line, bytes: whatever is sent, memory is not what runs out.
@@ -152,8 +153,8 @@ impl LawServer {
         let at_time = |problem: String| format!("t = {time}: {problem}");
 
         let period = numbers.next();
-        if !(period > 0.0 && period <= GREATEST_PERIOD) {
-            return Err(at_time(format!("dt: must be above 0 and at most {GREATEST_PERIOD} s, found {period}")));
+        if !(LEAST_PERIOD..=GREATEST_PERIOD).contains(&period) {
+            return Err(at_time(format!("dt: must be from {LEAST_PERIOD} to {GREATEST_PERIOD} s, found {period}")));
         }
         let (position, velocity) = (numbers.vector(), numbers.vector());
         let [i, j, k, w] = [numbers.next(), numbers.next(), numbers.next(), numbers.next()];

@@ -29,6 +29,7 @@ pub mod claims;
 pub mod compare;
 pub mod controller;
 pub mod course;
+pub mod directory_lock;
 pub mod estimation;
 pub mod flier;
 pub mod flight;

@@ -115,7 +115,7 @@ fn fly_into(
         scenario.timing.duration(),
         outcome.certification,
         claims::table(&outcome.claims),
-        if holds { "every claim holds" } else { "NOT every claim holds" },
+        claims::verdict_line(&outcome.claims),
         directory.display()
     ))?;
     Ok(status(holds, None))

@@ -60,7 +60,7 @@ impl Progress {
             return;
         }
         self.said = (Instant::now(), done);
-        // Nobody may be there to read it.
+        // The reader may be gone.
         let _ = writeln!(stderr(), "{}", line(&self.name(), done, self.total, self.started.elapsed()));
     }
 

@@ -1,9 +1,9 @@
 //! Other laws, to compare ours with: in the same simulator, through the same allocation, limits, sensors, estimator and
 //! clock.
 //!
-//! They are references for comparison, written from what their papers say, in double precision; nothing about them is
-//! proven or meant to fly. What the papers leave to the reader, or lack where ours has it (feed-forward, gains of their
-//! own for tilt and yaw), each module says. Their gains are found by the cost that ours are tuned by ([`tuning`]).
+//! They are references for comparison, written from their papers in double precision. They are not proven, and not
+//! meant to fly. Each module says what its paper leaves open, and what it lacks that ours has (feed-forward, separate
+//! gains for tilt and yaw). Their gains are found by the cost that ours are tuned by ([`tuning`]).
 //!
 //! | module | law |
 //! |---|---|
@@ -14,8 +14,8 @@
 //! | [`nested`] | nested saturations around a saturated hybrid attitude law: Martins, 2024 |
 //! | [`continuous`] | continuous quaternion feedback, which unwinds: Wie, 1989; Bhat, Bernstein, 2000 |
 //! | [`memoryless`] | discontinuous without memory, which chatters: Fjellstad, Fossen, 1994 |
-//! | [`rival`], [`pilot`] | what a rival is told and asked; how it comes into a flight |
-//! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | what several of them are made of |
+//! | [`rival`], [`pilot`] | a rival's inputs and outputs; its place in a flight |
+//! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | parts that several of them share |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
 //! | [`start`], [`tuning`] | where the search for them starts; the search |
 //! | [`half_turn`] | what laws do about the half turn, with noise against them: unwinding and chattering |

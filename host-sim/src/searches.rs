@@ -17,9 +17,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What a comparison calls gains that it found because it was asked to.
+/// A comparison's name for gains that `--tune` found.
 const RIVALS: &str = "rivals.toml";
-/// What it calls those that it found because none are built in.
+/// Its name for gains that it searched because none are built in.
 const FOUND: &str = "gains.toml";
 
 pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
@@ -142,8 +142,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     Ok(status(comparison.holds, None))
 }
 
-/// Refuses a directory that holds other gains than those that are to fly, from `gains` or to be written as `written`:
-/// they would pass for those that flew. They are not removed, because a search for them takes long.
+/// Refuses a directory with other gains than those that will fly (from `gains`, or written as `written`): a reader
+/// would take them for the flown ones. They are not removed, because a search for them takes long.
 fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Result<(), String> {
     for name in [RIVALS, FOUND] {
         let there = directory.join(name);
@@ -173,7 +173,7 @@ fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String
     Ok((name, path))
 }
 
-/// What a search says of the constants it found.
+/// A search's line about the constants it found.
 fn found(tuned: &Tuned, path: &Path, interrupted: bool) -> Result<String, String> {
     let summary = summary(&tuned.scenario).map_err(|error| error.to_string())?;
     let before = match &tuned.before.failed {

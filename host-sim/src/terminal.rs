@@ -40,7 +40,7 @@ pub fn print_text(text: &str) -> Result<(), String> {
 /// What a scenario is read from, once: a pipe cannot be read twice.
 pub fn text_of(file: Option<&Path>) -> Result<String, String> {
     let read = |file: &Path| {
-        std::fs::read_to_string(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+        scenario::text::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
     };
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }

@@ -1,11 +1,11 @@
 //! The `tune` command: constants that certify and make the most of a vehicle.
 //!
-//! What is asked, in this order:
+//! The goals, in this order:
 //!
 //! 1. a constraint: every inequality of the certificate, down to the rotors, with
 //!    [`requirements::Requirements::margin`] to spare; the sampled loops stable with gain and delay margins, at least
-//!    those without which nothing may fly; the vehicle recovers from upside down; the file's own reference is flown
-//!    without a clipped command and within the errors asked for;
+//!    the margins that every flight needs; the vehicle recovers from upside down; the file's own reference is flown
+//!    without a clipped command and within the allowed errors;
 //! 2. the least cost: what a pilot feels of the trials in [`trials`], averaged over the vehicle as it may really be.
 //!
 //! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`]
@@ -35,21 +35,21 @@ use requirements::Requirements;
 use scenario::Scenario;
 use trials::{BEYOND, FIGURES};
 
-/// What the search found.
+/// The search's result.
 #[derive(Clone)]
 pub struct Tuned {
     /// The scenario with the constants found.
     pub scenario: Scenario,
-    /// What it showed.
+    /// Its verdict.
     pub verdict: Verdict,
-    /// What the file's own constants showed.
+    /// The verdict on the file's own constants.
     pub before: Verdict,
     /// Candidates judged.
     pub judged: u64,
 }
 
 impl Tuned {
-    /// Whether something better was found than what the search started from.
+    /// Whether the search found better constants than its start.
     #[must_use]
     pub fn improved(&self) -> bool {
         self.verdict != self.before

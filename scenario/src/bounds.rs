@@ -1,5 +1,5 @@
-//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out: what `[reference]` states of
-//! itself and, under the extended law, what the vehicle can fly if that is more
+//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out, they are the bounds of
+//! `[reference]` and, under the extended law, those that the vehicle can fly if they are greater
 //! ([`controller_core::extended::defaults::reference_bounds`]).
 //!
 //! ```toml
@@ -21,7 +21,7 @@ use controller_core::reference::ReferenceBounds;
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
 const DEFAULT_SPEED: f32 = 5.0;
 
-/// Reads `[reference_bounds]`; `own` are those of the scenario's reference, `default` says what they are where the
+/// Reads `[reference_bounds]`; `own` are the bounds of the scenario's reference, `default` gives the bounds if the
 /// section is left out.
 ///
 /// # Errors

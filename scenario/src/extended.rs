@@ -16,7 +16,7 @@ use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 use std::fmt::Write;
 
-/// Reads both sections for `airframe`; what is left out follows from it.
+/// Reads both sections for `airframe`, from which missing constants follow.
 ///
 /// # Errors
 /// Names the field that is unknown or refused.
@@ -40,7 +40,7 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
     Ok(ExtendedLaw { parameters, actuators: airframe.actuators })
 }
 
-/// Refuses a delay that the law's model of its actuators has no memory for.
+/// Refuses a delay longer than the memory of the law's actuator model.
 fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> Result<(), FieldError> {
     const MOST: usize = DELAY_MAX - 1;
     ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {

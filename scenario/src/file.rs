@@ -63,6 +63,8 @@ pub struct Scenario {
     pub initial: BodyState,
     /// What it is asked to do, as the file says it.
     pub reference: ReferenceKind,
+    /// How far it may stray from that once it is there, m.
+    pub tolerance: f64,
     /// The same, ready to be evaluated.
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
     /// How its circumstances differ from flight to flight of a campaign.
@@ -84,7 +86,7 @@ impl Scenario {
     /// [`ScenarioError`]: unreadable, no TOML, or a field that was refused.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match crate::text::read(path) {
             Ok(text) => Self::parse(&text, &file),
             Err(error) => Err(ScenarioError { file, what: format!("cannot be read: {error}") }),
         }
@@ -105,6 +107,7 @@ impl Scenario {
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
         let reference = ReferenceKind::read(root)?;
+        let tolerance = ReferenceKind::tolerance(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let delay_steps = actuation::read_delay(root, &timing)?;
         let rotor_lag = actuation::read_lag(root)?;
@@ -132,6 +135,7 @@ impl Scenario {
             reality,
             initial,
             reference,
+            tolerance,
             trajectory,
             campaign,
         })

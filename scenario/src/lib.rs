@@ -39,6 +39,7 @@ pub mod reference;
 pub mod sampled_loop;
 pub mod section;
 pub mod stability;
+pub mod text;
 pub mod timing;
 pub mod vehicle;
 pub mod verdict;

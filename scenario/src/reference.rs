@@ -12,6 +12,9 @@ use controller_core::reference::waypoints::{Waypoint, Waypoints};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
+/// How far a flight may stray from its reference once it is there, if the file does not say, m.
+pub const TOLERANCE: f64 = 0.5;
+
 /// Where to hover if the file says nothing of it, m.
 const DEFAULT_POSITION: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 
@@ -52,6 +55,19 @@ impl ReferenceKind {
         }
     }
 
+    /// Reads `tolerance` of `[reference]`, m: how far a flight may stray once it is there.
+    ///
+    /// # Errors
+    /// Names the field if it is no positive number.
+    pub fn tolerance(root: &Section) -> Result<f64, FieldError> {
+        let Some(section) = root.optional_section("reference")? else { return Ok(TOLERANCE) };
+        let tolerance = section.number_or("tolerance", TOLERANCE)?;
+        if tolerance > 0.0 {
+            return Ok(tolerance);
+        }
+        Err(FieldError::new(section.path_of("tolerance"), format!("must be positive, found {tolerance}")))
+    }
+
     /// The trajectory itself.
     ///
     /// # Errors
@@ -69,7 +85,7 @@ impl ReferenceKind {
 }
 
 fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
-    section.allow(&["kind", "position", "heading_deg"])?;
+    section.allow(&["kind", "tolerance", "position", "heading_deg"])?;
     let position = section.vector("position")?;
     let heading = section.number_or("heading_deg", 0.0)?.to_radians();
     Ok(ReferenceKind::Hover { position, heading })
@@ -77,7 +93,7 @@ fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
 
 /// `phase` and `heading`, or fields of it, are zero where they are left out.
 fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
-    section.allow(&["kind", "center", "amplitude", "frequency", "phase", "heading"])?;
+    section.allow(&["kind", "tolerance", "center", "amplitude", "frequency", "phase", "heading"])?;
     let mut heading = HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 0.0, frequency: 0.0 };
     if let Some(section) = section.optional_section("heading")? {
         section.allow(&["offset", "rate", "amplitude", "frequency"])?;
@@ -97,7 +113,7 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
 
 /// `heading_deg` is zero where it is left out.
 fn read_waypoints(section: &Section) -> Result<Vec<Waypoint>, FieldError> {
-    section.allow(&["kind", "points"])?;
+    section.allow(&["kind", "tolerance", "points"])?;
     let read = |point: &Section| {
         point.allow(&["t", "position", "heading_deg"])?;
         Ok(Waypoint {

@@ -125,8 +125,8 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
     }
 }
 
-/// The references that a vehicle is asked to fly where the file does not say: its own, within `own`, and as much of
-/// `most` beside it as certifies, in steps of a tenth. All of it where even a hundredth does not, so that the
+/// The reference bounds if the file gives none: the file's own reference, within `own`, and the largest share of `most`
+/// beside it that certifies, in steps of a tenth. If not even a hundredth certifies, all of `most`, so that the
 /// certificate says why.
 fn flyable(
     own: &ReferenceBounds,
@@ -155,7 +155,7 @@ fn flyable(
     covering(own, &most)
 }
 
-/// The drag across that the file's `[drag]` tells, per velocity and mass at hover, 1/s.
+/// The drag across from the file's `[drag]`, per velocity and mass at hover, 1/s.
 pub fn known_drag(drag: &Drag, vehicle: &Vehicle, rotors: Option<&Rotors>) -> f32 {
     let turning: f64 = rotors.map_or(0.0, |rotors| {
         let each = f64::from(vehicle.mass * vehicle.gravity) / rotors.len() as f64;

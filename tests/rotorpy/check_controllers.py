@@ -73,7 +73,7 @@ class Ours(unittest.TestCase):
         self.assertLess(fly(above, self.law, PERIOD, STEP).thrusts[-1].sum(), PARAMETERS["mass"] * GRAVITY)
 
     def test_a_refused_line_ends_the_flight_with_its_reason(self):
-        with self.assertRaisesRegex(UnusableAnswer, "dt: must be above 0"):
+        with self.assertRaisesRegex(UnusableAnswer, "dt: must be from 0.00025"):
             self.law.command(0.0, 0.0, Vehicle(Conditions(), Start(), STEP).state, HoverTraj().update(0.0))
 
     def test_a_program_that_ends_is_an_error(self):

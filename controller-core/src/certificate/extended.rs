@@ -1,9 +1,10 @@
-//! The certificate of the extended law: what construction does not give. Derived in `docs/extended-law.md`, section 11.
+//! The certificate of the extended law: the inequalities that its construction does not ensure. Derived in
+//! `docs/extended-law.md`, section 11.
 //!
-//! | inequality | what follows from it |
+//! | inequality | consequence |
 //! |---|---|
 //! | A_- < g - K_a3 | T1: u_z > 0, the law is defined |
-//! | (with d up to its levels) m \|g e3 + p_d'' - d\| < what torques near the target leave of the rotors' thrust | A1: near the target the thrust is not cut |
+//! | (with d up to its levels) m \|g e3 + p_d'' - d\| < the rotors' thrust less the share of the torques near the target | A1: near the target the thrust is not cut |
 //! | \|p\| < Omega, \|q\| < 0.6 alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
 //! | \|w*_3\| < W_max and 0.4 alpha_0 over \|p\|, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
 //! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
@@ -11,7 +12,8 @@
 //! | \|P\| < M_all | D: damping always has a share |
 //! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range; T1: the thrust floor below T_max |
 //!
-//! Everything else about commands holds by construction ([`crate::extended`]): a tick spends what is there.
+//! Everything else about commands holds by construction ([`crate::extended`]): a tick uses only the available thrust
+//! and torque.
 
 use super::configuration::{Configuration, ExtendedLaw};
 use super::form::{ARITHMETIC_ALLOWANCE, Interval};
@@ -30,10 +32,10 @@ use crate::reference::ReferenceBounds;
 use heapless::Vec;
 use nalgebra::Vector3;
 
-/// Cells of the tilt over which the potential's greatest torque is looked for.
+/// The number of cells of the tilt in the search for the potential's greatest torque.
 const POTENTIAL_CELLS: usize = 64;
 
-/// How many inequalities there are at most.
+/// The greatest number of inequalities.
 const MOST: usize = 11 + ROWS;
 
 /// Everything the extended law can command.
@@ -52,7 +54,7 @@ pub struct ExtendedBounds {
 /// Every inequality about one configuration of the extended law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExtendedCertificate {
-    /// What the law can command.
+    /// The law's greatest commands.
     pub bounds: ExtendedBounds,
     /// The inequalities, in the order of this module's table.
     pub inequalities: Vec<Inequality, MOST>,
@@ -114,7 +116,7 @@ fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &To
     ]
 }
 
-/// `value` where `least`, which it was divided by, is positive; otherwise what no inequality holds for.
+/// `value` where its divisor `least` is positive; otherwise a value with which no inequality holds.
 fn positive(value: f64, least: f64) -> f64 {
     if least > 0.0 { value } else { f64::INFINITY }
 }
@@ -200,7 +202,7 @@ fn torques(parameters: &Extended, budget: &TorqueBudget) -> impl Iterator<Item =
     })
 }
 
-/// What can be commanded if every inequality holds.
+/// The greatest commands if every inequality holds.
 fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> ExtendedBounds {
     let p = parameters;
     let raised = 1.0 + ARITHMETIC_ALLOWANCE;

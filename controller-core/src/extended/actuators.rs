@@ -1,4 +1,4 @@
-//! What the rotors were commanded, through their delay and lag: the wrench that acts, as far as the law knows.
+//! The past commands through the rotors' delay and lag: a model of the wrench that acts.
 //! Section 10 of `docs/extended-law.md`.
 //!
 //! A command of tick k acts from k + d on, d = n + f samples late (n whole, 0 <= f < 1), and the wrench follows it with
@@ -13,13 +13,13 @@ use crate::error::{ParameterError, Reason, require, require_finite};
 use crate::math;
 use nalgebra::Vector4;
 
-/// Commands that are remembered, a power of two, so that a remainder of it is a place among them.
+/// The number of remembered commands, a power of two, so that an index wraps by a remainder.
 const REMEMBERED: usize = 8;
 
-/// The greatest delay that is modelled, samples.
+/// The greatest delay of the model, samples.
 pub const DELAY_MAX: usize = 4;
 
-/// What single precision may have done to a delay, samples.
+/// The greatest rounding error of a delay in single precision, samples.
 const ROUNDING: f64 = 1e-6;
 
 /// How a vehicle's wrench follows its commands.
@@ -68,23 +68,23 @@ pub struct ActuatorModel {
     mean: Response,
 }
 
-/// The model's memory: what was commanded, and what acts. A wrench is (T, tau) in N and N m.
+/// The model's memory: the past commands, and the acting wrench. A wrench is (T, tau) in N and N m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorState {
     acting: Vector4<f32>,
-    /// A ring, with the place of the newest.
+    /// A ring of commands, with the index of the newest.
     commanded: [Vector4<f32>; REMEMBERED],
     newest: usize,
 }
 
 impl ActuatorState {
-    /// A wrench that has been commanded for ever.
+    /// The memory after the same command for ever.
     #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
         Self { acting: wrench, commanded: [wrench; REMEMBERED], newest: 0 }
     }
 
-    /// Takes up what is commanded now.
+    /// Takes up the command of this tick.
     pub fn command(&mut self, wrench: Vector4<f32>) {
         self.newest = (self.newest + 1) % REMEMBERED;
         if let Some(slot) = self.commanded.get_mut(self.newest) {
@@ -139,9 +139,9 @@ impl ActuatorModel {
         })
     }
 
-    /// What commands of the past will still deliver: the integral of the wrench from now on, N s and N m s, if zero
-    /// were commanded from now on. The lag passes all of what reaches it, so the integral is lag times what acts and
-    /// the commands that are under way.
+    /// The impulse that past commands will still deliver: the integral of the wrench, N s and N m s, if all commands
+    /// were zero from now on. The lag passes on the whole command, so the integral is the lag times the acting wrench
+    /// plus the commands still in the delay.
     #[must_use]
     pub fn pending(&self, state: &ActuatorState) -> Vector4<f32> {
         let whole = (0..self.whole_delay).fold(Vector4::zeros(), |sum, age| sum + state.command_before(age));

@@ -17,7 +17,7 @@
 //!
 //! ```text
 //! lambda = 1 if |D|^2 + 2 P.D <= room,
-//! else room / (sqrt((P.D)^2 + |D|^2 room) + P.D), or its conjugate where P.D < 0.
+//! else room / (sqrt((P.D)^2 + |D|^2 room) + P.D), or the conjugate of that fraction where P.D < 0.
 //! ```
 //!
 //! **Actuators that are late.** With the lag and the delay together T and the angular impulse I that commands of the
@@ -26,8 +26,8 @@
 //! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T R~^T omega_d':
 //!
 //! with a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is
-//! omega_p, as if the actuators were ideal. It is what the paper's z_1 and z_2 do for its filters. Every bound holds
-//! for any errors, so for projected ones. Body frame, N m.
+//! omega_p, as if the actuators were ideal. The paper's z_1 and z_2 do the same for its filters. Every bound holds for
+//! any errors, so also for projected ones. Torques in the body frame, N m.
 
 use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
@@ -38,9 +38,9 @@ use nalgebra::{Quaternion, Vector2, Vector3};
 /// The feedback and the terms it is made of, body frame, N m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AttitudeFeedback {
-    /// What the potential pulls with, its sign turned.
+    /// The potential's torque with its sign turned.
     pub potential: Vector3<f32>,
-    /// Damping, lambda in it.
+    /// The damping, with lambda.
     pub damping: Vector3<f32>,
 }
 
@@ -52,7 +52,7 @@ impl AttitudeFeedback {
     }
 }
 
-/// What is still under way of what was commanded.
+/// The part of past commands that has not acted yet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Late {
     /// T, s: lag and delay together.

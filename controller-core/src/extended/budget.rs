@@ -1,4 +1,4 @@
-//! What turning the desired frame may cost: the thrust and the torque at hand in a tick. Section 4 of
+//! The budget for turning the desired frame: the thrust and torque available in a tick. Section 4 of
 //! `docs/extended-law.md`.
 //!
 //! Tilt and yaw torques fit the rotors, and the limits, if for each of at most four rows
@@ -12,19 +12,19 @@
 //! | two rotors k, i at their ends at once | max \|b_12,k/b_T,k - b_12,i/b_T,i\| | the same of b_3 | min (s_lo f_max,k/b_T,k - s_hi f_min,i/b_T,i) - 2 margin |
 //! | the thrust floor N and T_max | max \|b_12,i\|/b_T,i | the same of b_3 | T_max - max s_hi f_min,i/b_T,i - 2 margin |
 //! | limits of roll and pitch | 1 | 0 | the lesser of the two |
-//! | limit of yaw | 0 | 1 | it |
+//! | limit of yaw | 0 | 1 | the limit |
 //!
-//! What does not change from tick to tick is taken off beforehand: the bias estimate at its level, yaw's feedback, J_33
-//! A, and the gyroscopic torque at Omega and W_max. What is left is the tilt feedback's |P + lambda D| of this tick and
-//! J R~^T omega_d', which tilts by at most J_max |omega'| and leaks J_33 |omega'| sin theta into yaw, theta from b to
-//! rho. So the frame may turn with
+//! The parts that do not change from tick to tick are subtracted beforehand: the bias estimate at its level, yaw's
+//! feedback, J_33 A, and the gyroscopic torque at Omega and W_max. The remaining parts are the tilt feedback's |P +
+//! lambda D| of this tick and J R~^T omega_d', which tilts by at most J_max |omega'| and leaks J_33 |omega'| sin theta
+//! into yaw, with theta the angle from b to rho. So the frame may turn with
 //!
 //! ```text
 //! |omega'_12| <= alpha = min( alpha_max, ((1 - mu) m n - N_0) / L, min over rows (R - t |tau_fb|) / (t J_max + y J_33 sin theta) )
 //! ```
 //!
-//! and with alpha_0 at least, which the certificate's rows pay for. The second term keeps the thrust floor below the
-//! thrust near the target.
+//! and with at least alpha_0, for which the certificate's rows reserve torque. The second term keeps the thrust floor
+//! below the thrust near the target.
 
 use super::parameters::ExtendedParameters;
 use crate::allocation::geometry::ROTORS_MAX;
@@ -37,10 +37,10 @@ use nalgebra::{Vector3, Vector4};
 /// mu: the part of a thrust that the budget leaves.
 pub const THRUST_LEFT: f64 = 0.05;
 
-/// The part of a room that a tick leaves: what moves between two ticks.
+/// The part of a row's room that a tick leaves unused, for the change between two ticks.
 const ROOM_LEFT: f64 = 0.01;
 
-/// t, y and what is left of R.
+/// t, y and the rest of R.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// t.
@@ -61,7 +61,7 @@ impl Row {
 /// How far beyond Omega a tick may take the thrust direction: alpha is cut after Omega.
 pub const RATE_BEYOND: f32 = 1.15;
 
-/// How many rows there are at most.
+/// The greatest number of rows.
 pub const ROWS: usize = 4;
 
 /// Everything about the budget that does not change from tick to tick, in double precision.
@@ -77,7 +77,8 @@ pub struct TorqueBudget {
     pub floor: f64,
     /// L, N per rad/s^2.
     pub floor_per_acceleration: f64,
-    /// The thrust of all rotors for each unit of s, infinite without rotors, and what bias and yaw take of it, N.
+    /// The thrust of all rotors for each unit of s, infinite without rotors, and the thrust that bias and yaw use up,
+    /// N.
     pub ceiling: [f64; 2],
 }
 
@@ -133,7 +134,7 @@ impl TorqueBudget {
 
         let torque_max = limits.torque_max.map(f64::from);
         let mut rows = Vec::new();
-        // So many at most: they fit.
+        // There are at most that many: they fit.
         let mut push = |row: Row| {
             let _ = rows.push(row);
         };
@@ -165,8 +166,8 @@ impl TorqueBudget {
         Self { rows, inertia, fixed, floor: floor + margin, floor_per_acceleration: per_acceleration, ceiling }
     }
 
-    /// What is left of each row with a tilt feedback of `feedback`, N m, and the frame turning with `acceleration`,
-    /// rad/s^2, at the worst angle: what is needed and what there is.
+    /// The needed and the available torque of each row with a tilt feedback of `feedback`, N m, and the frame turning
+    /// with `acceleration`, rad/s^2, at the worst angle.
     pub fn reserves(&self, feedback: f64, acceleration: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
         let [tilt, yaw] = self.inertia;
         self.rows
@@ -235,7 +236,7 @@ impl TurningBudget {
     }
 
     /// alpha, rad/s^2, at |u| = `magnitude`, m/s^2, with `feedback` N m about the tilt's axes and the sine of the angle
-    /// from b to rho, one beyond a right angle. May be negative: the reserve is the caller's.
+    /// from b to rho (one beyond a right angle). It may be negative: the caller adds the reserve.
     #[must_use]
     pub fn acceleration(&self, magnitude: f32, feedback: f32, sine: f32) -> f32 {
         let [tilt, yaw] = self.inertia;

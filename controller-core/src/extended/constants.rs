@@ -6,7 +6,7 @@
 
 use crate::error::{ParameterError, Reason, require, require_finite};
 
-/// What a constant may be.
+/// The range of a constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Least.
@@ -16,9 +16,9 @@ pub struct Range {
 }
 
 impl Range {
-    /// A gain or a level: its square stays above zero and below what overflows, with the largest states.
+    /// A gain or a level: its square stays above zero and, with the largest states, below overflow.
     pub const POSITIVE: Self = Self { least: 1e-7, greatest: 1e3 };
-    /// A level that may be zero: what it limits is then off.
+    /// A level that may be zero, which turns its term off.
     pub const LEVEL: Self = Self { least: 0.0, greatest: 1e3 };
     /// A bandwidth of a filter, 1/s: slower ones add up rounding, faster ones are beyond every tick.
     pub const BANDWIDTH: Self = Self { least: 0.2, greatest: 100.0 };
@@ -53,7 +53,7 @@ pub struct Constant {
     pub key: &'static str,
     /// Symbol, meaning and unit.
     pub about: &'static str,
-    /// What it may be.
+    /// Its range.
     pub range: Range,
     /// Whether `tune` searches it.
     pub searched: bool,

@@ -45,7 +45,7 @@ pub struct Controller {
     switching_scalar: f32,
     /// A_- - g: the reference's vertical acceleration stays above it, m/s^2.
     steepest_fall: f32,
-    /// U for each unit of s, what bias and yaw take of it, and at most, m/s^2.
+    /// U for each unit of s, the part that bias and yaw use up, and the greatest U, m/s^2.
     greatest: [f32; 3],
     /// Lag and delay of the actuators together, s.
     late: f32,
@@ -55,7 +55,7 @@ pub struct Controller {
     turning: TurningLimit,
     /// For the interval since the last tick.
     learning: Learning,
-    /// For the one to come, where its length is another.
+    /// For the next interval, if its length differs.
     changed: Option<Learning>,
     range: ThrustRange,
     actuators: ActuatorModel,
@@ -71,9 +71,9 @@ impl Controller {
         self.memory = Memory::fresh(&self.vehicle, averages);
     }
 
-    /// The same with what has been estimated of the vehicle itself kept: how a flight goes on without a pose. The force
-    /// across is forgotten: it came from velocities that are no longer known. The one along the vertical is kept: it is
-    /// what the thrust lacks, mostly.
+    /// The same, but the estimates of the vehicle itself stay: how a flight goes on without a pose. The force across is
+    /// forgotten, because it came from velocities that are no longer known. The vertical force stays: most of it is a
+    /// lack of thrust.
     pub fn restart(&mut self) {
         let vertical = Vector3::new(0.0, 0.0, self.estimates().force.z);
         let Averages { torque, scale, .. } = self.memory.averages;
@@ -82,25 +82,25 @@ impl Controller {
     }
 
     /// Keeps the estimates as they are until the wrench that acts no longer depends on the last one commanded. For
-    /// every tick on the ground, without a velocity, or of which the rotors could not deliver the wrench.
+    /// every tick on the ground, without a velocity, or whose wrench the rotors could not deliver.
     pub fn hold_estimates(&mut self) {
         self.memory.held = self.settling;
     }
 
-    /// What the rotors deliver of what is commanded, as far as it is known: they are to be asked for a wrench divided
-    /// by it.
+    /// The estimated thrust scale, delivered over commanded: the caller divides the wrench by it before commanding
+    /// rotors.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         self.memory.averages.scale.scale
     }
 
-    /// What the law remembers.
+    /// The law's memory.
     #[must_use]
     pub fn memory(&self) -> &Memory {
         &self.memory
     }
 
-    /// What has been estimated; force and torque bias as far as they are believed.
+    /// The estimates; force and torque bias cut to their levels.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
         self.learning.believed(&self.memory.averages)
@@ -228,7 +228,7 @@ impl Controller {
         Ok((Wrench { thrust, torque }, diagnostics))
     }
 
-    /// What is under way to the vehicle, for the thrust scale and torque bias at hand.
+    /// The part of past commands that has not acted yet, for the current thrust scale and torque bias.
     fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
         let pending = self.actuators.pending(&self.memory.actuators);
         let impulse = Vector3::new(pending.y, pending.z, pending.w) * scale + bias * self.late;
@@ -243,13 +243,13 @@ impl Controller {
         command
     }
 
-    /// A derivative of the reference with the drag that the one below it makes.
+    /// A derivative of the reference plus the drag from the next lower derivative.
     fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
         let drag = self.law.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
     }
 
-    /// Refuses what the law cannot be evaluated for. Nearly every input passes at a glance.
+    /// Refuses inputs for which the law is undefined. Nearly every input passes the first comparison.
     fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
         let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
         let climbs = reference.acceleration.z > self.steepest_fall;

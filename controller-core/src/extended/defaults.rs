@@ -1,22 +1,22 @@
 //! Every constant from a vehicle's numbers. Section 14 of `docs/extended-law.md` says why each formula is what it is.
 //!
-//! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and what the
-//! rotors give:
+//! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and the
+//! rotors' attainable torque and thrust:
 //!
 //! | what | formula |
 //! |---|---|
 //! | w_a, bandwidth of the tilt, rad/s | min(12.5, 1.44 sqrt(g / r), 0.3 / (h/2 + T/4)), r = 2 sqrt(J / m) |
-//! | M_all | what the rows of the budget leave: see [`constants`] |
+//! | M_all | the rest of the budget's rows: see [`constants`] |
 //! | tilt stiffness; damping | J w_a^2 = w/4 + k_t / (2 sqrt(1 + eta_t^2)); 1.7 w_a J |
 //! | w, M_t | min(1.45 M_all, 3.2 J w_a^2), as much as keeps \|P\| below 0.93 M_all |
 //! | r_0 | M_all / (13 J w_a^2): beyond it M_all brakes along a parabola |
 //! | alpha_max, alpha_0 | 0.9 M_all / J, 0.14 M_all / J or less where yaw is weak |
-//! | Omega | between 2.5 and 5 rad/s, 0.08 of what the rotors give / J |
+//! | Omega | between 2.5 and 5 rad/s, 0.08 of the rotors' torque / J |
 //! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 1.6 w_a |
 //! | k_v, k_p across; vertical | 0.54 w_a, 0.435 k_v^2; 1.4 and 1.96 times that |
-//! | A_h, gamma | what the thrust leaves beside 0.7 of the weight; 75 degrees or what the least lift allows |
+//! | A_h, gamma | the thrust beside 0.7 of the weight; 75 degrees or the angle that the least lift allows |
 //! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
-//! | D_h | 0.8 A_h, or 0.72 of what the weakest thrust holds, without the drag at 5 m/s |
+//! | D_h | 0.8 A_h, or 0.72 of the force that the weakest thrust holds, less the drag at 5 m/s |
 //! | L across; vertical | 1.1 w_a; 1.33 times that |
 //! | yaw: feedback, A, bias | 6, 6 and 4 % of the greatest yaw torque |
 
@@ -30,7 +30,7 @@ use crate::math::{self, greater_f64, lesser_f64};
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{Limits, Vehicle};
 
-/// What is known of a vehicle.
+/// The numbers of a vehicle.
 #[derive(Debug, Clone, Copy)]
 pub struct Airframe<'a> {
     /// The body.
@@ -53,20 +53,20 @@ const ETA_LEAST: f64 = 0.015;
 const ETA_T: f64 = 0.5;
 /// delta, alpha, c_1 and c_2.
 const SHARED: [f32; 4] = [0.01, 0.25, 9.0, 6.0];
-/// The least and the greatest thrust scale that are learnt.
+/// The least and the greatest estimate of the thrust scale.
 const SCALE: [f64; 2] = [0.9, 1.15];
 /// A vehicle that falls with this acceleration still has thrust to turn, m/s^2; in shares of g.
 const FALL: f64 = 0.63;
-/// Vertical acceleration of references that the thrust floor leaves room for, m/s^2.
+/// The references' vertical acceleration that the thrust floor allows, m/s^2.
 const FALL_LEAST: f64 = 1.0;
 
-/// Constants that somebody chose, in the table's order; the others follow from them.
+/// Constants that the file gives, in the table's order; the others follow from them.
 pub type Given = [Option<f32>; ExtendedParameters::COUNT];
 
-/// Nothing chosen.
+/// No constant given.
 pub const NOTHING_GIVEN: Given = [None; ExtendedParameters::COUNT];
 
-/// The constants for `airframe`, those that are `given` as they are.
+/// The constants for `airframe`; the `given` ones stay as they are.
 #[must_use]
 pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let or = |key: &str, formula: f64| {
@@ -82,8 +82,8 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let size = 2.0 * math::sqrt_f64(tilt_inertia / mass);
     let w_a = [12.5, 1.44 * math::sqrt_f64(gravity / size), 0.3 / left].into_iter().fold(f64::INFINITY, lesser_f64);
 
-    // What the rotors give, with constants that take nothing of it.
-    // Without rotors there is nothing that delivers another thrust than commanded.
+    // The rotors' torque and thrust, with constants that use up none of it.
+    // Without rotors the delivered thrust is the commanded one.
     let usual = if rotors.is_some() { SCALE } else { [1.0, 1.0] };
     let scale = [or("scale_least", usual[0]), or("scale_greatest", usual[1])];
     let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
@@ -95,7 +95,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     };
     let (tilt_most, yaw_most) = (most(|row| row.tilt), most(|row| row.yaw));
 
-    // The least thrust near the target must hold the idling rotors and what these torques raise the thrust floor by.
+    // The least thrust near the target must exceed the idle thrust plus the rise of the thrust floor by these torques.
     let a_down = or("a_down", FALL * gravity);
     let up = or("force_up", 0.36 * a_down);
     let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
@@ -109,7 +109,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let all = bias_tilt * by_tilt + (bias_yaw + light) * by_yaw;
     let spared = lesser_f64(1.0, 0.92 * (least - free.floor) / greater_f64(all, 1e-12));
     let nimble = tilt_most / greatest_inertia;
-    // The gyroscopic torque takes an eighth at most of what there is about z and about the tilt's axes.
+    // The gyroscopic torque takes at most an eighth of the torque about z and about the tilt's axes.
     let flatness = greater_f64((j.z - j.x).abs(), (j.z - j.y).abs());
     let of_yaw = yaw_most / greater_f64((j.x - j.y).abs(), 1e-12);
     let product = 0.12 * lesser_f64(of_yaw, tilt_most / greater_f64(flatness, 1e-12));
@@ -127,7 +127,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         ..bare
     };
 
-    // What they leave for the tilt: M_all and the reserve alpha_0 = share M_all / J pay one another.
+    // The rest is for the tilt: M_all and the reserve alpha_0 = share M_all / J compete for it.
     let budget = TorqueBudget::new(&n.parameters(), vehicle, limits, rotors);
     let joint = budget.rows.iter().filter(|row| row.tilt > 0.0 && row.yaw > 0.0);
     let weak = joint.map(|row| 0.26 * row.tilt * greatest_inertia / (row.yaw * j.z)).fold(0.14, lesser_f64);
@@ -142,7 +142,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let stiffness = tilt_inertia * w_a * w_a;
     let w = or("w", lesser_f64(lesser_f64(1.45 * m_all, 3.2 * stiffness), n.w_eta / ETA_LEAST));
     let eta = or("eta", (n.w_eta / w).clamp(ETA_LEAST, 0.5));
-    // The potential is greatest where the tilt's own part falls: three places of r tell.
+    // The potential is greatest where the tilt's own part falls: three values of r suffice.
     let own = [(0.15, 0.885), (0.35, 0.82), (0.45, 0.66)].map(|(of_w, of_level)| (0.93 * m_all - of_w * w) / of_level);
     let m_t = own.into_iter().fold(m_all, lesser_f64);
     n = Numbers { m_all, w, eta, ..n };
@@ -211,7 +211,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     ExtendedParameters::from_values(values)
 }
 
-/// The acceleration that the rotors hold near the target where they deliver these shares of what is commanded, m/s^2.
+/// The acceleration that the rotors hold near the target at these thrust scales, m/s^2.
 fn held<const N: usize>(budget: &TorqueBudget, airframe: &Airframe, scales: [f64; N]) -> [f64; N] {
     let [each, taken] = budget.ceiling;
     let limit = f64::from(airframe.limits.thrust_max);
@@ -253,9 +253,9 @@ impl Numbers {
         scale: [1.0, 1.0],
     };
 
-    /// As constants; what the budget does not read is zero.
+    /// As constants; those that the budget does not read are zero.
     fn parameters(&self) -> ExtendedParameters {
-        // Before w is known, w eta is all that counts.
+        // Before w is known, only w eta counts.
         let eta = if self.eta > 0.0 { self.eta } else { self.w_eta / self.w };
         ExtendedParameters {
             turn_rate: self.turn_rate as f32,
@@ -275,7 +275,7 @@ impl Numbers {
     }
 }
 
-/// Bounds of the motions that `parameters` can fly on `airframe`: what the governor may ask for.
+/// Bounds of the motions that `parameters` can fly on `airframe`: the governor's limits.
 #[must_use]
 pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
     let p = parameters;
@@ -296,7 +296,7 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     let horizontal = lesser_f64(lesser_f64(3.0, 0.2 * across), math::sqrt_of_rounded(0.1 * gravity * held_beyond));
     let spare = 0.5 * (held_beyond - f64::from(p.force_down));
     let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
-    // What the net leaves of Omega and alpha_0, with the least |u|.
+    // The rest of Omega and alpha_0 beside the net, at the least |u|.
     let net = math::sqrt_f64(2.0) * net_level(p, airframe.vehicle.gravity);
     let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
     let least = gravity - up - vertical - net;

@@ -3,7 +3,7 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`ForceObserver::observed`] | a = (v_k - v_(k-1)) / h + g e3 + kappa v - s bbar F / m: what accelerates the vehicle beside its thrust and its known drag |
+//! | [`ForceObserver::observed`] | a = (v_k - v_(k-1)) / h + g e3 + kappa v - s bbar F / m: the acceleration beside thrust and known drag |
 //! | [`ForceObserver::averaged`] | zeta += (1 - e^(-L h)) (a - zeta) |
 //! | [`ForceObserver::believed`] | d: zeta cut to D_h across (radially), to D_z+ upwards and D_z- downwards |
 //!
@@ -13,7 +13,7 @@ use super::parameters::ExtendedParameters;
 use crate::math;
 use nalgebra::Vector3;
 
-/// What is learnt of an interval: its constants.
+/// The constants of learning from an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceObserver {
     per_period: f32,
@@ -45,8 +45,8 @@ impl ForceObserver {
         }
     }
 
-    /// The mean acceleration over an interval without gravity's and without the known drag's, m/s^2, world frame: what
-    /// thrust and unknown force make. `velocities` are those at the interval's start and end, m/s.
+    /// The mean acceleration over an interval by thrust and unknown force, without gravity and known drag, m/s^2, world
+    /// frame. `velocities`, m/s, belong to the interval's start and end.
     #[must_use]
     pub fn observed(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
         let [start, end] = velocities;
@@ -57,7 +57,7 @@ impl ForceObserver {
         made
     }
 
-    /// Takes what thrust did not make of what was [observed](Self::observed) into the `average`, zeta.
+    /// Averages the `rest` of the [observed](Self::observed) acceleration, without the thrust's part, into zeta.
     #[must_use]
     pub fn averaged(&self, average: &Vector3<f32>, rest: &Vector3<f32>) -> Vector3<f32> {
         Vector3::new(

@@ -11,7 +11,7 @@
 //! | omega_d' | (R_z(-chi) (w*_1', w*_2') + chi' (omega_d2, -omega_d1), W') |
 //!
 //! The thrust's direction does not depend on chi. Exact heading under a changing tilt can ask for more yaw torque than
-//! a vehicle has; here yaw is asked for J_33 A and a gyroscopic term at most, and the heading catches up. For small
+//! a vehicle has; here yaw needs at most J_33 A and a gyroscopic term, and the heading catches up. For small
 //! chi, 2 c_1 sin(chi/2) is c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2),
 //! which only then changes at once.
 
@@ -53,9 +53,9 @@ impl HeadingLag {
     }
 }
 
-/// Checks the gains for ticks `period` seconds apart. In samples, small chi and W - w*_3 follow z^2 - (2 - h c_2) z +
-/// 1 - h c_2 + h^2 c_1, whose roots are inside the unit circle if h c_1 < c_2 and 2 h c_2 < 4 + h^2 c_1. Half of either
-/// is asked for.
+/// Checks the gains for ticks `period` seconds apart. In samples, small chi and W - w*_3 follow
+/// z^2 - (2 - h c_2) z + 1 - h c_2 + h^2 c_1, whose roots are inside the unit circle if h c_1 < c_2 and
+/// 2 h c_2 < 4 + h^2 c_1. The law requires half of either.
 ///
 /// # Errors
 /// Names `gains.c_1` or `gains.c_2`.
@@ -107,8 +107,8 @@ pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &ExtendedPa
     }
 }
 
-/// The lag one period later, W at most `fastest`, rad/s: where the thrust direction turns fast, W would carry the frame
-/// beyond its budget.
+/// The lag one period later, with W at most `fastest`, rad/s: where the thrust direction turns fast, a faster W would
+/// exceed the frame's budget.
 #[must_use]
 pub fn advanced(lag: &HeadingLag, turning: &Turning, period: f32, fastest: f32) -> HeadingLag {
     let half = 0.5 * period * turning.lag_rate;

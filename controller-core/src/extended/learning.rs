@@ -1,8 +1,8 @@
-//! What the estimates learn of an interval: how the vehicle moved, against the wrench that acted. Sections 2, 7 and 9
+//! How the estimates learn from an interval: the vehicle's motion against the wrench that acted. Sections 2, 7 and 9
 //! of `docs/extended-law.md`.
 //!
-//! The acceleration beside gravity's and the known drag's goes to the thrust scale; what thrust with that scale does
-//! not explain, to the force; and what the torque with that scale does not explain of the rotation, to the torque bias.
+//! The acceleration without gravity and known drag goes to the thrust scale. Its rest beside the scaled thrust goes to
+//! the force. The rotation's rest beside the scaled torque goes to the torque bias.
 
 use super::force::ForceObserver;
 use super::memory::{Averages, Estimates, Memory};
@@ -12,6 +12,11 @@ use super::torque_bias::TorqueBias;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
+
+/// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate in it,
+/// rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
+const GREATEST_ACCELERATION: f32 = 1e3;
+const GREATEST_CHANGE: f32 = 1e3;
 
 /// The constants of the three estimates, for intervals of one length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +39,7 @@ impl Learning {
         }
     }
 
-    /// The averages in `memory` with what happened since its last tick, if there is something to be learnt from that;
+    /// The averages in `memory` brought up to this tick, if the last interval can teach anything;
     /// `axis` is R e3 now.
     #[must_use]
     pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
@@ -43,6 +48,11 @@ impl Learning {
             return *averages;
         };
         let made = self.force.observed([&last.velocity, &state.velocity]);
+        let turned = (state.angular_velocity - last.angular_velocity).norm_squared();
+        let moves = made.norm_squared() < GREATEST_ACCELERATION * GREATEST_ACCELERATION;
+        if !(moves & (turned < GREATEST_CHANGE * GREATEST_CHANGE)) {
+            return *averages;
+        }
         let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
         let scale = self.scale.learnt(&averages.scale, &made, &commanded);
         let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));
@@ -51,7 +61,7 @@ impl Learning {
         Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque) }
     }
 
-    /// The averages as far as they are believed.
+    /// The averages cut to their levels.
     #[must_use]
     pub fn believed(&self, averages: &Averages) -> Estimates {
         let Averages { force, torque, scale } = averages;

@@ -9,14 +9,14 @@ use crate::path_lifting::Lift;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector3, Vector4};
 
-/// What is estimated, as far as it is believed.
+/// The estimates, cut to their levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
     /// d, the force per mass, m/s^2, world frame.
     pub force: Vector3<f32>,
     /// The torque bias, N m, body frame.
     pub torque: Vector3<f32>,
-    /// What the rotors deliver of what is commanded.
+    /// The thrust scale: delivered over commanded.
     pub scale: f32,
 }
 
@@ -25,19 +25,19 @@ impl Estimates {
     pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
 }
 
-/// What the law has averaged, before it is cut to its levels.
+/// The averages, before they are cut to their levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Averages {
     /// zeta, the force per mass, m/s^2, world frame.
     pub force: Vector3<f32>,
     /// The torque bias, N m, body frame.
     pub torque: Vector3<f32>,
-    /// The thrust scale, with what it is learnt from.
+    /// The thrust scale and its slow averages.
     pub scale: ScaleEstimate,
 }
 
 impl Averages {
-    /// Of a vehicle of which torque bias and thrust scale are known.
+    /// With torque bias and thrust scale known.
     #[must_use]
     pub fn known(torque: Vector3<f32>, scale: f32) -> Self {
         Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale) }
@@ -64,7 +64,7 @@ pub struct Memory {
     pub lift: Option<Lift>,
     /// The heading's lag; none before the first step.
     pub heading: Option<HeadingLag>,
-    /// What the estimates are made of.
+    /// The averages behind the estimates.
     pub averages: Averages,
     /// The net.
     pub net: Net,

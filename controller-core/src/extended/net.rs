@@ -1,34 +1,34 @@
-//! The net: every flight arrives, by proven gains if need be. Section 13 of `docs/extended-law.md`.
+//! The net: if a flight does not arrive, it goes on with proven gains. Section 13 of `docs/extended-law.md`.
 //!
 //! While the limiter of [`super::turning`] changes nothing and the thrust is not cut, V_0 falls and the vehicle
 //! arrives. That the limiter falls silent is proven near the target; from far away no proof is known for strong gains.
-//! So the law counts the time for which it acted since the vehicle was last near its target. Once that is longer than
-//! any flight has been seen to need, the filters start afresh (c = x = y = -d) and the feedback is cut to the level of
-//! the net, for which the frame never asks for more than the reserve alpha_0, whatever happens. Then V_0 decides alone.
-//! Near the target the law's own level returns.
+//! So the law counts the time for which the limiter has acted since the vehicle was last near its target. Once that is
+//! longer than any flight in the campaigns needed, the filters start afresh (c = x = y = -d) and the feedback is cut to
+//! the level of the net, with which the frame never needs more than the reserve alpha_0. Then V_0 decides alone. Near
+//! the target the law's own level returns.
 //!
 //! | state | counts | leaves |
 //! |---|---|---|
 //! | own level | time with a changed drive or a cut thrust, less a twentieth of the time without; from zero again near the target | to the net after [`PATIENCE`] |
 //! | the net | nothing | to its own level near the target |
 //!
-//! So a flight changes over at most once for each time that it is away from its target.
+//! So a flight uses the net at most once for each time that it leaves its target.
 
 use crate::math;
 use core::hint::cold_path;
 use nalgebra::Vector3;
 
-/// The time of changed drives after which the net is used, s.
+/// The counted time after which the net comes into force, s.
 pub const PATIENCE: f32 = 60.0;
 
-/// The part of a silent time that is taken off what was counted: in gusts the limiter acts now and then, and the own
-/// level is wanted.
+/// The part of the time without limiting that is subtracted from the count: in gusts the limiter acts now and then, and
+/// the law should keep its own level.
 const FORGIVEN: f32 = 0.05;
 
 /// Near the target: |z_1|, m, and |z_2|, m/s.
 const NEAR: f32 = 0.05;
 
-/// What the net remembers.
+/// The net's memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Net {
     /// Time with a changed drive since the vehicle was last near its target, s.
@@ -67,7 +67,7 @@ impl Net {
 
     /// A tick of `period`, s, at z_1, m, and z_2, m/s; `limited`, whether drive or thrust was changed.
     pub fn observe(&mut self, z_1: &Vector3<f32>, z_2: &Vector3<f32>, limited: bool, period: f32) {
-        // Nearly every tick there is nothing to count and nothing to end.
+        // In nearly every tick there is no count to change.
         if !limited && !self.caught && self.acted == 0.0 {
             return;
         }

@@ -73,7 +73,7 @@ constants! {
         gains.c_1: Range::POSITIVE, FIXED;
         /// c_2, 1/s: damping of the heading generator.
         gains.c_2: Range::POSITIVE, FIXED;
-        /// mu_N, N: how far above its least thrust each rotor is kept, all rotors together; without rotors the least thrust.
+        /// mu_N, N: distance of all rotors together from their least thrust; without rotors the least thrust.
         gains.floor_margin: Range::POSITIVE, FIXED;
         /// D_h, m/s^2: greatest estimate of the force per mass across.
         estimates.force_across: Range::LEVEL, FIXED;

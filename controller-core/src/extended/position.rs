@@ -1,4 +1,5 @@
-//! The position law: feedback gets what the wind leaves, across what the vertical leaves. Section 1 of
+//! The position law: feedback gets the part of the envelope that the wind does not use, and the horizontal the part
+//! that the vertical does not use. Section 1 of
 //! `docs/extended-law.md`.
 //!
 //! c is the part of u that is neither gravity nor reference, x the filter before it, y the one before that, d the
@@ -12,13 +13,13 @@
 //! | phi(z_1) = s(k_p z_1; k_v v_c) | the approach: its speed is at most v_c |
 //! | `feedback` = -s(phi(z_1) + k_v z_2; M) - d | ubar |
 //! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`Saturation`]: radial across |
-//! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical has what the force leaves |
-//! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across has what the vertical leaves |
+//! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical gets the part that the force does not use |
+//! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across gets the part that the vertical does not use |
 //! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
 //!
 //! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide
-//! as that allows. Where d leaves less than the least level, 0.3 m/s^2, that stands, and ubar may be outside; u itself
-//! is bounded by [`super::turning`]. World frame; accelerations in m/s^2. All theorems on ubar need is that s is
+//! as that allows. Where d leaves less than the least level, 0.3 m/s^2, the least level holds and ubar may be outside;
+//! [`super::turning`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only that s is
 //! monotone, has a slope of at most one and the sign of its argument.
 
 use super::parameters::ExtendedParameters;
@@ -31,10 +32,10 @@ use crate::state::State;
 use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
-/// The least level of a feedback, m/s^2: what is left where a force takes all of the envelope.
+/// The least level of a feedback, m/s^2, where a force takes the whole envelope.
 const LEVEL_LEAST: f32 = 0.3;
 
-/// How much of the tilt and of the thrust across the feedback uses: the reference needs some.
+/// The share of tilt and horizontal thrust for the feedback: the reference needs the rest.
 const SHARE_ACROSS: f32 = 0.95;
 
 /// s(k_p z_1; k_v v_c) / k_v, the velocity of approach.
@@ -61,7 +62,7 @@ impl Filters {
     }
 }
 
-/// What the position law commands, with the quantities it went through.
+/// The position law's command, with the quantities on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionFeedback {
     /// p~, m.
@@ -92,7 +93,7 @@ pub struct PositionLaw {
     products: [f32; 2],
     /// k_f, 1/s.
     k_f: f32,
-    /// (1 - e^(-k_s h)) / h, 1/s: what brings x to y as its filter would.
+    /// (1 - e^(-k_s h)) / h, 1/s: brings x to y as its filter would.
     k_s_held: f32,
     /// 1 - e^(-k_d h).
     smoothing: f32,

@@ -1,19 +1,19 @@
 //! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 8
 //! of `docs/extended-law.md`.
 //!
-//! Rotor i is asked for f_i = b_T,i T + b_tau,i . tau, with (b_T,i, b_tau,i) its row of B+. So it is within its range
-//! as long as T is between
+//! The thrust command of rotor i is f_i = b_T,i T + b_tau,i . tau, with (b_T,i, b_tau,i) its row of B+. So it is within
+//! its range as long as T is between
 //!
 //! ```text
 //! N(tau) = max_i ((s f_min,i - b_tau,i . tau) / b_T,i) + margin,
 //! C(tau) = min_i ((s f_max,i - b_tau,i . tau) / b_T,i) - margin,
 //! ```
 //!
-//! and T = min(C(tau), max(N(tau), m u . R e3)), at most T_max. That N <= C for every torque that can be asked for is
-//! the certificate's (R). A rotor commanded f / s turns at its least or greatest speed when f is s f_min,i or s
-//! f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
+//! and T = min(C(tau), max(N(tau), m u . R e3)), at most T_max. The certificate's row (R) proves N <= C for every
+//! torque that the law can command. A rotor commanded f / s turns at its least or greatest speed when f is s f_min,i or
+//! s f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
 //!
-//! The command is nearly always far inside. A bound says so with one comparison on each side for all rotors: the same
+//! The command is nearly always far inside. One comparison on each side for all rotors shows that: the same
 //! formulas with the worst of each constant among the rotors and the magnitude of each component of tau. Rounding is
 //! monotone, so that the bound is on the safe side of any rotor's part, to the last bit.
 

@@ -1,12 +1,12 @@
-//! An estimate of what the rotors deliver of what is commanded: battery, propellers, mass. Section 9 of
-//! `docs/extended-law.md`.
+//! The thrust scale: an estimate of the delivered thrust over the commanded thrust (battery, propellers, mass). Section
+//! 9 of `docs/extended-law.md`.
 //!
 //! In steady flight a wrong scale and a force look alike: the force estimate carries both. The scale is learnt from
-//! what varies alone. With y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
+//! variations alone. With y = v' + g e3 + kappa v and f = bbar F / m, both less their slow averages,
 //!
 //! ```text
-//! y - ybar = s (f - fbar) for any constant force,
-//! s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi].
+//! y - ybar = s (f - fbar) for any constant force
+//! s += gamma_s h (dy - s df) . df / (|df|^2 + c_0^2),   s in [s_lo, s_hi]
 //! ```
 //!
 //! So |s - s*| never rises while force and scale are constant, and s stands still where thrust does. Rotors are
@@ -22,18 +22,17 @@ const LEAST_VARIATION: f64 = 2.0;
 /// Bandwidth of the slow averages, 1/s.
 const SLOW: f64 = 0.7;
 
-/// The scale and what it is learnt from.
+/// The scale and the averages behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaleEstimate {
-    /// ybar and fbar, m/s^2; none before the first interval, with which they begin: any other beginning would look like
-    /// a variation.
+    /// ybar and fbar, m/s^2. The first interval starts them: any other start would look like a variation.
     pub slow: Option<[Vector3<f32>; 2]>,
     /// s.
     pub scale: f32,
 }
 
 impl ScaleEstimate {
-    /// The scale known.
+    /// A known scale.
     #[must_use]
     pub fn at(scale: f32) -> Self {
         Self { slow: None, scale }

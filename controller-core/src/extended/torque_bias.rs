@@ -39,9 +39,10 @@ impl TorqueBias {
         }
     }
 
-    /// What turned the vehicle over an interval beside the torque that acted, N m, body frame.
+    /// The unexplained torque over an interval, beside the torque that acted, N m, body frame.
     ///
-    /// `angular_velocities` are those at the interval's start and end, rad/s; `torque` the mean of what acted, N m.
+    /// `angular_velocities` are those at the interval's start and end, rad/s; `torque` the mean of the torque that
+    /// acted, N m.
     #[must_use]
     pub fn observed(&self, angular_velocities: [&Vector3<f32>; 2], torque: &Vector3<f32>) -> Vector3<f32> {
         let [start, end] = angular_velocities;
@@ -51,13 +52,13 @@ impl TorqueBias {
             - torque
     }
 
-    /// Takes what was [observed](Self::observed) into the `average`, N m.
+    /// Takes the [observed](Self::observed) torque into the `average`, N m.
     #[must_use]
     pub fn averaged(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
         average + (observed - average) * self.averaging
     }
 
-    /// The average as far as it is believed, N m.
+    /// The average cut to its levels, N m.
     #[must_use]
     pub fn estimate(&self, average: &Vector3<f32>) -> Vector3<f32> {
         average.zip_map(&self.level, math::within)

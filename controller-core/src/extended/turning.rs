@@ -8,15 +8,15 @@
 //! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
 //! | \|q + W (p_2, -p_1)\| <= alpha, at least alpha_0 | omega'_d12 and the budget ([`super::budget`]); W turns p in the frame's axes, not its length |
-//! | \|q\| <= 0.6 alpha, \|W\| \|p\| <= 0.4 alpha | both have their part: W is cut for the next tick ([`super::heading::advanced`]) |
+//! | \|q\| <= 0.6 alpha, \|W\| \|p\| <= 0.4 alpha | both get a share: W is cut for the next tick ([`super::heading::advanced`]) |
 //! | \|p + h q\| <= Omega | |
 //! | (p + h q) . z >= -(alpha_0 / Omega) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | c_z stays above -A_- |
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
 //!
-//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: the last two lines add along rho. Where
-//! rho has left its cone, a little along the vertical is much along rho: there c_z is left to the filters' own end
-//! ([`super::position`]), or u would grow without bound. What was changed of u'' is the drive's: x' = drive + (change
+//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last two rows add along rho.
+//! Where rho has left its cone, a little along the vertical is much along rho: there c_z is left to the filters' own
+//! end ([`super::position`]), or u would grow without bound. The drive takes up the change of u'': x' = drive + (change
 //! of u'') / k_f.
 
 use super::parameters::ExtendedParameters;
@@ -45,7 +45,7 @@ pub struct TurningLimit {
     a_down: f32,
 }
 
-/// What the limiter looks at beside the turn.
+/// The limiter's inputs beside the turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circumstances {
     /// alpha, rad/s^2, as the budget has it.
@@ -60,14 +60,14 @@ pub struct Circumstances {
     pub vertical: [f32; 3],
 }
 
-/// The turn as it may be.
+/// The limited turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limited {
     /// q, rad/s^2.
     pub acceleration: Vector2<f32>,
-    /// What W may be at the next tick, rad/s: 0.4 alpha over |p|, or an eighth less.
+    /// The limit of W at the next tick, rad/s: 0.4 alpha over |p|, or an eighth less.
     pub yaw_rate: f32,
-    /// What was added to u'', axes of the desired frame, m/s^4; none where nothing was.
+    /// The change of u'', axes of the desired frame, m/s^4; `None` if nothing was limited.
     pub change: Option<Vector3<f32>>,
 }
 
@@ -87,7 +87,7 @@ impl TurningLimit {
         }
     }
 
-    /// The turn that may be of the one that is wanted.
+    /// The limited turn for a wanted one.
     #[must_use]
     pub fn limited(&self, turn: &Turn, circumstances: &Circumstances) -> Limited {
         let Circumstances { budget, yaw_rate, up, greatest, vertical: [c, c_rate, c_wanted] } = *circumstances;
@@ -106,7 +106,7 @@ impl TurningLimit {
             q = shortened(whole, most) - carried;
         }
 
-        // Nearly every tick nothing is shortened.
+        // In nearly every tick nothing is shortened.
         let turned = q != wanted;
         let (mut tangential, mut along) = (Vector2::zeros(), 0.0);
         if turned {
@@ -127,7 +127,7 @@ impl TurningLimit {
             along += least_shrinking - swelling;
         }
         let changed = turned || along != 0.0;
-        // Without a root |p| is told to an eighth, from above.
+        // An upper bound of |p| without a root, at most an eighth too large.
         let (x, y) = (rate.x.abs(), rate.y.abs());
         let speed = if x > y { x + 0.5 * y } else { y + 0.5 * x };
         let yaw_rate = most * (1.0 - TURNED) / math::greater(speed, 1e-3);

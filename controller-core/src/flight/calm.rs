@@ -1,10 +1,10 @@
 //! The motion as a whole: what is left of it when the shaking of the rotors is taken away.
 //!
 //! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An
-//! average tells one from the other: each tick takes a fifth of what is new, so that a change is known to nine tenths
-//! after 0.1 s, and of what seems to swing at 25 Hz one eighth is left. Accelerations shake most: theirs is the average
-//! of an average, and one sixtieth is left. A hit at speed would stay in it for longer than what was hit is asked
-//! about: of an acceleration no more counts than [`COUNTED`].
+//! average tells one from the other: each tick takes in a fifth of the new value, so that the average reaches nine
+//! tenths of a change after 0.1 s and keeps one eighth of a swing at 25 Hz. Accelerations shake most: theirs is the
+//! average of an average, which keeps one sixtieth. A hit at speed would stay in it for too long: an acceleration
+//! counts up to [`COUNTED`] only.
 
 use crate::estimator::EstimatedState;
 use crate::math;
@@ -14,7 +14,8 @@ use nalgebra::Vector3;
 /// What an average takes of each tick.
 const SHARE: f32 = 0.2;
 
-/// What counts of an acceleration along each axis, m/s^2. One tick of it leaves less in the average than wind may.
+/// The greatest acceleration that counts along each axis, m/s^2. One tick of it leaves less in the average than wind
+/// may.
 const COUNTED: f32 = 40.0;
 
 /// Averages, and how often the state had jumped.

@@ -3,10 +3,10 @@
 //! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle
 //! and every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach,
 //! and takes the errors of position, velocity and attitude at their worst. So after a reset any state may follow, and
-//! the reference may jump, as it does here from one in motion to a hover. On entry the law is reset and from then on
-//! told that it is where it should be, at rest across; the attitude law is as it is proven, about the heading it had.
-//! The vertical speed is the accelerometer's, summed up since the pose was lost, and is brought to nothing and then to
-//! that of the descent; how far it stays behind that is summed up as well, so that it sinks in an updraft too. The
+//! the reference may jump, as it does here from one in motion to a hover. On entry the law is reset. From then on its
+//! position input is the reference, at rest across; the attitude law is the proven one, about the last heading. The
+//! vertical speed is the accelerometer's, summed up since the pose was lost, and is brought to zero and then to that of
+//! the descent; its lag behind the descent is summed up as well, so that the vehicle sinks in an updraft too. The
 //! extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and
 //! learns nothing meanwhile.
 //!
@@ -202,8 +202,8 @@ impl<'m> Chain<'m> {
         let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
     }
 
-    /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s; of
-    /// its reference's, if that is not known.
+    /// Turns to levelling: a hover at the last heading, the law restarted, at the vertical speed `sinking`, m/s, or at
+    /// the reference's if it is not known.
     pub fn level(&mut self, sinking: Option<f32>) {
         let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
@@ -352,12 +352,13 @@ impl<'m> Chain<'m> {
         self.sinking.is_motion()
     }
 
-    /// The vertical force per mass that the law reckons with, m/s^2: what the rotors lack, mostly.
+    /// The law's estimate of the vertical force per mass, m/s^2: mostly a lack of thrust.
     fn vertical_force(&self) -> f32 {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
-    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns nothing.
+    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns
+    /// nothing.
     ///
     /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
     /// takes up a steady lack of thrust.

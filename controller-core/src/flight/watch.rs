@@ -6,7 +6,7 @@
 //!   than carries it. Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not.
 //!   Rotors that give 8 % more than the law knows would look the same: with the law's thrust scale and force they do
 //!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
-//!   speed that is none.
+//!   false speed.
 //! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not
 //!   as the ground's, or the vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a

@@ -1,4 +1,4 @@
-//! What a comparison is asked to be, in clap's terms, and what of it is refused.
+//! The arguments of a comparison, in clap's terms, and their checks.
 
 use clap::Args;
 use host_sim::tune::effort::Effort;
@@ -39,11 +39,11 @@ const TUNE_POPULATION: usize = 32;
 
 /// Which gains of the rivals fly.
 pub enum GainsWanted {
-    /// Those of this file.
+    /// The gains of this file.
     Of(PathBuf),
-    /// Those that are built in; where there are none, those of a search that tries so hard.
+    /// The built-in gains; without any, those of a search with this effort.
     BuiltInOr(Effort),
-    /// Those of a search.
+    /// The gains of a search.
     Searched(Effort),
 }
 
@@ -51,7 +51,7 @@ impl CompareArguments {
     /// Which gains of the rivals are to fly.
     ///
     /// # Errors
-    /// Names the argument that asks for something impossible.
+    /// Names the argument out of range.
     pub fn gains(&self) -> Result<GainsWanted, String> {
         if !(1..=FLIGHTS_MAX).contains(&self.flights) {
             return Err(format!("--flights: must be from 1 to {FLIGHTS_MAX}, found {}", self.flights));

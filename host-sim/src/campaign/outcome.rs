@@ -9,14 +9,14 @@
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
-//! The share of an interval that holds for a quantity x (thrust, one rotor) is |x - middle| over half its width; that
-//! of a torque, whose bound is on both sides, |tau| over the bound.
+//! The share of a thrust or a rotor is its command over the greatest that is proven: the least is a constant near
+//! zero, which many a flight touches. That of a torque is |tau| over its bound. A command below a least counts as
+//! beyond.
 
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
 /// How near its reference a vehicle must stay to have settled, m.
@@ -52,11 +52,11 @@ pub struct Outcome {
 /// Greatest shares of certified bounds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Shares {
-    /// Of the thrust's interval.
+    /// Of the greatest thrust.
     pub thrust: f64,
     /// Of the torque about each body axis.
     pub torque: [f64; 3],
-    /// Of each rotor's interval; zero for rotors that are not there.
+    /// Of each rotor's greatest thrust; zero for rotors that are not there.
     pub rotors: [f64; ROTORS_MAX],
 }
 
@@ -138,7 +138,7 @@ impl Shares {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
         let raised = 1.0 + ROUNDING;
         let mut within = (proven.least / raised..=proven.greatest * raised).contains(&thrust);
-        self.thrust = self.thrust.max(share(thrust, proven));
+        self.thrust = self.thrust.max(thrust / proven.greatest);
         let bounds = certificate.torque();
         for (greatest, (torque, proven)) in self.torque.iter_mut().zip(tick.wrench.torque.iter().zip(bounds.iter())) {
             let torque = f64::from(torque.abs());
@@ -151,14 +151,9 @@ impl Shares {
                 within = false;
                 continue;
             };
-            *greatest = greatest.max(share(asked, proven));
+            *greatest = greatest.max(asked / proven.greatest);
             within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&asked);
         }
         within
     }
-}
-
-/// How far from the middle of its interval, 1 at either end.
-fn share(value: f64, Interval { least, greatest }: Interval) -> f64 {
-    (2.0 * value - (least + greatest)).abs() / (greatest - least)
 }

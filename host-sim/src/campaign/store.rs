@@ -13,18 +13,19 @@
 //! that is not the one that was written.
 //!
 //! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there
-//! is touched. Whoever writes into a directory holds a lock on it, which ends with the process, however that ends.
+//! is touched. Whoever writes into a directory holds a [lock](crate::directory_lock) on it.
 
 use super::CampaignError;
 use super::batches;
 use super::manifest::{MANIFEST, Manifest};
 use super::rows::schema;
+use crate::directory_lock::DirectoryLock;
 use crate::whole_file::{WholeFile, is_unfinished};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use arrow_array::types::UInt64Type;
 use std::fmt::Display;
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -46,7 +47,7 @@ pub struct Store {
     directory: PathBuf,
     manifest: Manifest,
     /// Of who writes, if the file system has locks.
-    _lock: Option<File>,
+    _lock: Option<DirectoryLock>,
 }
 
 impl Store {
@@ -56,8 +57,7 @@ impl Store {
     /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot
     /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
-        fs::create_dir_all(directory).map_err(unwritable(directory))?;
-        let lock = lock(directory)?;
+        let lock = DirectoryLock::take(directory).map_err(unwritable(directory))?;
         let found = Manifest::of(directory)?;
         if let Some(difference) = found.as_ref().and_then(|found| found.difference(manifest)) {
             return Err(CampaignError::Input(format!(
@@ -74,7 +74,7 @@ impl Store {
         }
         let result = found.and_then(|found| found.result);
         let manifest = Manifest { result, ..manifest.clone() };
-        let store = Self { directory: directory.to_owned(), manifest, _lock: lock };
+        let store = Self { directory: directory.to_owned(), manifest, _lock: Some(lock) };
         store.write(MANIFEST, &store.manifest.written())?;
         store.write(SCENARIO, text)?;
         let parts = directory.join(PARTS);
@@ -226,19 +226,6 @@ fn chunk_of(name: &str) -> Option<u64> {
         name.strip_prefix('.').and_then(|name| name.strip_suffix(".part")).and_then(|name| name.rsplit_once('.'));
     let digits = under_way.map_or(name, |(name, _)| name).strip_suffix(".arrow")?;
     digits.parse().ok().filter(|chunk: &u64| format!("{chunk:06}") == digits)
-}
-
-/// Keeps everybody else from writing into `directory`, where its file system can: some, across a network, cannot.
-fn lock(directory: &Path) -> Result<Option<File>, CampaignError> {
-    let Ok(file) = File::open(directory) else { return Ok(None) };
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(TryLockError::Error(_)) => Ok(None),
-        Err(TryLockError::WouldBlock) => Err(CampaignError::Output(format!(
-            "{}: another campaign is under way in it; wait for its end, or choose another --out",
-            directory.display()
-        ))),
-    }
 }
 
 fn unwritable<E: Display>(path: &Path) -> impl FnOnce(E) -> CampaignError {

@@ -1,4 +1,4 @@
-//! What the extended law lets a vehicle do, in a pilot's terms.
+//! The abilities of a vehicle under the extended law, in a pilot's terms.
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
@@ -25,7 +25,8 @@ pub fn terms(configuration: &Configuration, law: &ExtendedLaw) -> String {
     ];
     let degrees = |angle: f32| short(f64::from(angle).to_degrees().round());
     format!(
-        "{}tilt up to {} degrees; the thrust turns with up to {} degrees/s and {} degrees/s^2, {} of them always;\nthe heading with up to {} and {}\n{}",
+        "{}tilt up to {} degrees; the thrust turns with up to {} degrees/s and {} degrees/s^2, {} of them always;\n\
+         the heading with up to {} and {}\n{}",
         aligned(&rows),
         degrees(p.tilt_max),
         degrees(p.turn_rate),
@@ -41,8 +42,7 @@ fn budget(configuration: &Configuration, parameters: &ExtendedParameters) -> Tor
     TorqueBudget::new(parameters, configuration.vehicle(), configuration.limits(), configuration.rotors())
 }
 
-/// Who takes how much of the torque: of roll's and pitch's limit or of the rotors' range, whichever leaves the tilt
-/// less.
+/// The shares of the torque: of roll's and pitch's limit or of the rotors' range, whichever leaves the tilt less.
 fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     let unbiased = ExtendedParameters { torque_tilt: 0.0, torque_yaw: 0.0, ..*p };
     let idle =

@@ -4,7 +4,7 @@ use controller_core::certificate::configuration::{LawParameters, PaperLaw};
 use scenario::vehicle::named;
 use scenario::{Scenario, bounds, extended};
 
-/// The sections that stand for what `scenario` flies with.
+/// The sections with every constant that `scenario` flies with.
 #[must_use]
 pub fn constants(scenario: &Scenario) -> String {
     let configuration = &scenario.configuration;

@@ -140,7 +140,7 @@ fn the_shares_of_the_torque_are_those_of_the_tightest_row() {
         let parts = shares.split(['%', ',']).filter_map(|part| part.split_whitespace().last()?.parse::<f64>().ok());
         let margin = line(&report, row).split_whitespace().rev().nth(2).unwrap().parse::<f64>().unwrap();
         let sum: f64 = parts.sum();
-        // The row's margin is of what yaw and bias leave, the shares are of all.
+        // The row's margin is a share of the rest beside yaw and bias; the shares are of the whole.
         assert!(sum < 100.0 && sum > 100.0 - margin - 0.3, "{shares}: {sum}, {margin}");
     }
 }

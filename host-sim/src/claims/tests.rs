@@ -35,7 +35,8 @@ fn each_claim_can_fail() {
     let paper = Scenario::paper().unwrap();
     let good = flown(&paper);
     assert!(all_hold(&judged(&paper, &good)), "{}", table(&judged(&paper, &good)));
-    let broken: [fn(&mut Flown); 9] = [
+    let broken: [fn(&mut Flown); 10] = [
+        |flown| flown.strayed = Some((0.51, 20.0)),
         |flown| flown.steady_position_error = 1.1e-3,
         |flown| flown.steady_mrp_error = 1.1e-4,
         |flown| flown.thrust = (3.5, 6.0),
@@ -62,5 +63,36 @@ fn what_a_weak_vehicle_cannot_deliver_is_counted_and_fails() {
     let failed: Vec<String> =
         judged(&weak, &seen).into_iter().filter(|c| c.holds == Some(false)).map(|c| c.claim).collect();
     let late = "within 0.2 m of the reference for good";
-    assert_eq!(failed, [late, "thrust, vehicle's limit", "ticks with a clipped command"]);
+    let refused = "commands, certificate";
+    assert_eq!(failed, [refused, late, "thrust, vehicle's limit", "ticks with a clipped command"]);
+}
+
+#[test]
+fn a_flight_that_is_not_certified_fails_by_the_inequality_that_fails() {
+    let text = scenario::PAPER.replace("torque_max = [0.5, 0.5, 0.5]", "torque_max = [0.5, 0.5, 0.3]");
+    let weak = Scenario::parse(&text, "weak").unwrap();
+    let claims = judged(&weak, &flown(&weak));
+    let failing: Vec<&Claim> = claims.iter().filter(|claim| claim.holds == Some(false)).collect();
+    let [only] = failing[..] else { panic!("{}", table(&claims)) };
+    assert_eq!((only.claim.as_str(), only.required.as_str()), ("commands, certificate", "every inequality"));
+    assert!(only.flown.contains("T2 yaw torque"), "{only:?}");
+    assert_eq!(verdict_line(&claims), "NOT every claim holds (commands, certificate)");
+}
+
+#[test]
+fn a_flight_that_strays_from_its_path_fails_by_the_files_own_tolerance() {
+    let gust = r#"
+[wind]
+gust = { kind = "pulse", start = 24.0, velocity = [5.0, 0.0, 0.0], duration = 3.0 }
+[drag]
+linear = [0.3, 0.3, 0.0]
+"#;
+    let with = |tolerance: &str| {
+        let text = scenario::PAPER.replace("kind = \"harmonic\"", &format!("kind = \"harmonic\"{tolerance}"));
+        let scenario = Scenario::parse(&(text + gust), "gusty").unwrap_or_else(|error| panic!("{error}"));
+        judged(&scenario, &flown(&scenario)).into_iter().find(|claim| claim.claim.starts_with("farthest")).unwrap()
+    };
+    let strayed = with("");
+    assert!(strayed.holds == Some(false) && strayed.required == "<= 0.5 m", "{strayed:?}");
+    assert_eq!(with("\ntolerance = 50.0").holds, Some(true));
 }

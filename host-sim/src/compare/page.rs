@@ -1,5 +1,5 @@
-//! The page of a comparison: what every law showed, row by row, with a star where ours loses; the scenes' courses over
-//! time; how the random flights are spread; and with which gains.
+//! The page of a comparison: every law's figures, row by row, with a star where ours loses; the scenes' courses over
+//! time; the spread of the random flights; and the gains.
 
 use super::rows::{Row, cell};
 use super::scenes::Scene;
@@ -33,9 +33,9 @@ pub const LOOKS: [(Color, Line); 8] = [
 /// Scenes that begin upside down: how far each law falls is shown, too.
 const FALLS: [&str; 2] = ["upside down", "heavy"];
 
-/// A comparison that is over.
+/// A finished comparison.
 pub struct Compared<'a> {
-    /// What was flown, and the text it was read from.
+    /// The flown scenario, and the text it was read from.
     pub file: &'a Scenario,
     /// Likewise.
     pub text: &'a str,
@@ -47,13 +47,13 @@ pub struct Compared<'a> {
     pub rows: &'a [Row],
     /// The scenes.
     pub scenes: &'a [Scene],
-    /// What each law showed in each of them; none if it was not flown to its end.
+    /// Each law's figures in each scene; `None` if the flight ended early.
     pub shown: &'a [(&'static str, Vec<Option<Shown>>)],
-    /// What each law showed in the random flights.
+    /// Each law's figures in the random flights.
     pub thrown: &'a [Option<Thrown>],
     /// Random flights of each law.
     pub flights: u64,
-    /// Whether what is claimed of ours holds.
+    /// Whether our claim holds.
     pub holds: bool,
 }
 
@@ -122,9 +122,10 @@ const STARS: &str = "Less is better in every row. ★ marks the rows where anoth
                      come to its reference for good, or that could not be flown to its end.";
 const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
 const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
-                    stands above its gains, less is better. Continuous and memoryless differ in their choice of quaternion alone.";
+                    stands above its gains, less is better. Continuous and memoryless differ in their choice of \
+                     quaternion alone.";
 
-/// What is flown in each scene.
+/// The task of each scene.
 fn asked(compared: &Compared) -> Table {
     let mut table = Table::new("What is asked", &["scene", "asked", "duration"]);
     table.rows.extend(compared.scenes.iter().map(|scene| {
@@ -193,7 +194,7 @@ fn random(compared: &Compared) -> String {
     )
 }
 
-/// A figure of one flight; infinite where there is none.
+/// A figure of one flight; infinite if the flight has none.
 type Get = fn(&Outcome) -> f64;
 
 fn distributions(compared: &Compared) -> Vec<Distribution> {
@@ -214,7 +215,7 @@ fn distributions(compared: &Compared) -> Vec<Distribution> {
     ]
 }
 
-/// What the laws are.
+/// A description of each law.
 fn laws(compared: &Compared) -> Table {
     let mut table = Table::new("Who flew", &["law", "what it is"]);
     let own = match compared.file.configuration.paper() {
@@ -243,7 +244,7 @@ fn gains(compared: &Compared) -> Vec<Table> {
     compared.set.rivals.iter().map(of_rival).collect()
 }
 
-/// A scene's name at the head of something.
+/// A scene's name as a heading.
 fn titled(scene: &str) -> String {
     let mut letters = scene.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

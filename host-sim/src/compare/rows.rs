@@ -4,19 +4,20 @@ use super::shown::{Shown, Thrown};
 use crate::table::{aligned, short};
 use std::fmt::Write;
 
-/// By which part another law must be better than ours for a row to be lost.
+/// The share by which another law must be better for ours to lose a row.
 const CLOSE: f64 = 0.01;
 
 /// One figure of every law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// In which scene.
+    /// The scene.
     pub scene: &'static str,
-    /// What.
+    /// The figure's name.
     pub figure: &'static str,
-    /// In which unit.
+    /// Its unit.
     pub unit: &'static str,
-    /// Of each law, in the fliers' order; less is better, infinite is never or not flown to its end.
+    /// The value of each law, in the fliers' order; less is better; infinite means never, or that the flight ended
+    /// early.
     pub values: Vec<f64>,
     /// The least difference that matters, in the unit.
     pub grain: f64,
@@ -35,7 +36,7 @@ impl Row {
 /// A figure of one law in one scene.
 type Get = fn(&Shown) -> f64;
 
-/// Figures of scenes: scene, figure, unit, which, and what is too little to matter.
+/// Figures of scenes: scene, figure, unit, its function, and the least difference that matters.
 const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("own", "position error, last half, RMS", "mm", |s| 1e3 * s.rms, 0.1),
     ("own", "rotor command's change a tick, RMS", "mN", |s| 1e3 * s.activity, 0.1),
@@ -69,11 +70,11 @@ fn clipped(shown: &Shown) -> f64 {
     100.0 * shown.clipped
 }
 
-/// How a figure of the rotors begins: a vehicle without has none.
+/// The beginning of a rotor figure's name: a vehicle without rotors has no such figures.
 const OF_ROTORS: &str = "rotor";
 
-/// All rows of a vehicle with or without `rotors`: of `scenes`, each with what every law showed there, and of what
-/// every law showed in the random flights.
+/// All rows of a vehicle with or without `rotors`: of `scenes`, each with every law's figures, and of the random
+/// flights.
 #[must_use]
 pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>], rotors: bool) -> Vec<Row> {
     let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {
@@ -125,7 +126,7 @@ pub fn table(names: &[&str], rows: &[Row]) -> String {
     aligned(&cells)
 }
 
-/// The same as CSV, in full; `inf` is never.
+/// The same as CSV, in full; `inf` means never.
 #[must_use]
 pub fn csv(names: &[&str], rows: &[Row]) -> String {
     let mut text = format!("scene,figure,unit,{},ours_loses\n", names.join(","));

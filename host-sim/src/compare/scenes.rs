@@ -1,15 +1,15 @@
 //! The circumstances that all laws are compared in, made from one scenario.
 //!
-//! | scene | what is asked | what is new in it |
+//! | scene | task | new in it |
 //! |---|---|---|
 //! | own | the file's own flight | nothing |
 //! | step | hover 1 m from where it is | |
-//! | far step | hover 10 m away, across and up | position errors beyond what is linear |
+//! | far step | hover 10 m away, across and up | position errors beyond the linear range |
 //! | upside down | hover where it starts, roll -179 degrees, yaw 100 degrees off | |
-//! | gust | hover; 5 m/s of wind begin after a second | force within what ours promises |
+//! | gust | hover; 5 m/s of wind begin after a second | a force within our law's promise |
 //! | storm | hover; 12 m/s of wind begin after a second | force beyond it |
 //! | noise | hover; gyro 0.01 rad/s, pose 2 mm and 0.2 degrees, all 20 ms late | |
-//! | weak rotors | 1 m step with rotors that deliver 60 % | thrust scale beyond what ours promises |
+//! | weak rotors | 1 m step with rotors that deliver 60 % | a thrust scale beyond our law's promise |
 //! | heavy | upside down with 1.6 times the mass | likewise, and less thrust to spare |
 //!
 //! Drag is the file's, or 0.5 1/s. The file's wind, disturbances and failures are left out, but for its own flight.
@@ -22,7 +22,7 @@ use scenario::reality::drag::Drag;
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 
-/// Drag of a vehicle of which the file says nothing, 1/s.
+/// Drag of a vehicle whose file gives none, 1/s.
 const DRAG: f64 = 0.5;
 /// When a wind begins, s.
 const WIND_AT: f64 = 1.0;
@@ -32,9 +32,9 @@ const WIND_AT: f64 = 1.0;
 pub struct Scene {
     /// Its name in tables.
     pub name: &'static str,
-    /// What is asked, in a sentence.
+    /// The task, in a sentence.
     pub asked: &'static str,
-    /// What is flown.
+    /// The scenario to fly.
     pub scenario: Scenario,
 }
 

@@ -1,4 +1,4 @@
-//! What one law showed in one scene, and in the random flights.
+//! The figures of one law in one scene, and in the random flights.
 
 use super::scenes::Scene;
 use crate::campaign::outcome::Outcome;
@@ -11,9 +11,9 @@ use controller_core::certificate::Certificate;
 use rayon::prelude::*;
 use scenario::Scenario;
 
-/// How near its reference a vehicle must stay to be there, m: as in the trials of a search.
+/// The distance from its reference within which a vehicle counts as arrived, m: as in the trials of a search.
 const NEAR: f64 = 0.1;
-/// Every so many ticks a point of a picture.
+/// Ticks between two points of a picture.
 pub const THINNED: u64 = 2;
 
 /// One law in one scene.
@@ -21,7 +21,7 @@ pub const THINNED: u64 = 2;
 pub struct Shown {
     /// Start minus lowest height, m.
     pub height_lost: f64,
-    /// Since when within 0.1 m, s; none if it was away at the end.
+    /// The time from which it stays within 0.1 m, s; `None` if it was away at the end.
     pub settled: Option<f64>,
     /// Greatest distance from the reference, and that at the end, m.
     pub excursion: f64,
@@ -93,12 +93,12 @@ fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
 /// One law in all random flights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thrown {
-    /// What each flight showed, by its number.
+    /// The figures of each flight, by its number.
     pub outcomes: Vec<Outcome>,
 }
 
-/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with the plant step that it has: those of
-/// `campaign --law`. None once somebody has interrupted them.
+/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with its plant step: the flights of
+/// `campaign --law`. `None` after an interrupt.
 #[must_use]
 pub fn throw_all(
     flier: &Flier,
@@ -115,22 +115,21 @@ pub fn throw_all(
 }
 
 impl Thrown {
-    /// Share of the flights of which `holds` is true.
+    /// Share of the flights for which `holds` is true.
     #[must_use]
     pub fn share(&self, holds: impl Fn(&Outcome) -> bool) -> f64 {
         let count = self.outcomes.iter().filter(|outcome| holds(outcome)).count();
         count as f64 / self.outcomes.len().max(1) as f64
     }
 
-    /// The height lost that so large a part of the flights do not exceed, m.
+    /// The height lost that this share of the flights does not exceed, m.
     #[must_use]
     pub fn height(&self, part: f64) -> f64 {
         let heights: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.height_lost).collect();
         quantile(&heights, part).unwrap_or(f64::INFINITY)
     }
 
-    /// The time until within 0.2 m for good that so large a part of the flights do not exceed, s; infinite where it is
-    /// never.
+    /// The time until within 0.2 m for good that this share of the flights does not exceed, s; infinite for never.
     #[must_use]
     pub fn settled(&self, part: f64) -> f64 {
         let times: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.settled.unwrap_or(f64::INFINITY)).collect();

@@ -107,7 +107,7 @@ fn read(path: &Path) -> Result<FlightLog, Refused> {
 }
 
 fn text(path: &Path) -> Result<String, Refused> {
-    fs::read_to_string(path).map_err(|error| in_file(path, &format!("cannot be read: {error}")))
+    scenario::text::read(path).map_err(|error| in_file(path, &format!("cannot be read: {error}")))
 }
 
 fn in_file(path: &Path, what: &str) -> Refused {

@@ -59,6 +59,7 @@ fn a_line_that_cannot_be_used_is_named_and_changes_nothing() {
         (vec![(0, "abc")], "t: must be a number"),
         (vec![(1, "0")], "dt"),
         (vec![(1, "0.1001")], "dt"),
+        (vec![(1, "1e-30")], "dt: must be from 0.00025 to 0.1 s"),
         (vec![(1, "-0.01")], "dt"),
         (vec![(3, "nan")], "x[1]: must be finite"),
         (vec![(4, "inf")], "x[2]: must be finite"),

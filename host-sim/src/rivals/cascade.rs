@@ -12,7 +12,7 @@
 //! rate       tau = J (K_w e + int(K_j e) - K_e w_f') + w x J w
 //! ```
 //!
-//! The rate integral is held while a rotor saturates, and taken in the less the faster the error. Thrust is |a_s| along
+//! The rate integral is held while a rotor saturates, and takes in less of a larger error. Thrust is |a_s| along
 //! z_d, as body z sees it, so that it does not push down while the vehicle is upside down. Added, since ours has it:
 //! the angular velocity of the reference as feed-forward, and its acceleration in the velocity's D. Gains stand before
 //! accelerations.
@@ -50,7 +50,7 @@ pub const NAMES: [&str; 18] = [
 /// Where a search starts: PX4's defaults, in accelerations.
 pub const START: [f64; 18] =
     [0.95, 1.0, 1.8, 0.4, 0.2, 4.0, 2.0, 0.01, 12.0, 3.0, 6.5, 0.4, 18.0, 6.0, 0.05, 4.0, 1.0, 100.0];
-/// What each of them follows.
+/// The quantity that each gain scales with.
 pub const PACES: [Pace; 18] = [
     Pace::Position(1),
     Pace::Position(1),
@@ -83,7 +83,7 @@ const RATE_ERROR_MAX: f64 = 6.98;
 /// Share of the thrust kept for moving across, however hard the vertical asks.
 const THRUST_KEPT: f64 = 0.3;
 
-/// The law and what it remembers.
+/// The law and its memory.
 #[derive(Debug, Clone)]
 pub struct Cascade {
     model: Model,

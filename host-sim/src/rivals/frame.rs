@@ -17,7 +17,7 @@
 use super::jet::Jet;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// What the nose keeps to.
+/// The rule for the nose's direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HeadingRule {
     /// The heading's projection onto the plane across the thrust.
@@ -40,7 +40,7 @@ pub struct Frame {
 /// A force per mass shorter than this, m/s^2, points nowhere; an x or y axis shorter than the other has no direction.
 const LEAST_FORCE: f64 = 1e-2;
 const LEAST_AXIS: f64 = 1e-2;
-/// An axis shorter than this is none at all.
+/// An axis shorter than this has no direction.
 const LEAST_LENGTH: f64 = 1e-9;
 
 impl Frame {
@@ -80,7 +80,7 @@ fn nearest(x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Rotation3<f6
     if length > LEAST_LENGTH {
         return Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x / length, y / length, *z]));
     }
-    // Nothing says it: of all that have this z, one near to level.
+    // Without a heading: of all attitudes with this z, one near level.
     let matrix = Matrix3::from_columns(&[*x, *y, *z]);
     Rotation3::from_matrix_eps(&matrix, LEAST_LENGTH, 50, Rotation3::identity())
 }
@@ -139,8 +139,8 @@ mod tests {
     #[test]
     fn axes_without_a_direction_become_a_rotation_all_the_same() {
         let forward = Jet::constant(Vector3::x());
-        // Along the heading, where nothing says where the nose should point; next to it, where it is said faintly; and
-        // far from it.
+        // Along the heading, where the nose's direction is undefined; next to it, where it is nearly so; and far from
+        // it.
         for across in [0.0, 1e-12, 1e-6, 1e-3, 0.1, 5.0] {
             for rule in [HeadingRule::Projected, HeadingRule::Horizontal] {
                 let force = Vector3::new(9.0, across, 0.0);

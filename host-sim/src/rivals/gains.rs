@@ -10,7 +10,7 @@
 //! period = 0.01               # between ticks, s
 //!
 //! [hummingbird.lee]
-//! cost = 9.4                  # what the search made of it
+//! cost = 9.4                  # the search's result
 //! k_x_across = 5.0
 //!
 //! [hummingbird.mellinger]
@@ -25,14 +25,13 @@ use super::pilot::model;
 use crate::flier::{LawChoice, OURS};
 use scenario::Scenario;
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
 /// Gains that were found with `host-sim compare --tune`, with the commands.
 pub const BUILT_IN: &str = include_str!("gains.toml");
 
-/// What messages call them.
+/// Their name in messages.
 const BUILT_IN_NAME: &str = "the built-in gains";
 
 /// The gains of every rival on one vehicle.
@@ -40,7 +39,7 @@ const BUILT_IN_NAME: &str = "the built-in gains";
 pub struct Set {
     /// Each rival's, in the order of its names, with what the search made of them.
     pub rivals: Vec<(Kind, Vec<f64>, f64)>,
-    /// Those of which a search found no gains that fly every trial to its end.
+    /// Rivals for which a search found no gains that fly every trial to its end.
     pub lost: Vec<Kind>,
 }
 
@@ -60,7 +59,7 @@ impl Set {
     /// The set in `text`, called `file` in messages, that was found for the vehicle of `scenario`.
     ///
     /// # Errors
-    /// If the text is no TOML, holds no table of that vehicle, or a rival's gains are not all there, or not positive.
+    /// If the text is no TOML, has no table of that vehicle, or if a rival's gains are incomplete or not positive.
     pub fn of(scenario: &Scenario, text: &str, file: &str) -> Result<Self, GainsError> {
         let failed = |what: String| GainsError(format!("{file}: {what}"));
         let document: DocumentMut =
@@ -118,7 +117,8 @@ impl Set {
     pub fn read(scenario: &Scenario, file: Option<&Path>) -> Result<Self, GainsError> {
         let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME) };
         let name = file.display().to_string();
-        let text = fs::read_to_string(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
+        let text =
+            scenario::text::read(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
         Self::of(scenario, &text, &name)
     }
 
@@ -153,7 +153,7 @@ impl Set {
         text
     }
 
-    /// Which rivals are left out, and why; none if all fly.
+    /// The rivals that are left out, and why; `None` if all fly.
     #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let names: Vec<&str> = self.lost.iter().map(|kind| kind.name()).collect();

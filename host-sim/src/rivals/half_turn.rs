@@ -1,5 +1,4 @@
-//! What an attitude law does about the half turn: whether it goes the long way round, and whether small noise can hold
-//! it there.
+//! An attitude law near the half turn: whether it goes the long way round, and whether small noise can hold it there.
 //!
 //! The paper's vehicle, exact and without rotors, hovers with Table I; the law's torque about body x is watched, and
 //! the roll counted on past half a turn.
@@ -41,7 +40,7 @@ pub struct Trial {
     duration: f64,
 }
 
-/// What a law did.
+/// The course of one trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// (s, rad): the roll, counted on past half a turn.
@@ -75,7 +74,7 @@ impl Trial {
         Self { roll: PI, noise: Noise::Drawn(deviation, seed), duration: 5.0 }
     }
 
-    /// Flies it; none if the law refuses a state or the motion diverges.
+    /// Flies it; `None` if the law refuses a state or the motion diverges.
     #[must_use]
     pub fn fly(&self, scenario: &Scenario, mut controller: Controller) -> Option<Course> {
         let mut start = scenario.clone();

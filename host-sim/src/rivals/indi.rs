@@ -5,15 +5,15 @@
 //! Systems Technology 29, 2021.
 //!
 //! ```text
-//! tau = tau_f + J (alpha_c - w_f')                                     both: what acts now, and what is missing
+//! tau = tau_f + J (alpha_c - w_f')                                     both: the acting torque, and the missing one
 //! alpha_c = w_ref' + K_w (w_ref - w) + K_q q_e                         q_e: the rotation vector of the error
 //! (tau b_z)_c = (tau b_z)_f + a_c - a_f                                Tal: the same for the force per mass
 //! a_c = a_d + K_p (p_d - p) + K_v (v_d - v)                            Tal, without its K_a
 //! ```
 //!
-//! _f is one low-pass for measurement and actuators alike, so that both are late alike (Smeur). What acts now is the
-//! command that the rotors could deliver, through the model's delay and lag, as the mean over the last period. Linear
-//! acceleration is differenced from the velocity: ours estimates forces from the same. w_ref and w_ref' are the
+//! _f is one low-pass for measurement and actuators alike, so that both are late alike (Smeur). The acting torque is
+//! the command that the rotors could deliver, through the model's delay and lag, as the mean over the last period.
+//! Linear acceleration is differenced from the velocity: ours estimates forces from the same. w_ref and w_ref' are the
 //! reference's, by flatness. Gains stand before accelerations.
 //!
 //! Home: known actuators, unknown forces and torques; wind, drag and a shifted centre of mass leave no offset.
@@ -41,13 +41,13 @@ pub const NAMES: [&str; 10] = [
 ];
 /// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
-/// What each of them follows.
+/// The quantity that each gain scales with.
 pub const PACES: [Pace; 10] = {
     let [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
     [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, Pace::Kept, Pace::Kept]
 };
 
-/// The law and what it remembers.
+/// The law and its memory.
 #[derive(Debug, Clone)]
 pub struct Indi {
     model: Model,

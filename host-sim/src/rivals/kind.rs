@@ -71,7 +71,7 @@ impl Kind {
         }
     }
 
-    /// The one of that name.
+    /// The rival of that name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
@@ -106,8 +106,8 @@ impl Kind {
         Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA }
     }
 
-    /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; none if there are too many or
-    /// too few of them, or the law is undefined.
+    /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; `None` if there are
+    /// too many or too few, or if the law is undefined.
     #[must_use]
     pub fn build(self, scenario: &Scenario, gains: &[f64]) -> Option<Box<dyn Rival>> {
         let model = model(scenario);
@@ -123,8 +123,8 @@ impl Kind {
         })
     }
 
-    /// A flight of it in the circumstances of `scenario`; none as in [`Self::build`]. What it knows of the vehicle is
-    /// what `knowledge` says: rotor lag and delay may differ in the circumstances.
+    /// A flight of it in the circumstances of `scenario`; none as in [`Self::build`]. It knows the vehicle as in
+    /// `knowledge`: rotor lag and delay may differ in the circumstances.
     #[must_use]
     pub fn flight(self, knowledge: &Scenario, scenario: &Scenario, gains: &[f64]) -> Option<Flight> {
         Some(Flight::of_rival(scenario, self.build(knowledge, gains)?))

@@ -90,8 +90,8 @@ impl Judging for RivalJudge<'_> {
 }
 
 /// Searches gains of every rival for the vehicle of `scenario`, with the same `effort` for each. The continuous law
-/// takes the memoryless one's, so that the two differ in nothing but their choice of quaternion. A rival of which no
-/// gains fly all trials to their end is left out of the set, and named there.
+/// takes the memoryless one's, so that the two differ in nothing but their choice of quaternion. If no gains of a
+/// rival fly all trials to their end, the set leaves the rival out and names it.
 ///
 /// # Errors
 /// Names the signal that came.

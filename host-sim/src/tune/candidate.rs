@@ -4,7 +4,7 @@
 //! radii, margins, the trials of [`super::trials`], the file's own flight. A verdict that fails says how far it got and
 //! by how much it missed, so that the search has a slope to follow.
 //!
-//! The gain margin is asked for twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
+//! The gain margin is required twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
 //! there the attitude loop's own gain dominates, and the position loop's hardly counts: alone, it would let the search
 //! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
@@ -21,12 +21,12 @@ use scenario::Scenario;
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
-/// By which share of its time a recovery must have ended.
+/// The share of its time in which a recovery must end.
 const RECOVERED_BY: f64 = 0.75;
-/// What a law that estimates may leave of a gust, m.
+/// The greatest offset after a gust under a law that estimates, m.
 const OFFSET: f64 = 0.01;
 
-/// What a candidate showed.
+/// The verdict on a candidate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// How far from acceptable: the number of the test that failed counted from the end, plus how much it missed by.
@@ -34,7 +34,7 @@ pub struct Verdict {
     pub violation: f64,
     /// Which test failed, in words.
     pub failed: Option<String>,
-    /// What the trials showed on the file's own model.
+    /// The trials' figures on the file's own model.
     pub shown: Shown,
     /// The mean of [`Shown::values`] over all models.
     pub mean: [f64; FIGURES.len()],
@@ -45,8 +45,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Of a candidate that passed every test, or the one that it failed: how many tests it had left, by how much it
-    /// missed, and which it was.
+    /// Of a candidate that passed every test; or of one that failed: the number of tests left, by how much it missed,
+    /// and which test failed.
     #[must_use]
     pub fn after(self, tests: Result<(), (u8, f64, String)>) -> Self {
         let Err((tests_left, missed, what)) = tests else {
@@ -57,7 +57,7 @@ impl Verdict {
         Self { violation, failed: Some(what), ..self }
     }
 
-    /// Of a candidate that nobody judged.
+    /// Of a candidate that was not judged.
     #[must_use]
     pub fn missing() -> Self {
         let failed = Some("not judged".to_owned());
@@ -71,7 +71,7 @@ impl Verdict {
         }
     }
 
-    /// Takes what the models showed, the file's own first.
+    /// Takes the models' figures, the file's own first.
     pub fn take(&mut self, shown: &[Shown]) {
         let mean = |of: &dyn Fn(&Shown) -> f64| shown.iter().map(of).sum::<f64>() / shown.len() as f64;
         self.shown = shown[0];
@@ -86,7 +86,7 @@ impl Verdict {
     }
 }
 
-/// Whoever judges points of a search space.
+/// A judge of points of a search space.
 pub trait Judging: Sync {
     /// Where the search starts.
     fn start(&self) -> Point;
@@ -95,7 +95,7 @@ pub trait Judging: Sync {
     fn judge(&self, point: &Point) -> Verdict;
 }
 
-/// What no trial showed.
+/// The figures without any trial.
 const NOTHING: Shown = Shown {
     height_lost: f64::INFINITY,
     recovered: f64::INFINITY,
@@ -227,7 +227,7 @@ impl Judging for Judge {
     }
 }
 
-/// Flies what is certified as `scenario` says; none if it cannot be flown to its end.
+/// Flies the certified law as `scenario` says; `None` if the flight ends early.
 fn fly(scenario: &Scenario, certified: &Certified) -> Option<Flown> {
     Flown::over(scenario, Flight::certified(scenario, certified).ok()?).ok()
 }

@@ -1,4 +1,4 @@
-//! Which of the extended law's constants somebody chose: the few from which all others follow by the formulas.
+//! The chosen constants of the extended law: the few from which all others follow by the formulas.
 
 use controller_core::extended::defaults::{self, Airframe, Given, NOTHING_GIVEN};
 use controller_core::extended::parameters::ExtendedParameters;
@@ -18,7 +18,7 @@ pub fn chosen(airframe: &Airframe, parameters: &ExtendedParameters) -> Given {
         more
     };
     let mut given = NOTHING_GIVEN;
-    // Each time the one that most others follow from.
+    // Each time the constant from which most others follow.
     loop {
         let candidates = differing(&given).into_iter().map(|place| with(&given, place));
         match candidates.min_by_key(|more| differing(more).len()) {
@@ -26,7 +26,7 @@ pub fn chosen(airframe: &Airframe, parameters: &ExtendedParameters) -> Given {
             None => break,
         }
     }
-    // What was needed only until a later one was there.
+    // Constants that a later choice made superfluous.
     loop {
         let fewer = (0..given.len()).filter(|&place| given[place].is_some()).map(|place| {
             let mut fewer = given;

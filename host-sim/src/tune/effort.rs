@@ -1,6 +1,6 @@
-//! How hard a search tries.
+//! The effort of a search.
 
-/// How hard to search.
+/// The effort of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Generations.
@@ -12,8 +12,7 @@ pub struct Effort {
 }
 
 impl Default for Effort {
-    /// What `host-sim tune` spends on our law and `host-sim compare` on each rival, unless they are asked for another
-    /// effort.
+    /// The default of `host-sim tune` for our law and of `host-sim compare` for each rival.
     fn default() -> Self {
         Self { generations: 60, population: 24, seed: 1 }
     }

@@ -45,7 +45,7 @@ impl Evolution {
         Self { members, start: own, random, judged: 1 + judged }
     }
 
-    /// What the start showed.
+    /// The start's verdict.
     #[must_use]
     pub fn start(&self) -> &Verdict {
         &self.start
@@ -105,7 +105,7 @@ impl Evolution {
     }
 }
 
-/// Judges all points, or as many as an interrupt leaves time for; and how many those were.
+/// Judges all points, or those before an interrupt; and their number.
 fn judge_all(judge: &impl Judging, points: Vec<Point>, interrupt: &Interrupt) -> (Vec<(Point, Verdict)>, u64) {
     let judged = |point: Point| {
         let verdict = interrupt.signal().is_none().then(|| judge.judge(&point));

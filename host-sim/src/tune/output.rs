@@ -1,5 +1,5 @@
 //! The tuned scenario as a file: the original text with its constants, thrust floor and name replaced, comments kept.
-//! Of the extended law only what does not follow from the vehicle's numbers is written.
+//! Of the extended law's constants it holds only those that do not follow from the vehicle's numbers.
 
 use super::Tuned;
 use super::chosen::chosen;
@@ -10,7 +10,7 @@ use scenario::vehicle::named;
 use scenario::{Scenario, bounds};
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
-/// How the line begins that says what was achieved.
+/// The beginning of the line with the tuned figures.
 const HEAD: &str = "# Tuned:";
 
 /// `original` with the tuned constants, headed by what they achieve.
@@ -25,7 +25,7 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
         set(&mut document, section, key, constant.map(shortest));
     }
     if let Some(table) = document.get_mut("gains").and_then(Item::as_table_mut) {
-        // Whatever stood here was said of other gains.
+        // An older comment here is about other gains.
         table.decor_mut().set_suffix("                               # found by `host-sim tune`");
     }
     if scenario.configuration.paper().is_none() {
@@ -39,12 +39,12 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
             short(tuned.verdict.shown.gust),
             100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
         );
-        // A file that was tuned before loses what it said then.
+        // A file that was tuned before loses its older line.
         let before = text.strip_prefix(HEAD).and_then(|said| said.split_once('\n'));
         head + before.map_or(text, |(_, rest)| rest)
     };
     let text = said(&document.to_string());
-    // Bounds that follow from the constants may be others now than those that were judged.
+    // Bounds that follow from the constants may differ now from the judged ones.
     let judged = scenario.configuration.bounds();
     if Scenario::parse(&text, "").is_ok_and(|read| read.configuration.bounds() == judged) {
         return Ok(text);
@@ -57,7 +57,7 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     Ok(said(&document.to_string()))
 }
 
-/// Every constant that a search may change, by section and key: none for one that follows from the vehicle's numbers.
+/// Every constant that a search may change, by section and key; `None` if it follows from the vehicle's numbers.
 fn constants(scenario: &Scenario) -> Vec<(&'static str, &'static str, Option<f32>)> {
     match (scenario.configuration.law(), scenario.airframe()) {
         (LawParameters::Extended(law), Some(airframe)) => {
@@ -79,7 +79,7 @@ fn set(document: &mut DocumentMut, section: &str, key: &str, constant: Option<f6
             let table = document.entry(section).or_insert_with(|| Item::Table(Table::new()));
             let before =
                 table.get(key).and_then(|item| item.as_float().or(item.as_integer().map(|whole| whole as f64)));
-            // What stays the same keeps what is said of it.
+            // An unchanged value keeps its comment.
             if before.is_none_or(|before| before as f32 != number as f32) {
                 table[key] = value(number);
             }

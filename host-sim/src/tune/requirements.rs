@@ -1,14 +1,14 @@
-//! What is asked of gains that a search may present.
+//! The requirements on the gains that a search may present.
 
 use scenario::stability::LoopMargin;
 
 /// Longest recovery that a search may fly thousands of times, s.
 pub const GREATEST_RECOVERY: f64 = 3600.0;
-/// Shortest recovery, s: in less a vehicle that is upside down has hardly begun to fall, and has not been brought back
-/// by anything.
+/// Shortest recovery, s: in less time a vehicle that is upside down has hardly begun to fall, and no law could
+/// have brought it back.
 pub const LEAST_RECOVERY: f64 = 2.0;
 
-/// What every accepted candidate meets.
+/// The requirements on every accepted candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirements {
     /// Least relative margin of every inequality.
@@ -26,7 +26,7 @@ pub struct Requirements {
 }
 
 impl Default for Requirements {
-    /// What `host-sim tune` asks for unless it is told otherwise.
+    /// The defaults of `host-sim tune`.
     fn default() -> Self {
         Self {
             margin: 0.0,

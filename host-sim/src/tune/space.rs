@@ -5,8 +5,8 @@
 //!
 //! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`]
 //! marks; those of `ALONG` move with them, and all others follow by the formulas, unless the file chose them. So a
-//! candidate spends no more than there is. A factor of one leaves a constant to the formulas as well: the start is the
-//! file's law to the bit.
+//! candidate uses no more torque and thrust than the rotors have. A factor of one leaves a constant to the formulas as
+//! well: the start is the file's law to the bit.
 
 use super::chosen::chosen;
 use controller_core::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
@@ -18,8 +18,8 @@ use scenario::Scenario;
 /// A point of the search space.
 pub type Point = Vec<f64>;
 
-/// Constants that move with a searched one: with which power of its factor. w, k_t and r_0 together are the stiffness
-/// of the tilt.
+/// Constants that move with a searched one, each with the power of its factor. w, k_t and r_0 together are the
+/// stiffness of the tilt.
 const ALONG: [(&str, &str, f64); 4] = [
     ("k_v_vertical", "k_p_vertical", 2.0),
     ("w", "k_t", 1.0),
@@ -31,15 +31,15 @@ const ALONG: [(&str, &str, f64); 4] = [
 #[derive(Clone)]
 pub struct Space {
     scenario: Scenario,
-    /// What the file chose of the extended law's constants.
+    /// The extended law's constants that the file gives.
     chosen: Given,
-    /// The greatest thrust floor, as a share of what is admissible; none if the projection may not be used.
+    /// The greatest thrust floor, as a share of the admissible one; `None` if the projection may not be used.
     floor: Option<f32>,
 }
 
 impl Space {
-    /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of what is
-    /// admissible, or none.
+    /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of the
+    /// admissible one, or none.
     #[must_use]
     pub fn new(scenario: &Scenario, floor: Option<f32>) -> Self {
         let own = match (scenario.configuration.law(), scenario.airframe()) {
@@ -115,7 +115,7 @@ impl Space {
     }
 }
 
-/// Four significant digits, so that what is written is short and is what was judged.
+/// Four significant digits, so that the file is short and holds exactly the judged values.
 fn rounded(value: f64) -> f32 {
     format!("{value:.3e}").parse().unwrap_or(value as f32)
 }

@@ -1,19 +1,19 @@
-//! The flights a candidate is judged by, and what a pilot feels of them: what `compare` measures.
+//! The flights that judge a candidate, and their figures, which a pilot feels and `compare` measures.
 //!
-//! | trial | what is asked | what counts |
+//! | trial | task | figures |
 //! |---|---|---|
 //! | recovery | from roll -179 degrees, yaw 100 degrees off, at rest: hover there | height lost, m; time until within 0.1 m for good, and until within 0.1 rad of yaw, s |
 //! | gust | hover; 5 m/s of wind begin, 2.5 m/s^2 unless the file's `[drag]` says otherwise | deepest excursion, m; offset left at the end, m |
 //! | step | hover 1 m from where it is | time until within 0.1 m for good, s |
-//! | noise | hover with gyro 0.01 rad/s, pose 2 mm and 0.2 degrees, all 20 ms late | change of a rotor's command per tick, of what it hovers with, rms; position, m, rms |
+//! | noise | hover with gyro 0.01 rad/s, pose 2 mm and 0.2 degrees, all 20 ms late | change of a rotor's command per tick, as a share of its thrust in hover, rms; position, m, rms |
 //! | storm | hover; 12 m/s of wind begin | deepest excursion, m |
 //! | far step | hover 10 m away, across and up | time until within 0.1 m for good, s |
 //! | weak rotors | 1 m step with rotors that deliver 60 % | time until within 0.1 m for good, s |
 //! | heavy | the recovery with 1.6 times the mass | height lost, m; time until within 0.1 m for good, s |
 //!
 //! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`MODELS`]: the vehicle as the file
-//! says, and as it may really be. The last four are beyond what a law is made for; they are flown on the file's own
-//! model only.
+//! says, and as it may really be. The last four go beyond a law's promise; they are flown on the file's own model
+//! only.
 
 use crate::course::Course;
 use crate::flight::Flight;
@@ -30,23 +30,23 @@ use scenario::reality::wind::{Gust, Shape, Wind};
 use scenario::timing::Timing;
 use std::sync::Arc;
 
-/// How near is there, m.
+/// The distance that counts as arrived, m.
 const NEAR: f64 = 0.1;
-/// When the gust begins, s.
+/// The time at which the gust begins, s.
 const GUST_AT: f64 = 1.0;
-/// Wind of the gust, m/s, and what it does to a vehicle of whose drag the file says nothing, 1/s.
+/// Wind of the gust, m/s, and the drag of a vehicle whose file gives none, 1/s.
 const GUST: f64 = 5.0;
 const GUST_DRAG: f64 = 0.5;
 /// Wind of the storm, m/s.
 const STORM: f64 = 12.0;
-/// How long each trial lasts at most, s.
+/// The greatest duration of each trial, s.
 const GUST_TIME: f64 = 6.0;
 const STORM_TIME: f64 = 8.0;
 const STEP_TIME: f64 = 12.0;
 const NOISE_TIME: f64 = 4.0;
-/// A flight in calm air is over once position and yaw have been settled for so long, s.
+/// A flight in calm air ends once position and yaw have been settled for this time, s.
 const REST: f64 = 2.0;
-/// What weak rotors deliver, and how many times its mass a heavy vehicle has.
+/// The thrust scale of weak rotors, and the mass factor of a heavy vehicle.
 const WEAK: f64 = 0.6;
 const HEAVY: f64 = 1.6;
 
@@ -59,7 +59,7 @@ const OFF_CENTRE_MAX: f64 = 0.03;
 pub struct Model {
     /// Factor on the mass.
     pub mass: f64,
-    /// What rotors deliver.
+    /// The thrust scale.
     pub thrust: f64,
     /// Centre of mass, m, body; on small vehicles nearer, by `OFF_CENTRE_MAX`.
     pub centre_of_mass: [f64; 2],
@@ -78,7 +78,7 @@ pub const MODELS: [Model; 4] = [
     Model { mass: 1.0, thrust: 1.0, centre_of_mass: [0.0, 0.0], lag: 1.5, delay: 0.005 },
 ];
 
-/// What the trials showed.
+/// The trials' figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
     /// Height lost in the recovery, m.
@@ -89,21 +89,21 @@ pub struct Shown {
     pub turned: f64,
     /// Deepest excursion in the gust, m.
     pub gust: f64,
-    /// What is left of it at the end, m.
+    /// The offset at the gust's end, m.
     pub offset: f64,
     /// Until the step is within 0.1 m for good, s.
     pub step: f64,
-    /// Change of a rotor's command per tick under noise, rms, as a share of what it hovers with; zero without rotors.
+    /// Change of a rotor's command per tick under noise, rms, as a share of its thrust in hover; zero without rotors.
     pub activity: f64,
     /// Position under noise, m, rms.
     pub noise: f64,
-    /// What the file's own model shows beyond what a law is made for; none of another model.
+    /// The figures beyond a law's promise, on the file's own model; `None` for another model.
     pub beyond: Option<Beyond>,
     /// Commands that a limit cut, in all trials.
     pub clipped: u64,
 }
 
-/// What the trials showed that a law is not made for.
+/// The figures of the trials beyond a law's promise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beyond {
     /// Deepest excursion in the storm, m.
@@ -118,7 +118,7 @@ pub struct Beyond {
     pub heavy: f64,
 }
 
-/// A figure: its name, its unit, where a pilot would begin to be content, and its weight.
+/// A figure: its name, its unit, the value with which a pilot begins to be content, and its weight.
 pub type Figure = (&'static str, &'static str, f64, f64);
 
 /// The figures that every model shows, as [`Shown::values`].
@@ -132,7 +132,7 @@ pub const FIGURES: [Figure; 7] = [
     ("noise: rotor command's change a tick", "of hovering", 0.05, 0.5),
 ];
 
-/// Those that only the file's own model shows, as [`Beyond::values`].
+/// The figures of the file's own model alone, as [`Beyond::values`].
 pub const BEYOND: [Figure; 5] = [
     ("storm of 12 m/s: excursion", "m", 2.0, 0.5),
     ("step of 10 m: there after", "s", 5.0, 1.0),
@@ -141,8 +141,8 @@ pub const BEYOND: [Figure; 5] = [
     ("upside down, heavy: back after", "s", 8.0, 0.5),
 ];
 
-/// No figure counts more than so many times what a pilot would be content with: a vehicle that cannot is judged by the
-/// rest.
+/// No figure counts more than this many times its content value, so that the other figures judge a vehicle that cannot
+/// fly one of the trials.
 const MOST: f64 = 10.0;
 
 /// The weighted sum of `values`.
@@ -166,7 +166,7 @@ impl Shown {
         [self.height_lost, self.recovered, self.turned, self.gust, self.step, self.noise, self.activity]
     }
 
-    /// The weighted sum that a search makes small. What only one of the [`MODELS`] shows counts as if all did.
+    /// The weighted sum that a search minimises. A figure of only one of the [`MODELS`] counts as if all had it.
     #[must_use]
     pub fn cost(&self) -> f64 {
         let beyond = self.beyond.map_or(0.0, |beyond| weighted(&BEYOND, &beyond.values()));
@@ -175,7 +175,7 @@ impl Shown {
 }
 
 /// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a
-/// flight of what is judged in the circumstances that it is given. None if one of them cannot be flown to its end.
+/// flight of the judged law in given circumstances. `None` if one of the flights ends early.
 #[must_use]
 pub fn show(
     scenario: &Scenario,
@@ -242,7 +242,7 @@ pub fn show(
     })
 }
 
-/// What each rotor hovers with, N; of a vehicle without any as if it had four.
+/// Each rotor's thrust in hover, N; a vehicle without rotors counts as if it had four.
 fn hovering_thrust(scenario: &Scenario) -> f64 {
     let vehicle = scenario.configuration.vehicle();
     let rotors = scenario.configuration.rotors().map_or(4, |rotors| rotors.len());
@@ -294,7 +294,7 @@ fn really(scenario: &Scenario, model: &Model) -> Scenario {
     }
     // As in `compare`.
     (real.reality.wind, real.reality.disturbance, real.reality.failure) = (None, None, None);
-    // What a state that is estimated costs, every candidate pays alike.
+    // An estimated state costs every candidate alike.
     real.reality.estimator = None;
     real
 }
@@ -308,7 +308,7 @@ fn off_centre(scenario: &Scenario, model: &Model) -> Vector3<f64> {
     off.cap_magnitude(OFF_CENTRE_MAX * arm)
 }
 
-/// What the trial under noise is told of the state.
+/// The measured state of the trial under noise.
 #[must_use]
 pub fn noise(period: f64) -> Sensors {
     Sensors {
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn a_small_vehicle_is_as_far_off_centre_as_a_large_one_for_its_size() {
         let large = Scenario::parse(scenario::STUDY, "study.toml").unwrap();
-        // Short arms turn it too weakly for the reserve that the file asks for.
+        // Short arms give too little torque for the file's reserve.
         let small = scenario::STUDY.replace("0.120208", "0.0300520").replace("turn_reserve", "# turn_reserve");
         let small = Scenario::parse(&small, "small.toml").unwrap();
         let [of_large, of_small] = [&large, &small].map(|scenario| off_centre(scenario, &MODELS[1]));

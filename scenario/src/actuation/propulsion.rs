@@ -86,7 +86,7 @@ impl Propulsion {
         ParameterError { field, reason }
     }
 
-    /// The unit of what the file says of the thrust's range.
+    /// The unit of the thrust range in the file.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         match self.form {

@@ -162,6 +162,26 @@ fn a_motion_beyond_all_numbers_is_refused_and_leaves_no_trace() {
 }
 
 #[test]
+fn a_state_that_jumps_teaches_nothing() {
+    let mut controller = controller(&example::parameters());
+    let mut state = resting(Vector3::zeros());
+    for _ in 0..50 {
+        state.velocity.x += 0.01;
+        controller.step(&state, &hover()).unwrap();
+    }
+    let learnt = controller.memory().averages;
+    assert!(learnt.force.x > 0.5);
+    for absurd in
+        [State { velocity: Vector3::repeat(1e10), ..state }, State { angular_velocity: Vector3::repeat(1e8), ..state }]
+    {
+        for state in [absurd, state] {
+            controller.step(&state, &hover()).unwrap();
+            assert_eq!(controller.memory().averages, learnt);
+        }
+    }
+}
+
+#[test]
 fn held_estimates_stay_as_they_are() {
     let mut controller = controller(&example::parameters());
     let mut state = resting(Vector3::zeros());

@@ -1,4 +1,4 @@
-//! The two forms of what a rotor delivers, and mixtures of them.
+//! The two forms of a rotor's thrust and torque, and mixtures of them.
 
 use crate::{PAPER, Scenario};
 use controller_core::allocation::Rotor;

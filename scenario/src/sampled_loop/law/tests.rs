@@ -137,8 +137,8 @@ fn the_linear_law_commands_what_the_flown_law_commands() {
         .map(|(name, delay)| (name, study.replace("delay = 0.010", &format!("delay = {delay}"))));
     let texts = FILES.iter().copied().chain(late.iter().map(|(name, text)| (*name, text.as_str())));
     for (name, text) in texts {
-        // The scale is learnt from products of what varies, which no small motion of a closed loop shows; this one is
-        // not closed.
+        // The scale is learnt from products of variations, which are of second order in small motions; this loop is not
+        // closed.
         let text = estimating(text, "scale_rate = 0.0");
         let whole = Scenario::parse(&text, name).unwrap();
         // An attitude loop alone has no position, so no force is estimated either.

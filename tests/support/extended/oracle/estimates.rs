@@ -27,6 +27,10 @@ impl Law {
         let weight = |bandwidth: f64| 1.0 - (-bandwidth * h).exp();
         let drag = double(p.drag_across) * (t.velocity + last.velocity) / 2.0;
         let made = (t.velocity - last.velocity) / h + Vector3::new(drag.x, drag.y, self.gravity);
+        // The state has jumped: nothing is learnt.
+        if made.norm() >= 1e3 || (t.omega - last.omega).norm() >= 1e3 {
+            return before;
+        }
         let commanded = (last.axis + axis) / 2.0 * (t.acted[0] / self.mass);
 
         // They begin with the first interval.
