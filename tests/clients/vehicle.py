@@ -17,7 +17,7 @@ from pymavlink.dialects.v20 import common as m  # noqa: E402
 # Whether the firmware's image flies on an emulated processor (.ci/clients emulated), not its library on this desk.
 EMULATED = "IMAGE" in os.environ
 
-# Whether frames are signed (.ci/clients signed), and with what: MAVProxy and QGroundControl make keys of words in this way.
+# Whether frames are signed (.ci/clients signed), and with what: MAVProxy makes keys of words in this way.
 SIGNED = "SIGNED" in os.environ
 PASSPHRASE = "hover"
 KEY = hashlib.sha256(PASSPHRASE.encode()).digest()

@@ -1,4 +1,4 @@
-"""Signed frames, by pymavlink's own signing: who has the key flies; forgers, strangers and replays do nothing, and are told.
+"""Signed frames, by pymavlink's own signing: who has the key flies; forgers, strangers and replays do nothing.
 
 Needs SIGNED=1: `.ci/clients signed signing`.
 """
@@ -54,6 +54,10 @@ class Station:
         while time.monotonic() < end:
             self.step()
 
+    def wait_for(self, text, patience):
+        """Goes on, heartbeats and all, until the vehicle has said it."""
+        self.until(lambda _: self.flown.said(text), patience, text)
+
     def ask(self, number, *parameters):
         self.line.mav.command_long_send(1, 1, number, 0, *parameters, *[0.0] * (7 - len(parameters)))
 
@@ -89,17 +93,17 @@ def only_signed(flown, station):
 
 def flight(flown, station):
     """Who has the key arms, takes off, and lands."""
-    flown.wait_for("ready", 20)
+    station.wait_for("ready", 20)
     assert station.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
     assert station.command(m.MAV_CMD_NAV_TAKEOFF) == ACCEPTED
-    flown.wait_for("Take-off over", 20)
+    station.wait_for("Take-off over", 20)
     # The order of a stranger with force, in the air: the same bytes with the key would stop the motors.
     for key in (None, bytes(32 * [7])):
         Station(flown, key).ask(m.MAV_CMD_COMPONENT_ARM_DISARM, 0, 21196)
     station.rest(1.0)
     assert station.armed
     assert station.command(m.MAV_CMD_NAV_LAND) == ACCEPTED
-    flown.wait_for("Landed: disarmed", 20)
+    station.wait_for("Landed: disarmed", 20)
     station.until(lambda _: not station.armed, 5, "disarmed")
 
 
@@ -136,7 +140,7 @@ def main():
         with Desk(SPEED, *parameters) as flown:
             station = Station(flown)
             station.until(lambda message: message is not None, 10, "the vehicle is heard")
-            flown.wait_for("ready", 20)
+            station.wait_for("ready", 20)
             station.sent = recorded
             replays(flown, station)
             assert station.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED

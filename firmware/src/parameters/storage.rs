@@ -40,6 +40,8 @@ impl<F: Flash> Storage<F> {
         let mut signing = [0; WORDS];
         if journal.read(Kind::Signing, &mut signing).is_ok() {
             shared.signing.restore(&signing);
+            // Its stamps are to be kept ahead before anything flies.
+            shared.parameters.save_soon();
         }
         if found.is_err() {
             shared.announce(Event::new(Severity::Warning, "Parameters: stored values unusable, defaults taken"));

@@ -130,3 +130,41 @@ fn a_record_is_erased_no_sooner_than_there_is_no_other_place() {
     // One sector is full, the other has the newest.
     assert!(first.iter().zip(&both).filter(|(old, new)| old != new).count() <= 64);
 }
+
+#[test]
+fn either_kind_survives_a_cut_at_any_word_while_the_other_is_saved() {
+    fn read(chip: &RefCell<Chip>, kind: Kind) -> [u32; 3] {
+        let mut words = [0; 3];
+        let _ = Journal::open(Words::<32>(chip)).0.read(kind, &mut words);
+        words
+    }
+    fn save(chip: &RefCell<Chip>, kind: Kind, value: u32) -> bool {
+        let mut journal = Journal::open(Words::<32>(chip)).0;
+        (0..2).any(|_| journal.append(kind, &[value; 3]).is_ok())
+    }
+    const KEPT: u32 = 1_000;
+    for (kept, saved) in [(Kind::Signing, Kind::Parameters), (Kind::Parameters, Kind::Signing)] {
+        let chip = Chip::erased();
+        assert!(save(&chip, kept, KEPT));
+        for round in 1..2 * RECORDS as u32 + 3 {
+            for torn in TORN {
+                for power in 1.. {
+                    let cut = chip.clone();
+                    (cut.borrow_mut().power, cut.borrow_mut().torn) = (power, torn);
+                    let done = save(&cut, saved, round);
+                    let whole = cut.borrow().power > 0;
+                    cut.borrow_mut().power = usize::MAX;
+                    let found = read(&cut, saved);
+                    assert_eq!(read(&cut, kept), [KEPT; 3], "{torn:?}");
+                    assert!(found == [round; 3] || found == [round - 1; 3] && !done, "{found:?}, {torn:?}");
+                    assert!(save(&cut, saved, round + KEPT), "no room after a cut, {torn:?}");
+                    assert_eq!((read(&cut, kept), read(&cut, saved)), ([KEPT; 3], [round + KEPT; 3]), "{torn:?}");
+                    if whole {
+                        break;
+                    }
+                }
+            }
+            assert!(save(&chip, saved, round));
+        }
+    }
+}

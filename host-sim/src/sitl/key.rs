@@ -24,7 +24,7 @@ pub fn read(path: &Path) -> Result<Key, String> {
     parsed(text.trim_ascii()).ok_or_else(|| {
         let digits = 2 * KEY;
         format!(
-            "--signing-key {}: must hold {digits} hexadecimal digits, not all of them 0; 'openssl rand -hex {KEY}' makes some",
+            "--signing-key {}: must hold {digits} hexadecimal digits, not all 0; 'openssl rand -hex {KEY}' makes some",
             path.display()
         )
     })
