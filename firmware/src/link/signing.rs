@@ -136,6 +136,7 @@ impl State {
         Self { key: None, newest: 0, since: 0, streams, floor: 0, kept: 0, changed: false }
     }
 
+    #[inline(never)]
     fn clock(&self, now: u64) -> Stamp {
         self.newest.saturating_add(now.saturating_sub(self.since) / 10)
     }

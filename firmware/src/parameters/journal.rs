@@ -113,29 +113,32 @@ impl<F: Flash> Journal<F> {
             self.next = other * F::RECORDS;
         }
         // What would be left behind in the other sector.
-        let left = 1 - kind as usize;
-        if let Some(place) = self.newest[left].filter(|place| place / F::RECORDS != self.next / F::RECORDS) {
-            let record = self.flash.read(place)?;
-            self.write(left, record)?;
+        let left = match kind {
+            Kind::Parameters => Kind::Signing,
+            Kind::Signing => Kind::Parameters,
+        };
+        if let Some(place) = self.newest[left as usize].filter(|place| place / F::RECORDS != self.next / F::RECORDS) {
+            let mut record = self.flash.read(place)?;
+            self.write(left, &mut record)?;
         }
         let mut record = [BLANK; _];
         record[1] = words.len() as u32;
         record[VALUES..VALUES_END].iter_mut().zip(words).for_each(|(place, word)| *place = *word);
-        self.write(kind as usize, record)
+        self.write(kind, &mut record)
     }
 
     /// Writes a record to the next place, with a number of its own.
-    fn write(&mut self, kind: usize, mut record: Record) -> Result<(), Fault> {
+    fn write(&mut self, kind: Kind, record: &mut Record) -> Result<(), Fault> {
         let place = self.next;
         self.next += 1;
         self.number = self.number.wrapping_add(1);
         record[0] = self.number;
-        record[VALUES_END] = checksum(&record) ^ SEALS[kind];
-        self.flash.write(place, &record)?;
-        if self.flash.read(place)? != record {
+        record[VALUES_END] = checksum(record) ^ SEALS[kind as usize];
+        self.flash.write(place, record)?;
+        if self.flash.read(place)? != *record {
             return Err(Fault);
         }
-        (self.newest[kind], self.sector) = (Some(place), place / F::RECORDS);
+        (self.newest[kind as usize], self.sector) = (Some(place), place / F::RECORDS);
         Ok(())
     }
 }

@@ -25,7 +25,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         if !matches!(frame.message, HEARTBEAT_DATA::ID | RADIO_STATUS_DATA::ID) {
             self.refused();
-            self.signature_refused.warn(shared, frame.time, refusal);
+            self.signature_refused.warn(shared, frame.time, format_args!("{refusal}"));
         }
         false
     }
