@@ -5,7 +5,7 @@
 //! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. A vehicle that stands on the ground does not
 //! fly: it is away from its reference wherever that is.
 //!
-//! A flight is *there* once it has been near in both for [`THERE_FOR`]. From then on it is on its way with its
+//! A flight is *there* once it has been near in both for a second. From then on it is on its way with its
 //! reference, and the greatest distance from it counts as tracking error: before, it recovers or approaches.
 
 use crate::flight::{Flight, FlightError, Tick};

@@ -69,11 +69,10 @@ impl Campaign {
     }
 }
 
-/// Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same
-/// bytes.
+/// Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
 ///
-/// The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any
-/// interruption give the same. What is there already is not flown again.
+/// The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any interruption
+/// give the same. What is there already is not flown again.
 ///
 /// Args:
 ///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.

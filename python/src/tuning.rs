@@ -68,8 +68,7 @@ impl Tuned {
     }
 }
 
-/// Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As
-/// `host-sim tune`.
+/// Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As `host-sim tune`.
 ///
 /// Args:
 ///     name: of the tuned scenario; left out: its own with `-tuned`.
@@ -84,11 +83,10 @@ impl Tuned {
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(60), population=Whole::of(24), seed=Whole::of(1),
-    margin=0.0, gain_margin=1.75, delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0,
-    projection=true),
-    text_signature = "(scenario, *, name=None, generations=60, population=24, seed=1, margin=0.0, gain_margin=1.75, \
-delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0, projection=True)")]
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(60), population=Whole::of(24), seed=Whole::of(1), margin=0.0, gain_margin=1.75,
+    delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0, projection=true),
+    text_signature = "(scenario, *, name=None, generations=60, population=24, seed=1, margin=0.0, gain_margin=1.75, delay_margin=0.003, \
+position_error=0.02, mrp_error=0.01, recovery=20.0, projection=True)")]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn tune(
     py: Python<'_>,
