@@ -14,14 +14,15 @@
 //! | [`port`] | which of two lines it is on |
 //! | [`plans`], [`files`] | answers to clients that ask for missions and files |
 //! | [`acknowledgement`] | answers to commands |
+//! | [`signing`] | who may speak: signed frames |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames
 //! of both protocol versions are understood, version 2 is sent, without extension fields but those of [`plans`] and
-//! [`acknowledgement`]. Nothing is signed: whoever is on the line commands. What a message's fields are is the
-//! `mavlink` crate's to say: only the types that matter here are decoded, each by itself, because matching on all
-//! messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect does not know (a
-//! frame, a command, a type) is not decoded.
+//! [`acknowledgement`]. Without a key nothing is signed, and whoever is on the line commands. What a message's fields
+//! are is the `mavlink` crate's to say: only the types that matter here are decoded, each by itself, because matching on
+//! all messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect does not know
+//! (a frame, a command, a type) is none.
 
 pub mod acknowledgement;
 pub mod command;
@@ -37,6 +38,7 @@ pub mod receive;
 pub mod sender_clock;
 pub mod set_mode;
 pub mod setpoint;
+pub mod signing;
 pub mod streams;
 pub mod telemetry;
 pub mod time_sync;

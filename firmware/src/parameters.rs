@@ -171,6 +171,11 @@ impl<M: RawMutex> Parameters<M> {
         Ok(())
     }
 
+    /// Has storage look for something to save.
+    pub(crate) fn save_soon(&self) {
+        self.changed.signal(());
+    }
+
     fn put(&self, name: Name, value: f32) {
         self.values[name as usize].store(value.to_bits(), Ordering::Relaxed);
     }

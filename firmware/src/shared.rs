@@ -35,6 +35,7 @@
 //! | card | [`Shared::card`] | link, status | [`CARD_SILENCE`] |
 //! | link, and back | [`Shared::library`]: what is on the card | card, and back | until the next question |
 //! | parameters | [`Shared::parameters`] | every task | the present values |
+//! | link, and back | [`Shared::signing`]: the key, and what was signed with it | link, parameters | the present state |
 //!
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against
 //! the control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
@@ -63,6 +64,7 @@ pub use requests::{REQUESTS, Requests};
 use crate::last_words::LastWords;
 use self::lately::Lately;
 use crate::link::origin::Origin;
+use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
 use controller_core::estimator::{Increment, PoseMeasurement};
@@ -158,6 +160,8 @@ pub struct Shared<M: RawMutex> {
     pub outgoing: Signal<M, ()>,
     /// What may be set from the ground.
     pub parameters: Parameters<M>,
+    /// Who may speak on the link. Set its key with [`Self::set_signing`].
+    pub signing: Signing<M>,
     /// The last seconds of the last flight: control writes, the link reads.
     pub recorder: Recorder<M>,
     /// The memory card, where the board has one.
@@ -207,6 +211,7 @@ impl<M: RawMutex> Shared<M> {
             replies: Queue::new(),
             outgoing: Signal::new(),
             parameters: Parameters::new(),
+            signing: Signing::new(),
             recorder: Recorder::new(),
             card: CardStatus::new(),
             library: Library::new(),
@@ -296,6 +301,12 @@ impl<M: RawMutex> Shared<M> {
     #[must_use]
     pub fn lost_events(&self) -> u32 {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Has frames signed with a key from `now`, us, on, or not any more, and keeps that: see [`Signing::set`].
+    pub fn set_signing(&self, key: Option<Key>, stamp: Stamp, now: u64) {
+        self.signing.set(key, stamp, now);
+        self.parameters.save_soon();
     }
 
     /// Whether somebody has something to do during which nothing may begin to turn.

@@ -13,6 +13,7 @@
 //! | [`pace`] | the vehicle's time against everybody else's |
 //! | [`faults`] | what is to fail, and when |
 //! | [`flash`] | where parameters are kept |
+//! | [`key`] | what frames are signed with |
 //! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
@@ -22,6 +23,7 @@
 pub mod clock;
 pub mod faults;
 pub mod flash;
+pub mod key;
 pub mod line;
 pub mod pace;
 pub mod port;
@@ -41,6 +43,7 @@ use faults::{Fault, Faults, Part};
 use firmware::control::Control;
 use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
+use firmware::link::signing::Key;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT};
@@ -84,6 +87,8 @@ pub struct Session {
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,
+    /// What frames are signed with.
+    pub signing_key: Option<Key>,
     /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
     pub recording: Option<(PathBuf, String)>,
 }
@@ -200,6 +205,10 @@ impl Sitl {
             restart: Rc::default(),
         };
         sitl.start().map_err(|error| in_file(error.to_string()))?;
+        if let Some(key) = session.signing_key {
+            sitl.shared.set_signing(Some(key), key::now(), 0);
+            sitl.world.sign(key, key::now());
+        }
         Ok((sitl, warning))
     }
 

@@ -1,5 +1,6 @@
 """A simulated vehicle for one client, on ports of its own, and its true end: the firmware on this desk, or on an emulated board."""
 
+import hashlib
 import os
 import re
 import signal
@@ -15,6 +16,11 @@ from pymavlink.dialects.v20 import common as m  # noqa: E402
 
 # Whether the firmware's image flies on an emulated processor (.ci/clients emulated), not its library on this desk.
 EMULATED = "IMAGE" in os.environ
+
+# Whether frames are signed (.ci/clients signed), and with what: MAVProxy makes keys of words in this way.
+SIGNED = "SIGNED" in os.environ
+PASSPHRASE = "hover"
+KEY = hashlib.sha256(PASSPHRASE.encode()).digest()
 
 # The fastest that the emulated board's time passes, by this desk's: an idle machine with two processors keeps it. A busy one is slower,
 # and the client does not know.
@@ -41,6 +47,31 @@ def free_ports(count, kind=socket.SOCK_DGRAM):
     for one in sockets:
         one.close()
     return ports
+
+
+def key_file(key=KEY):
+    """A file with a key, for `sitl --signing-key`; it is there as long as what is returned."""
+    file = tempfile.NamedTemporaryFile("w", suffix=".key")
+    file.write(key.hex())
+    file.flush()
+    return file
+
+
+def signing(line):
+    """A pymavlink connection that signs, if frames are signed."""
+    if SIGNED:
+        line.setup_signing(KEY, sign_outgoing=True)
+    return line
+
+
+def accept_unsigned(flown):
+    """Has the vehicle take what is not signed as well: for clients that cannot sign."""
+    line = signing(mavutil.mavlink_connection(f"udpin:127.0.0.1:{flown.ground}", source_system=250, dialect="common"))
+    line.wait_heartbeat(timeout=PATIENCE)
+    line.mav.param_set_send(1, 1, b"SIGN_ONLY", 0.0, m.MAV_PARAM_TYPE_REAL32)
+    answer = line.recv_match(type="PARAM_VALUE", blocking=True, timeout=PATIENCE)
+    line.close()
+    assert answer is not None and (answer.param_id, answer.param_value) == ("SIGN_ONLY", 0.0), answer
 
 
 class Vehicle:
@@ -110,8 +141,10 @@ class Vehicle:
 class Desk(Vehicle):
     """The firmware's library in `host-sim sitl`."""
 
-    def __init__(self, speed):
-        super().__init__("sitl", "--speed", speed)
+    def __init__(self, speed, *arguments):
+        self.key = key_file() if SIGNED else None
+        signed = ["--signing-key", self.key.name] if SIGNED else []
+        super().__init__("sitl", "--speed", speed, *signed, *arguments)
 
 
 class Board(Vehicle):

@@ -13,9 +13,9 @@ import threading
 import time
 
 import pyulog
-from vehicle import STRETCH, vehicle
+from vehicle import PASSPHRASE, SIGNED, STRETCH, vehicle
 
-MODULES = "arm,mode,cmdlong,param,link,misc,log"
+MODULES = "arm,mode,cmdlong,param,link,misc,log,signing"
 
 
 class MAVProxy:
@@ -62,8 +62,10 @@ class MAVProxy:
 
 def fly(flown, proxy):
     proxy.wait_for("Detected vehicle 1:1", 20)
+    if SIGNED:
+        proxy.ask(f"signing key {PASSPHRASE}", "Setup signing key")
     flown.wait_for("ready", 20)
-    proxy.wait_for("Received 58 parameters", 20)
+    proxy.wait_for("Received 59 parameters", 20)
     proxy.ask("param show TKO_ALT", "TKO_ALT          1.5")
     proxy.type("param set TKO_ALT 2.0")
     flown.rest(1.0)

@@ -13,7 +13,7 @@ from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
 from mavsdk.plugins.offboard import PositionNedYaw
 from mavsdk.plugins.telemetry import FlightMode
 
-from vehicle import EMULATED, STRETCH, vehicle
+from vehicle import EMULATED, SIGNED, STRETCH, accept_unsigned, vehicle
 
 # MAVSDK's own time-outs are seconds of this desk's: faster vehicles only shorten the flight.
 SPEED = 2.0
@@ -122,6 +122,9 @@ async def disarmed(client):
 
 def main():
     with vehicle(speed=SPEED) as flown:
+        # MAVSDK does not sign.
+        if SIGNED:
+            accept_unsigned(flown)
         asyncio.run(asyncio.wait_for(fly(flown), 300 if EMULATED else 150))
 
 

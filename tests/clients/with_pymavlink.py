@@ -11,7 +11,7 @@ import pyulog  # noqa: E402
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as m  # noqa: E402
 
-from vehicle import EMULATED, vehicle  # noqa: E402
+from vehicle import EMULATED, signing, vehicle  # noqa: E402
 
 SPEED = 4.0
 
@@ -33,7 +33,9 @@ ACCEPTED, DENIED, UNSUPPORTED = m.MAV_RESULT_ACCEPTED, m.MAV_RESULT_DENIED, m.MA
 
 class Client:
     def __init__(self, port):
-        self.line = mavutil.mavlink_connection(f"udpin:127.0.0.1:{port}", source_system=255, dialect="common")
+        self.line = signing(
+            mavutil.mavlink_connection(f"udpin:127.0.0.1:{port}", source_system=255, dialect="common")
+        )
         self.now, self.position, self.yaw, self.mode, self.armed = 0.0, None, 0.0, 0, False
         self.landed = None
         self.beaten = self.sent = -10.0

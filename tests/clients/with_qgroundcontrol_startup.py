@@ -17,7 +17,7 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import all as m  # noqa: E402
 
-from vehicle import vehicle  # noqa: E402
+from vehicle import signing, vehicle  # noqa: E402
 
 # s; tries are all of them, the first included.
 HEARTBEAT = 1.0
@@ -46,8 +46,10 @@ class Station:
     """A ground station by this desk's clock."""
 
     def __init__(self, port):
-        self.line = mavutil.mavlink_connection(
-            f"udpin:127.0.0.1:{port}", source_system=STATION, source_component=COMPONENT, dialect="all"
+        self.line = signing(
+            mavutil.mavlink_connection(
+                f"udpin:127.0.0.1:{port}", source_system=STATION, source_component=COMPONENT, dialect="all"
+            )
         )
         self.beaten = 0.0
         self.unanswered = []

@@ -40,8 +40,8 @@ const HEADER_V2: usize = 10;
 const CHECKSUM: usize = 2;
 const SIGNATURE: usize = 13;
 
-/// The only incompatibility flag that is understood: a signature follows. It is not verified.
-const SIGNED: u8 = 1;
+/// The only incompatibility flag that is understood: a signature follows. [`super::signing`] verifies it.
+pub const SIGNED: u8 = 1;
 
 /// The protocol's version of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +74,8 @@ pub struct Frame<'a> {
     pub message: u32,
     /// Its fields; version 2 cuts zeros off the end.
     pub payload: &'a [u8],
+    /// All of it, from its first byte to its checksum or signature.
+    pub bytes: &'a [u8],
     /// The frame's own checksum, which tells frames with equal headers apart.
     pub checksum: u16,
     /// No byte of it arrived before this, us.
@@ -132,8 +134,7 @@ impl Parser {
         self.remove(self.taken);
         self.taken = 0;
         if now.saturating_sub(self.since) > FRAME_AGE_MAX || self.length == FRAME_MAX {
-            self.discarded = self.discarded.wrapping_add(self.length as u32);
-            (self.length, self.is_aligned, self.barred) = (0, false, 0);
+            self.forget();
         }
         if self.length == 0 {
             self.since = now;
@@ -187,6 +188,14 @@ impl Parser {
     #[must_use]
     pub fn discarded(&self) -> u32 {
         self.discarded
+    }
+
+    /// Drops what it has: the next byte comes from somewhere else.
+    pub fn forget(&mut self) {
+        self.remove(self.taken);
+        self.taken = 0;
+        self.discarded = self.discarded.wrapping_add(self.length as u32);
+        (self.length, self.is_aligned, self.barred) = (0, false, 0);
     }
 
     /// Drops bytes from the start of the buffer.
@@ -261,6 +270,7 @@ fn frame(bytes: &[u8], time: u64) -> Option<Frame<'_>> {
         header: Header { system, component, sequence },
         message: message(bytes)?,
         payload: bytes.get(header..end)?,
+        bytes,
         checksum: u16::from_le_bytes([low, high]),
         time,
     })

@@ -33,7 +33,12 @@ impl<S: Read, P: Read> Read for Line<'_, S, P> {
     async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
         match self.port.as_mut().filter(|_| self.on_port.is_raised()) {
             Some(port) => port.read(bytes).await.map_err(|error| error.kind()),
-            None => self.serial.read(bytes).await.map_err(|error| error.kind()),
+            None => {
+                let count = self.serial.read(bytes).await.map_err(|error| error.kind())?;
+                // The port may have been opened meanwhile, and this was not said there.
+                let is_heard = self.port.is_none() || !self.on_port.is_raised();
+                Ok(if is_heard { count } else { 0 })
+            }
         }
     }
 }

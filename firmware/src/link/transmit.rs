@@ -46,6 +46,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
         for turn in [Speaker::scheduled, Speaker::queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
+                speaker.writer.sign(&shared.signing, clock.now());
                 send(&mut line, clock, WRITE_TIME_MAX, speaker.writer.bytes()).await;
             }
         }

@@ -1,6 +1,8 @@
 //! Frames to send: messages of the `mavlink` crate's types as frames of version 2, numbered in the order they are sent.
 
 use super::COMPONENT;
+use super::signing::Signing;
+use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
 /// Where frames are written, one after the other.
@@ -20,6 +22,8 @@ impl Writer {
     pub fn write(&mut self, system: u8, message: &impl MessageData) {
         let header = MavHeader { system_id: system.into(), component_id: COMPONENT, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
+        // Not the last one's: signed, perhaps.
+        *self.frame.incompatibility_flags_mut() = 0;
         self.frame.serialize_message_data(header, message);
     }
 
@@ -29,6 +33,11 @@ impl Writer {
             self.write(system, &message);
             true
         })
+    }
+
+    /// Signs the frame last written, if there is a key: once.
+    pub fn sign<M: RawMutex>(&mut self, signing: &Signing<M>, now: u64) {
+        signing.sign(&mut self.frame, now);
     }
 
     /// The frame last written.

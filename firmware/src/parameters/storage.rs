@@ -1,16 +1,17 @@
 //! Parameters in flash: read at boot, written when changed and only while no motor turns.
 //!
 //! All values are one record of a [`journal`](super::journal), each known by its place in the table, so a firmware with
-//! more parameters reads what an older one wrote.
+//! more parameters reads what an older one wrote. The key that frames are signed with is another.
 //!
 //! Erasing a sector of internal flash can stall the whole processor for seconds on some boards. So nothing is written
 //! while a motor turns, and while something is, none begins to: control refuses.
 
-use super::journal::{Journal, VALUES_MAX};
+use super::journal::{Journal, Kind, VALUES_MAX};
 use super::table::PARAMETERS;
 use super::{DEFAULTS, Values};
 use crate::deadline::within;
-use crate::hardware::{Clock, Flash};
+use crate::hardware::{Clock, Fault, Flash};
+use crate::link::signing::WORDS;
 use crate::shared::{Event, Severity, Shared};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
@@ -33,13 +34,20 @@ impl<F: Flash> Storage<F> {
     /// Reads every parameter, once, before the first tick. What is missing, damaged or out of range stays at its
     /// default; all but the first is announced.
     pub fn load<M: RawMutex>(flash: F, shared: &Shared<M>) -> Self {
-        let mut values = DEFAULTS;
-        let (journal, found) = Journal::open(flash, &mut values);
+        let (mut journal, found) = Journal::open(flash);
+        let mut values = DEFAULTS.map(f32::to_bits);
+        let _ = journal.read(Kind::Parameters, &mut values);
+        let mut signing = [0; WORDS];
+        if journal.read(Kind::Signing, &mut signing).is_ok() {
+            shared.signing.restore(&signing);
+            // Its stamps are to be kept ahead before anything flies.
+            shared.parameters.save_soon();
+        }
         if found.is_err() {
             shared.announce(Event::new(Severity::Warning, "Parameters: stored values unusable, defaults taken"));
         }
         for (row, value) in PARAMETERS.iter().zip(values) {
-            if shared.parameters.restore(row.parameter, value).is_err() {
+            if shared.parameters.restore(row.parameter, f32::from_bits(value)).is_err() {
                 let words = format_args!("{}: stored value unusable, default taken", row.name);
                 shared.announce(Event::new(Severity::Warning, words));
             }
@@ -60,6 +68,7 @@ impl<F: Flash> Storage<F> {
                 shared.saving.raise();
             }
             self.save(shared);
+            self.save_signing(shared, clock.now());
             shared.saving.lower();
         }
     }
@@ -72,9 +81,7 @@ impl<F: Flash> Storage<F> {
         if !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved)) {
             return;
         }
-        // Twice and no more: one place may be bad, and a flash that fails would be worn out by more. The next change is
-        // another chance.
-        let written = (0..2).any(|_| self.journal.append(&values).is_ok());
+        let written = self.append(Kind::Parameters, &values.map(f32::to_bits)).is_ok();
         for (row, (value, saved)) in PARAMETERS.iter().zip(values.iter().zip(&self.saved)) {
             if !written && differ(value, saved) {
                 let words = format_args!("{}: set, but could not be saved", row.name);
@@ -82,5 +89,19 @@ impl<F: Flash> Storage<F> {
             }
         }
         self.saved = values;
+    }
+
+    /// Writes the key and how far its stamps have come, if what was written does not do any more.
+    fn save_signing<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64) {
+        let unkept = shared.signing.unkept(now);
+        if unkept.is_some_and(|words| self.append(Kind::Signing, &words).is_err()) {
+            shared.announce(Event::new(Severity::Warning, "Signing: key or stamps could not be saved"));
+        }
+    }
+
+    /// Twice and no more: one place may be bad, and a flash that fails would be worn out by more. The next change is
+    /// another chance.
+    fn append(&mut self, kind: Kind, words: &[u32]) -> Result<(), Fault> {
+        self.journal.append(kind, words).or_else(|_| self.journal.append(kind, words))
     }
 }

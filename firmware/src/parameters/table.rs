@@ -88,7 +88,7 @@ pub enum Name {
     TrackingErrorMax,
     /// The configuration that the following rows were tuned on. Told, never set.
     TunedOn,
-    /// Mass. The rows from here on are certified when they are set, and taken over at the next boot: see
+    /// Mass. The rows from here to the last gain are certified when they are set, and taken over at the next boot: see
     /// [`super::tuned`].
     Mass,
     /// Limit of the thrust.
@@ -127,11 +127,13 @@ pub enum Name {
     GainPositionVertical,
     /// Gain on vertical velocity errors, percent of the built one.
     GainVelocityVertical,
-    /// Which output each rotor's controller is wired to, a digit a rotor: see [`outputs::wiring`]. Rows from here on are
-    /// taken over at the next boot.
+    /// Which output each rotor's controller is wired to, a digit a rotor: see [`outputs::wiring`]. Taken over at the next
+    /// boot.
     MotorOrder,
-    /// The serial line's baud rate.
+    /// The serial line's baud rate. Taken over at the next boot.
     SerialRate,
+    /// Whether what is not signed is refused, once there is a key. Taken over at once.
+    SignedOnly,
 }
 
 /// One row.
@@ -180,7 +182,7 @@ const fn gain(parameter: Name, name: &'static str) -> Row {
 
 /// Every parameter. Storage knows them by their place here: add at the end, remove none.
 #[rustfmt::skip]
-pub const PARAMETERS: [Row; 60] = [
+pub const PARAMETERS: [Row; 61] = [
     row(Name::SystemId,        "SYS_ID",       [1.0, 255.0], 1.0,  "",    1.0),
     row(Name::TelemetryRate,   "TLM_RATE",     [10.0, 50.0], 25.0, "Hz",  1.0),
     row(Name::HorizontalSpeed, "GOV_SPEED_XY", [0.1, 20.0],  5.0,  "m/s", 0.0),
@@ -242,6 +244,7 @@ pub const PARAMETERS: [Row; 60] = [
     row(Name::MotorOrder,      "MOT_ORDER",    [1234.0, 4321.0], 1234.0, "", 1.0),
     // Multiples of 57,600, the greatest by default.
     row(Name::SerialRate,      "SER_BAUD",     [57_600.0, 921_600.0], 921_600.0, "", 57_600.0),
+    row(Name::SignedOnly,      "SIGN_ONLY",    [0.0, 1.0],   1.0,  "",    1.0),
 ];
 
 impl Name {

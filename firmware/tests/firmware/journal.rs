@@ -1,7 +1,7 @@
 //! The journal under power cuts: after any of them, the value before or the new one, and room for the next.
 
 use crate::support::chip::{Chip, RECORDS, SECTOR, Torn, Words};
-use firmware::parameters::journal::Journal;
+use firmware::parameters::journal::{Journal, Kind};
 use std::cell::RefCell;
 
 /// Every way in which a word can be left behind.
@@ -9,15 +9,17 @@ const TORN: [Torn; 3] = [Torn::Bits, Torn::Unreadable, Torn::Blank];
 
 /// The journal that a boot finds, and the newest value; 0 where there is none.
 fn opened<const WORD: usize>(chip: &RefCell<Chip>) -> (Journal<Words<'_, WORD>>, f32) {
-    let mut values = [0.0; 5];
-    let (journal, _) = Journal::open(Words(chip), &mut values);
-    (journal, values[4])
+    let mut words = [0; 5];
+    let (mut journal, _) = Journal::open(Words(chip));
+    let _ = journal.read(Kind::Parameters, &mut words);
+    (journal, f32::from_bits(words[4]))
 }
 
 /// Boots, saves a value in no more than two attempts, and says whether that went well.
 fn saved<const WORD: usize>(chip: &RefCell<Chip>, value: f32) -> bool {
     let (mut journal, _) = opened::<WORD>(chip);
-    (0..2).any(|_| journal.append(&[-1.0, 1.0, 2.0, 3.0, value]).is_ok())
+    let words = [-1.0, 1.0, 2.0, 3.0, value].map(f32::to_bits);
+    (0..2).any(|_| journal.append(Kind::Parameters, &words).is_ok())
 }
 
 /// Saves `value` with the power failing at each word in turn, and hands each chip on as it is then, with power.
@@ -91,7 +93,7 @@ fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
         chip.borrow_mut().worn = true;
         let (mut journal, _) = opened::<32>(&chip);
         for _ in 0..5 * RECORDS {
-            assert!(journal.append(&[0.0; 5]).is_err());
+            assert!(journal.append(Kind::Parameters, &[0; 5]).is_err());
         }
         assert_eq!(opened::<32>(&chip).1, round as f32);
         // Nor does a boot in between change that.
@@ -105,13 +107,14 @@ fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
 #[test]
 fn blank_flash_holds_nothing_and_anything_else_is_told() {
     let chip = Chip::erased();
-    assert!(Journal::open(Words::<4>(&chip), &mut [0.0]).1.is_ok());
+    assert!(Journal::open(Words::<4>(&chip)).1.is_ok());
     for byte in 0..2 * SECTOR {
         let chip = chip.clone();
         chip.borrow_mut().bytes[byte] = 0;
-        let mut values = [7.0];
-        assert!(Journal::open(Words::<4>(&chip), &mut values).1.is_err(), "byte {byte}");
-        assert_eq!(values, [7.0]);
+        let mut words = [7];
+        let (mut journal, found) = Journal::open(Words::<4>(&chip));
+        assert!(found.is_err() && journal.read(Kind::Parameters, &mut words).is_err(), "byte {byte}");
+        assert_eq!(words, [7]);
     }
 }
 
@@ -126,4 +129,42 @@ fn a_record_is_erased_no_sooner_than_there_is_no_other_place() {
     let both = chip.borrow().bytes.clone();
     // One sector is full, the other has the newest.
     assert!(first.iter().zip(&both).filter(|(old, new)| old != new).count() <= 64);
+}
+
+#[test]
+fn either_kind_survives_a_cut_at_any_word_while_the_other_is_saved() {
+    fn read(chip: &RefCell<Chip>, kind: Kind) -> [u32; 3] {
+        let mut words = [0; 3];
+        let _ = Journal::open(Words::<32>(chip)).0.read(kind, &mut words);
+        words
+    }
+    fn save(chip: &RefCell<Chip>, kind: Kind, value: u32) -> bool {
+        let mut journal = Journal::open(Words::<32>(chip)).0;
+        (0..2).any(|_| journal.append(kind, &[value; 3]).is_ok())
+    }
+    const KEPT: u32 = 1_000;
+    for (kept, saved) in [(Kind::Signing, Kind::Parameters), (Kind::Parameters, Kind::Signing)] {
+        let chip = Chip::erased();
+        assert!(save(&chip, kept, KEPT));
+        for round in 1..2 * RECORDS as u32 + 3 {
+            for torn in TORN {
+                for power in 1.. {
+                    let cut = chip.clone();
+                    (cut.borrow_mut().power, cut.borrow_mut().torn) = (power, torn);
+                    let done = save(&cut, saved, round);
+                    let whole = cut.borrow().power > 0;
+                    cut.borrow_mut().power = usize::MAX;
+                    let found = read(&cut, saved);
+                    assert_eq!(read(&cut, kept), [KEPT; 3], "{torn:?}");
+                    assert!(found == [round; 3] || found == [round - 1; 3] && !done, "{found:?}, {torn:?}");
+                    assert!(save(&cut, saved, round + KEPT), "no room after a cut, {torn:?}");
+                    assert_eq!((read(&cut, kept), read(&cut, saved)), ([KEPT; 3], [round + KEPT; 3]), "{torn:?}");
+                    if whole {
+                        break;
+                    }
+                }
+            }
+            assert!(save(&chip, saved, round));
+        }
+    }
 }

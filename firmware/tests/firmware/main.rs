@@ -28,6 +28,7 @@ mod link_pose_times;
 mod link_poses;
 mod link_questions;
 mod link_setpoints;
+mod link_signing;
 mod link_tasks;
 mod link_telemetry;
 mod parameters;

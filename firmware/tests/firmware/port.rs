@@ -10,7 +10,7 @@ use firmware::hardware::Port;
 use firmware::link::port::{LOOK, Line, watch};
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
-use mavlink::dialects::common::{HEARTBEAT_DATA, MavType};
+use mavlink::dialects::common::{HEARTBEAT_DATA, MavType, SETUP_SIGNING_DATA};
 
 /// A second, us.
 const SECOND: u64 = 1_000_000;
@@ -134,4 +134,50 @@ fn every_move_is_told_once() {
     let (clock, shared, port) = (Simulated::default(), Local::new(), Opened(Cell::new(false)));
     clock.run(4 * SECOND, watch(&port, &clock, &shared), |now| port.0.set((SECOND..2 * SECOND).contains(&now)));
     assert_eq!(texts(&shared), ["Link: on USB, the serial line is not heard", "Link: on the serial line"]);
+}
+
+/// A message that sets a key, and the last byte of which could begin a frame.
+fn key() -> Vec<u8> {
+    let with = |number: u16| {
+        let [low, high] = number.to_le_bytes();
+        let mut secret_key = [7; 32];
+        secret_key[..2].copy_from_slice(&[low, high]);
+        v2(1, &SETUP_SIGNING_DATA { secret_key, target_system: 1, ..Default::default() })
+    };
+    (0..=u16::MAX).map(with).find(|frame| frame.ends_with(&[0xFD])).unwrap()
+}
+
+#[test]
+fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
+    // Who waits on the serial line when the port is opened still reads what comes there next.
+    let bench = Bench::new(true, SECOND, |bench, now| {
+        bench.port.0.set(true);
+        if now == LOOK {
+            bench.incoming[0].say(&key());
+        }
+    });
+    assert!(bench.shared.on_port.is_raised());
+    assert_eq!(bench.shared.signing.unkept(0), None);
+    // All of it but its last byte before the port is opened, and a frame from there.
+    let bench = Bench::new(true, SECOND, |bench, now| {
+        bench.port.0.set(now > LOOK);
+        if now == LOOK {
+            bench.incoming[0].say(&key()[..key().len() - 1]);
+        }
+        if now == LOOK + 20_000 {
+            bench.shared.on_port.raise();
+            bench.incoming[0].say(&[0]);
+            bench.incoming[1].say(&heartbeat(1));
+        }
+    });
+    assert_eq!(bench.frames(), 1);
+    assert_eq!(bench.shared.signing.unkept(0), None);
+    // It would have counted there.
+    let bench = Bench::new(true, 2 * SECOND, |bench, now| {
+        bench.port.0.set(true);
+        if now == LOOK {
+            bench.incoming[1].say(&key());
+        }
+    });
+    assert!(bench.shared.signing.unkept(0).is_some());
 }

@@ -28,6 +28,9 @@ pub struct SitlArguments {
     /// Keep parameters in this file from one session to the next
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
+    /// Sign frames with the key in this file, 64 hexadecimal digits, and refuse what is not: docs/security.md
+    #[arg(long, value_name = "FILE")]
+    signing_key: Option<PathBuf>,
     /// Record the session for Foxglove, 100 moments a second of the vehicle's time, 1.7 KB each at most; the file shows
     /// up at the end
     #[arg(long, value_name = "FILE.mcap")]
@@ -119,7 +122,7 @@ impl SitlArguments {
     /// The session with a scenario from `file`, which has this `text`.
     ///
     /// # Errors
-    /// Names the argument that is no speed, no time, or no set of ports.
+    /// Names the argument that is no speed, no time, no set of ports, or no key.
     pub fn session(&self, text: String, file: String) -> Result<sitl::Session, String> {
         let speed = speed(self.speed)?;
         if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
@@ -132,6 +135,7 @@ impl SitlArguments {
             duration: self.duration,
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
+            signing_key: self.signing_key.as_deref().map(sitl::key::read).transpose()?,
             recording: self.mcap.clone().map(|path| (path, text)),
         })
     }

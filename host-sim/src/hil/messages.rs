@@ -2,8 +2,10 @@
 
 use super::answer::{Answer, ToldPose};
 use controller_core::flight::{ImuSample, Stamped};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
+use firmware::link::signing::Signing;
 use firmware::link::time_sync;
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
@@ -49,9 +51,11 @@ pub(super) fn decode<D: MessageData>(frame: &Frame<'_>) -> Option<D> {
 }
 
 /// Puts the session's answers into bytes, counting them.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Encoder {
     sequence: u8,
+    /// Signs them, once it has a key.
+    pub signing: Signing<NoopRawMutex>,
 }
 
 impl Encoder {
@@ -135,6 +139,8 @@ impl Encoder {
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message_data(header, message);
+        // Stamps follow each other; the vehicle's own move them on.
+        self.signing.sign(&mut frame, 0);
         bytes.extend_from_slice(frame.raw_bytes());
     }
 }

@@ -1,5 +1,6 @@
 use super::*;
 use controller_core::estimator::Fault as EstimatorFault;
+use firmware::link::signing::{AHEAD, Signing};
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,
     SET_POSITION_TARGET_LOCAL_NED_DATA,
@@ -14,10 +15,16 @@ struct Flown {
     client: UdpSocket,
     local: u16,
     sequence: u8,
+    /// The client's; without a key it signs nothing.
+    signing: Signing<NoopRawMutex>,
 }
 
 impl Flown {
     fn boot(text: &str, faults: &[&str], parameters: Option<PathBuf>) -> Self {
+        Self::boot_with(text, faults, parameters, None)
+    }
+
+    fn boot_with(text: &str, faults: &[&str], parameters: Option<PathBuf>, signing_key: Option<Key>) -> Self {
         let socket = || UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let (client, ground, free) = (socket(), socket(), socket());
         let port = |socket: &UdpSocket| socket.local_addr().unwrap().port();
@@ -31,17 +38,19 @@ impl Flown {
             duration: None,
             faults,
             parameters,
+            signing_key,
             recording: None,
         };
         let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
         assert_eq!(warning, None);
-        Self { sitl, client, local: ports.local, sequence: 0 }
+        Self { sitl, client, local: ports.local, sequence: 0, signing: Signing::new() }
     }
 
     fn send(&mut self, message: &impl MessageData) {
         let mut frame = MAVLinkV2MessageRaw::new();
         self.sequence = self.sequence.wrapping_add(1);
         frame.serialize_message_data(MavHeader { system_id: 255, component_id: 190, sequence: self.sequence }, message);
+        self.signing.sign(&mut frame, 0);
         self.client.send_to(frame.raw_bytes(), (Ipv4Addr::LOCALHOST, self.local)).unwrap();
     }
 
@@ -239,6 +248,35 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
 }
 
 #[test]
+fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
+    const ARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
+    let key = Key::new([0x5A; 32]);
+    let mut flown = Flown::boot_with(STUDY, &[], None, key);
+    // A ground station is heard if it signs, and not before.
+    flown.pass(5.0);
+    assert_eq!(flown.mode(), Mode::Checks);
+    flown.signing.set(key, key::now(), 0);
+    flown.pass(1.0);
+    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
+    flown.signing.set(None, 0, 0);
+    flown.command(ARM, 1.0);
+    assert_eq!((flown.mode(), flown.said("Refused: not signed")), (Mode::Ready, true));
+    flown.signing.set(key, key::now(), 0);
+    flown.command(ARM, 1.0);
+    assert_eq!(flown.mode(), Mode::Idling, "{:?}", flown.sitl.texts);
+    flown.command(ARM, 0.0);
+    flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    flown.pass(6.0);
+    // The key outlasts a restart, and so does what was heard: this client did not hear how far the stamps have come.
+    flown.command(ARM, 1.0);
+    assert_eq!((flown.mode(), flown.said("its time stamp was heard before")), (Mode::Checks, true));
+    flown.signing.set(key, key::now() + 2 * AHEAD, 0);
+    flown.pass(1.0);
+    flown.command(ARM, 1.0);
+    assert_eq!(flown.mode(), Mode::Idling, "{:?}", flown.sitl.texts);
+}
+
+#[test]
 fn what_no_board_could_fly_is_refused_by_name() {
     let session = Session {
         file: "a file".to_owned(),
@@ -247,6 +285,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
         duration: None,
         faults: Vec::new(),
         parameters: None,
+        signing_key: None,
         recording: None,
     };
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();

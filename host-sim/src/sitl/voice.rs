@@ -48,6 +48,7 @@ impl Write for Voice {
 }
 
 fn overhear(frame: &Frame<'_>, world: &World, now: u64, texts: &RefCell<Vec<(u64, String)>>) {
+    world.hear(frame);
     match frame.message {
         TIMESYNC_DATA::ID => {
             if let Some(TIMESYNC_DATA { tc1: 0, ts1 }) = frame.decode() {

@@ -22,6 +22,8 @@ use controller_core::allocation::{Rotor, ThrustCurve};
 use controller_core::flight::{ImuSample, Stamped};
 use controller_core::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use firmware::link::frame::Frame;
+use firmware::link::signing::{Key, Stamp};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};
@@ -130,6 +132,16 @@ impl World {
     /// [`Diverged`].
     pub fn check(&self) -> Result<(), Diverged> {
         self.0.body.borrow().diverged.map_or(Ok(()), Err)
+    }
+
+    /// Has the camera sign what it sends.
+    pub fn sign(&self, key: Key, stamp: Stamp) {
+        self.0.body.borrow().encoder.signing.set(Some(key), stamp, 0);
+    }
+
+    /// The camera hears a frame of the vehicle, and signs what it sends later with later stamps.
+    pub fn hear(&self, frame: &Frame<'_>) {
+        self.0.body.borrow().encoder.signing.follow(frame, 0);
     }
 
     /// The camera's answer to a TIMESYNC that the vehicle asked at `asked` of its clock.

@@ -1,0 +1,450 @@
+//! Signed frames: those of pymavlink's own signing, forged, replayed and cut ones, and the key's way in.
+//!
+//! The frames in hexadecimal are pymavlink 2.4.50's, from `MAVLink.signing` with the key 00 01 02 … 1f:
+//!
+//! ```python
+//! mav = common.MAVLink(None, srcSystem=255, srcComponent=190)
+//! mav.signing.secret_key, mav.signing.sign_outgoing = bytes(range(32)), True
+//! mav.signing.link_id, mav.signing.timestamp = 3, 0x0102030405
+//! print(common.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3).pack(mav).hex())
+//! ```
+
+use crate::support::chip::{Chip, Words};
+use crate::support::line::Outgoing;
+use crate::support::receiver::{Fed, Local, command, disarm, replies, report, texts};
+use crate::support::{Simulated, v1, v2};
+use controller_core::flight::Mode;
+use core::cell::RefCell;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::link::frame::Parser;
+use firmware::link::signing::{AHEAD, Key, LEAST_AHEAD, Refusal, STREAMS, Signing, Stamp};
+use firmware::link::transmit::transmit;
+use firmware::parameters::storage::Storage;
+use firmware::parameters::table::Name;
+use firmware::shared::{Event, Reply, Severity};
+use mavlink::dialects::common::{
+    HEARTBEAT_DATA, MavCmd, MavModeFlag, MavSeverity, MavState, MavType, RADIO_STATUS_DATA, SETUP_SIGNING_DATA,
+    STATUSTEXT_DATA,
+};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+
+/// A ground station's heartbeat, its order to arm, and its order to stop, signed with stamps that follow each other.
+const HEARTBEAT: &str = "fd09010000ffbe000000000000000608000003bbd303050403020100e3750378e479";
+const ARM: &str = "fd20010001ffbe4c00000000803f00000000000000000000000000000000000000000000000090010101a79a\
+    03060403020100a0586cd1f031";
+const STOP: &str = "fd20010002ffbe4c0000000000000098a546000000000000000000000000000000000000000090010101b7e1\
+    0307040302010068953a1df0a4";
+/// The stamp of the first.
+const FIRST: Stamp = 0x01_0203_0405;
+
+/// What the vehicle 1, component 1 says, on link 0.
+const OWN: [&str; 2] = [
+    "fd09010000010100000000000000020000030364be00050403020100d20754b034b3",
+    "fd0d0100010101fd0000045369676e696e673a206f6666ba4a00060403020100a9be29c924e1",
+];
+
+/// Time of a test, us, long before the stamps' clock is a minute further.
+const NOW: u64 = 1_000;
+
+fn bytes(hexadecimal: &str) -> Vec<u8> {
+    let digits: Vec<u8> = hexadecimal.bytes().map(|digit| (digit as char).to_digit(16).unwrap() as u8).collect();
+    digits.chunks(2).map(|pair| pair[0] << 4 | pair[1]).collect()
+}
+
+fn key() -> Option<Key> {
+    Key::new(core::array::from_fn(|index| index as u8))
+}
+
+/// A vehicle with a key, ready.
+fn keyed() -> Local {
+    let shared = Local::new();
+    report(&shared, Mode::Ready, 0);
+    shared.signing.set(key(), FIRST - 1, 0);
+    shared
+}
+
+/// What a stop that was received leaves behind.
+fn is_stopped(shared: &Local) -> bool {
+    shared.disarm.take()
+}
+
+/// Frames of some system and component, signed with a key on a clock of their own.
+struct Sender {
+    header: MavHeader,
+    signing: Signing<NoopRawMutex>,
+}
+
+impl Sender {
+    fn new(system: u32, key: Option<Key>, stamp: Stamp) -> Self {
+        let signing = Signing::new();
+        signing.set(key, stamp, 0);
+        Self { header: MavHeader { system_id: system, component_id: 190, sequence: 0 }, signing }
+    }
+
+    fn say(&mut self, message: &impl MessageData, now: u64) -> Vec<u8> {
+        let mut frame = MAVLinkV2MessageRaw::new();
+        self.header.sequence = self.header.sequence.wrapping_add(1);
+        frame.serialize_message_data(self.header, message);
+        self.signing.sign(&mut frame, now);
+        frame.raw_bytes().to_vec()
+    }
+}
+
+/// What a vehicle with this state of signing says to a frame.
+fn judged(signing: &Signing<NoopRawMutex>, frame: &[u8], now: u64) -> Result<(), Refusal> {
+    let (mut parser, mut verdict) = (Parser::new(), None);
+    parser.feed(frame, now, &mut |frame| verdict = Some(signing.judge(frame, true)));
+    verdict.unwrap()
+}
+
+#[test]
+fn what_pymavlink_signed_counts() {
+    let shared = keyed();
+    let mut fed = Fed::new(&shared);
+    fed.bytes(&bytes(HEARTBEAT), NOW);
+    assert!(shared.ground_station.get().is_some());
+    fed.bytes(&bytes(ARM), NOW);
+    assert!(shared.requests.take().is_some());
+    fed.bytes(&bytes(STOP), NOW);
+    assert!(is_stopped(&shared));
+    assert_eq!(texts(&shared), [""; 0]);
+}
+
+#[test]
+fn the_vehicle_signs_as_pymavlink_does() {
+    let heartbeat = HEARTBEAT_DATA {
+        mavtype: MavType::MAV_TYPE_QUADROTOR,
+        system_status: MavState::MAV_STATE_STANDBY,
+        base_mode: MavModeFlag::empty(),
+        mavlink_version: 3,
+        ..HEARTBEAT_DATA::DEFAULT
+    };
+    let text = STATUSTEXT_DATA { severity: MavSeverity::MAV_SEVERITY_WARNING, text: "Signing: off".into() };
+    let mut sender = Sender::new(1, key(), FIRST - 1);
+    (sender.header.component_id, sender.header.sequence) = (1, u8::MAX);
+    assert_eq!(sender.say(&heartbeat, 0), bytes(OWN[0]));
+    assert_eq!(sender.say(&text, 0), bytes(OWN[1]));
+}
+
+#[test]
+fn a_frame_with_any_bit_changed_does_nothing() {
+    for frame in [HEARTBEAT, ARM, STOP].map(bytes) {
+        for bit in 0..8 * frame.len() {
+            let shared = keyed();
+            let mut changed = frame.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            Fed::new(&shared).bytes(&changed, NOW);
+            let nothing = shared.ground_station.get().is_none() && shared.requests.take().is_none();
+            assert!(nothing && !is_stopped(&shared) && replies(&shared).is_empty(), "bit {bit}");
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_is_not_signed_is_refused_in_words_as_the_parameter_says() {
+    for frame in [v2(1, &disarm()), v1(2, &disarm())] {
+        for (signed_only, taken) in [(1.0, false), (0.0, true)] {
+            let shared = keyed();
+            shared.parameters.set(Name::SignedOnly, signed_only).unwrap();
+            Fed::new(&shared).bytes(&frame, NOW);
+            assert_eq!((is_stopped(&shared), texts(&shared).is_empty()), (taken, taken));
+        }
+        let shared = keyed();
+        Fed::new(&shared).bytes(&frame, NOW);
+        assert_eq!(texts(&shared), ["Refused: not signed"]);
+        assert_eq!(shared.replies.take(), None);
+    }
+    // Without a key nothing is, whatever the parameter says.
+    let shared = Local::new();
+    Fed::new(&shared).bytes(&v2(1, &disarm()), NOW);
+    assert!(is_stopped(&shared));
+}
+
+#[test]
+fn heartbeats_and_radios_that_do_not_sign_are_passed_over_without_a_word() {
+    let shared = keyed();
+    let mut fed = Fed::new(&shared);
+    fed.message(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT }, NOW);
+    fed.message(&RADIO_STATUS_DATA::DEFAULT, NOW);
+    assert_eq!(texts(&shared), [""; 0]);
+    // A stranger's heartbeat must not keep the failsafe of a lost station asleep.
+    assert!(shared.ground_station.get().is_none());
+}
+
+#[test]
+fn another_key_is_refused_wherever_unsigned_frames_are_not() {
+    for signed_only in [1.0, 0.0] {
+        let shared = Local::new();
+        shared.signing.set(Key::new([7; 32]), FIRST - 1, 0);
+        shared.parameters.set(Name::SignedOnly, signed_only).unwrap();
+        Fed::new(&shared).bytes(&bytes(STOP), NOW);
+        assert!(!is_stopped(&shared));
+        assert_eq!(texts(&shared), ["Refused: signed with another key"]);
+    }
+}
+
+#[test]
+fn refusals_are_told_once_a_second() {
+    let shared = keyed();
+    let mut fed = Fed::new(&shared);
+    for step in 0..300 {
+        fed.message(&disarm(), NOW + step * 10_000);
+    }
+    assert_eq!(texts(&shared).len(), 3);
+}
+
+#[test]
+fn a_signature_that_is_cut_off_is_no_frame_and_the_next_one_is_found() {
+    let stop = bytes(STOP);
+    for length in stop.len() - 13..stop.len() {
+        let shared = keyed();
+        let mut fed = Fed::new(&shared);
+        fed.bytes(&stop[..length], NOW);
+        assert!(!is_stopped(&shared), "{length} bytes");
+        // The next frame fills it up to its length; what is left of that is noise, and the one after it counts.
+        fed.bytes(&bytes(HEARTBEAT), NOW);
+        fed.bytes(&stop, NOW + 200_000);
+        assert!(is_stopped(&shared), "{length} bytes");
+    }
+}
+
+#[test]
+fn what_was_heard_once_is_refused_for_ever() {
+    let shared = keyed();
+    let mut fed = Fed::new(&shared);
+    fed.bytes(&bytes(STOP), NOW);
+    assert!(is_stopped(&shared));
+    // The same again, and one from before it that the line kept for a while.
+    for old in [STOP, ARM, STOP] {
+        fed.bytes(&bytes(old), NOW + 2_000_000);
+        assert!(!is_stopped(&shared) && shared.requests.take().is_none());
+    }
+    assert_eq!(texts(&shared), ["Refused: its time stamp was heard before"]);
+}
+
+#[test]
+fn a_stream_that_was_forgotten_cannot_be_replayed() {
+    let signing = Signing::new();
+    signing.set(key(), FIRST, 0);
+    let mut first = Sender::new(100, key(), FIRST);
+    let heard = first.say(&disarm(), 0);
+    assert_eq!(judged(&signing, &heard, 0), Ok(()));
+    // As many others as there is room for, all ahead of it.
+    for system in 0..STREAMS as u32 {
+        let mut other = Sender::new(system + 1, key(), FIRST + 10);
+        assert_eq!(judged(&signing, &other.say(&disarm(), 0), 0), Ok(()), "{system}");
+    }
+    assert_eq!(judged(&signing, &heard, 0), Err(Refusal::Replayed));
+    // It goes on where it was.
+    assert_eq!(judged(&signing, &first.say(&disarm(), 0), 0), Ok(()));
+}
+
+#[test]
+fn streams_rise_each_by_itself_and_a_new_one_is_at_most_a_minute_behind() {
+    let signing = Signing::new();
+    signing.set(key(), 0, 0);
+    let minute: Stamp = 6_000_000;
+    let says = |system, stamp| Sender::new(system, key(), stamp - 1).say(&disarm(), 0);
+    assert_eq!(judged(&signing, &says(1, 10 * minute), 0), Ok(()));
+    assert_eq!(judged(&signing, &says(2, 9 * minute), 0), Ok(()));
+    assert_eq!(judged(&signing, &says(3, 9 * minute - 1), 0), Err(Refusal::Replayed));
+    assert_eq!(judged(&signing, &says(2, 9 * minute + 1), 0), Ok(()));
+    // The clock goes on by itself: 30 s later so does what is a minute behind it.
+    assert_eq!(judged(&signing, &says(4, 9 * minute + minute / 2 - 1), 30_000_000), Err(Refusal::Replayed));
+    assert_eq!(judged(&signing, &says(5, 9 * minute + minute / 2), 30_000_000), Ok(()));
+}
+
+#[test]
+fn a_forged_frame_moves_no_clock() {
+    let signing = Signing::new();
+    signing.set(key(), FIRST, 0);
+    let mut forged = Sender::new(100, Key::new([7; 32]), 1 << 47);
+    assert_eq!(judged(&signing, &forged.say(&disarm(), 0), 0), Err(Refusal::Forged));
+    assert_eq!(judged(&signing, &Sender::new(100, key(), FIRST).say(&disarm(), 0), 0), Ok(()));
+}
+
+#[test]
+fn every_frame_out_is_signed_with_a_stamp_of_its_own() {
+    let (clock, shared, written) = (Simulated::default(), keyed(), RefCell::new(Vec::new()));
+    let ear = Signing::<NoopRawMutex>::new();
+    ear.set(key(), 0, 0);
+    clock.run(3_000_000, transmit(Outgoing { written: &written, at_once: 300 }, &clock, &shared), |now| {
+        if now == 1_000_000 {
+            shared.reply(Reply::AllParameters);
+            shared.announce(Event::new(Severity::Information, "Here"));
+        }
+    });
+    let (mut parser, mut count) = (Parser::new(), 0);
+    parser.feed(&written.borrow(), 0, &mut |frame| {
+        count += 1;
+        assert_eq!(ear.judge(frame, true), Ok(()), "message {} of {} bytes", frame.message, frame.bytes.len());
+    });
+    assert!(count > 70 && parser.discarded() == 0, "{count} frames, {} bytes of none", parser.discarded());
+}
+
+/// The order to take a key.
+fn setup(secret_key: [u8; 32], initial_timestamp: Stamp) -> SETUP_SIGNING_DATA {
+    SETUP_SIGNING_DATA { initial_timestamp, target_system: 1, target_component: 1, secret_key }
+}
+
+#[test]
+fn a_key_is_taken_over_usb_while_disarmed_and_nowhere_else() {
+    let own = core::array::from_fn(|index| index as u8);
+    let taken = |on_port: bool, mode, message: &SETUP_SIGNING_DATA| {
+        let shared = Local::new();
+        report(&shared, mode, 0);
+        if on_port {
+            shared.on_port.raise();
+        }
+        Fed::new(&shared).message(message, NOW);
+        shared.on_port.lower();
+        report(&shared, Mode::Ready, NOW);
+        let said = texts(&shared);
+        // With the key, a frame that is not signed counts no more.
+        Fed::new(&shared).message(&disarm(), NOW);
+        (!is_stopped(&shared), said)
+    };
+    let said = |words: &str| vec![words.to_owned()];
+    assert_eq!(taken(true, Mode::Ready, &setup(own, 5)), (true, said("Signing: on, with a new key")));
+    assert_eq!(taken(false, Mode::Ready, &setup(own, 5)), (false, said("Signing: a key is taken over USB only")));
+    assert_eq!(
+        taken(true, Mode::Flying, &setup(own, 5)),
+        (false, said("Signing: only disarmed, and no motor turning"))
+    );
+    assert_eq!(taken(true, Mode::Ready, &SETUP_SIGNING_DATA { target_system: 2, ..setup(own, 5) }), (false, vec![]));
+    assert_eq!(taken(true, Mode::Ready, &setup([0; 32], 0)), (false, said("Signing: off")));
+}
+
+#[test]
+fn over_usb_nobody_has_to_sign_and_a_lost_key_is_replaced() {
+    let shared = keyed();
+    shared.on_port.raise();
+    let mut fed = Fed::new(&shared);
+    fed.message(&disarm(), NOW);
+    assert!(is_stopped(&shared));
+    // Also by a station that has signed with its new key already.
+    fed.bytes(&Sender::new(255, Key::new([7; 32]), 0).say(&setup([7; 32], FIRST), 0), NOW);
+    shared.on_port.lower();
+    fed.bytes(&Sender::new(255, Key::new([7; 32]), FIRST + 1).say(&disarm(), 0), NOW);
+    assert!(is_stopped(&shared));
+}
+
+#[test]
+fn the_same_key_again_makes_nothing_new_that_is_old() {
+    let shared = keyed();
+    let mut fed = Fed::new(&shared);
+    fed.bytes(&bytes(STOP), NOW);
+    assert!(is_stopped(&shared));
+    shared.set_signing(key(), 0, NOW);
+    fed.bytes(&bytes(STOP), NOW);
+    assert!(!is_stopped(&shared));
+}
+
+#[test]
+fn a_key_is_shown_nowhere() {
+    let shared = Local::new();
+    report(&shared, Mode::Ready, 0);
+    shared.on_port.raise();
+    let secret: [u8; 32] = core::array::from_fn(|index| 0xA0 + index as u8);
+    let mut fed = Fed::new(&shared);
+    fed.message(&setup(secret, 5), NOW);
+    fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [SETUP_SIGNING_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0]), NOW);
+    shared.reply(Reply::AllParameters);
+    assert_eq!(format!("{:?}", Key::new(secret)), "Some(Key)");
+    let (clock, written) = (Simulated::default(), RefCell::new(Vec::new()));
+    clock.run(3_000_000, transmit(Outgoing { written: &written, at_once: 300 }, &clock, &shared), |_| ());
+    let written = written.borrow();
+    assert!(written.len() > 3_000);
+    for part in secret.windows(4) {
+        assert!(written.windows(4).all(|four| four != part));
+    }
+}
+
+/// Runs storage on a chip for some time, us.
+fn kept(chip: &RefCell<Chip>, shared: &Local, clock: &Simulated, duration: u64) {
+    let mut storage = Storage::load(Words::<32>(chip), shared);
+    clock.run(duration, storage.keep(clock, shared), |now| {
+        if now.is_multiple_of(1_000_000) {
+            let mode = shared.report.get().map_or(Mode::Ready, |report| report.value.mode);
+            report(shared, mode, now);
+        }
+    });
+}
+
+#[test]
+fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
+    let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
+    let mut storage = Storage::load(Words::<32>(&chip), &shared);
+    shared.set_signing(key(), FIRST - 1, 0);
+    clock.run(100_000, storage.keep(&clock, &shared), |_| ());
+    let mut station = Sender::new(255, key(), FIRST);
+    let mut vehicle = shared;
+    // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which lasts
+    // as long as what was kept before it.
+    let flight = AHEAD * 10 - 1_000_000;
+    for _ in 0..2 {
+        let heard: Vec<_> = (0..=4).map(|part| station.say(&disarm(), part * flight / 4)).collect();
+        for (part, frame) in heard.iter().enumerate() {
+            assert_eq!(judged(&vehicle.signing, frame, part as u64 * flight / 4), Ok(()));
+        }
+        vehicle = Local::new();
+        let clock = Simulated::default();
+        let mut storage = Storage::load(Words::<32>(&chip), &vehicle);
+        clock.run(100_000, storage.keep(&clock, &vehicle), |_| ());
+        for frame in &heard {
+            assert_eq!(judged(&vehicle.signing, frame, 0), Err(Refusal::Replayed));
+        }
+        // The station hears the vehicle's stamps and goes on from there, on a clock that begins anew.
+        let mut said = MAVLinkV2MessageRaw::new();
+        said.serialize_message_data(MavHeader { system_id: 1, component_id: 1, sequence: 0 }, &HEARTBEAT_DATA::DEFAULT);
+        vehicle.signing.sign(&mut said, 0);
+        assert_eq!(judged(&station.signing, said.raw_bytes(), flight), Ok(()));
+        station = Sender::new(255, key(), 0);
+        Parser::new().feed(said.raw_bytes(), 0, &mut |frame| station.signing.follow(frame, 0));
+    }
+}
+
+#[test]
+fn stamps_are_kept_twice_an_hour_at_most_and_never_while_a_motor_turns() {
+    let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
+    shared.signing.set(key(), FIRST, 0);
+    let hour = 3_600_000_000;
+    kept(&chip, &shared, &clock, hour / 2);
+    let ready = chip.borrow().writes;
+    assert!((1..=2).contains(&ready), "{ready}");
+    report(&shared, Mode::Flying, clock.0.get());
+    let mut storage = Storage::load(Words::<32>(&chip), &Local::new());
+    clock.run(hour, storage.keep(&clock, &shared), |now| {
+        if now.is_multiple_of(1_000_000) {
+            report(&shared, Mode::Flying, now);
+        }
+    });
+    assert_eq!(chip.borrow().writes, ready);
+    assert_eq!(AHEAD, 2 * LEAST_AHEAD);
+}
+
+#[test]
+fn a_key_that_cannot_be_kept_is_told() {
+    let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
+    chip.borrow_mut().worn = true;
+    report(&shared, Mode::Ready, 0);
+    shared.set_signing(key(), FIRST, 0);
+    kept(&chip, &shared, &clock, 60_000_000);
+    assert_eq!(texts(&shared), ["Signing: key or stamps could not be saved"]);
+    assert_eq!(chip.borrow().writes, 2);
+}
+
+#[test]
+fn signing_that_was_turned_off_stays_off_after_a_restart() {
+    let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
+    let mut storage = Storage::load(Words::<32>(&chip), &shared);
+    report(&shared, Mode::Ready, 0);
+    for key in [key(), None] {
+        shared.set_signing(key, FIRST, 0);
+        clock.run(100_000, storage.keep(&clock, &shared), |_| ());
+    }
+    let again = Local::new();
+    Storage::load(Words::<32>(&chip), &again);
+    Fed::new(&again).message(&disarm(), NOW);
+    assert!(is_stopped(&again));
+}
