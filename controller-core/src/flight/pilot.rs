@@ -13,14 +13,16 @@ use super::fence::Fence;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
-use super::rules::{self, Condition, LEVELLING_MAX, Mode, Transition};
+use super::rules::{self, BRAKING_MAX, Condition, LANDING_PATIENCE, LANDING_REST, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
 use super::thrust_check::ThrustCheck;
+use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
-use crate::estimator::{EstimatedState, Estimator, Fault};
+use crate::estimator::{EstimatedState, Estimator, Fault, Taken};
 use crate::governor::GovernorLimits;
+use crate::math;
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 3 KB, and its [`Memory`] and [`Estimator`].
@@ -44,6 +46,10 @@ pub struct Pilot<'m> {
     wanted_since: Option<u64>,
     /// Whether a vehicle without a pose was landing, or has been told to land: it does when there is one.
     must_still_land: bool,
+    /// Whether poses may still be believed in this flight.
+    trust: Trust,
+    /// By when a landing must have come to its end, us.
+    landed_by: u64,
     thrust_check: ThrustCheck,
 }
 
@@ -79,6 +85,8 @@ impl<'m> Pilot<'m> {
             newest: Newest::default(),
             wanted_since: None,
             must_still_land: false,
+            trust: Trust::default(),
+            landed_by: 0,
             thrust_check: ThrustCheck::default(),
         }
     }
@@ -105,7 +113,8 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne());
+        let given_up = self.trust.is_given_up();
+        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne(), given_up);
         self.decide(inputs, &estimate)
     }
 
@@ -113,6 +122,14 @@ impl<'m> Pilot<'m> {
     fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let followed = self.follow(estimate);
         let seen = self.look(inputs, estimate);
+        if let (true, Ok(chain)) = (seen.touches && self.mode == Mode::Descending, &mut self.chain) {
+            chain.stop_sinking();
+        }
+        if self.mode.flies() {
+            self.trust.hear(estimate.pose, inputs.now);
+        } else if !self.mode.is_armed() {
+            self.trust = Trust::default();
+        }
         if let Some(setpoint) = inputs.setpoint.as_ref().filter(|setpoint| self.may_come(setpoint)) {
             self.newest.keep(setpoint, inputs.now);
         }
@@ -128,7 +145,7 @@ impl<'m> Pilot<'m> {
         let transition = rules::transition(self.mode, conditions);
         let was_airborne = self.is_airborne();
         if let Some(transition) = transition {
-            self.enter(&transition, inputs, estimate);
+            self.enter(&transition, inputs, estimate, seen.touched);
         }
         let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
         let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
@@ -166,8 +183,11 @@ impl<'m> Pilot<'m> {
     fn follow(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
             (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
-                self.fence.displace(before, state);
-                !self.mode.flies() || chain.jump(before, state, self.mode == Mode::TakingOff).is_ok()
+                // A body that is found again has not moved with its frame.
+                if !(self.mode.flies() && estimate.pose == Some(Ok(Taken::Refound))) {
+                    self.fence.displace(before, state);
+                }
+                !self.mode.flies() || chain.jump(before, state, self.mode).is_ok()
             }
             _ => true,
         }
@@ -194,7 +214,7 @@ impl<'m> Pilot<'m> {
 
     /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found
     /// possible.
-    fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate) {
+    fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate, touched: bool) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {
             self.wanted_since = None;
@@ -203,6 +223,17 @@ impl<'m> Pilot<'m> {
         self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
+        }
+        match (transition.to, transition.reason) {
+            (_, Reason::PoseRegained) => self.trust.regain(false),
+            (_, Reason::LandingResumed) => self.trust.regain(true),
+            (Mode::Descending, reason) => {
+                self.estimation.distrust();
+                if reason == Reason::LandingOver {
+                    self.trust.give_up();
+                }
+            }
+            _ => {}
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {
@@ -223,7 +254,13 @@ impl<'m> Pilot<'m> {
             (Mode::Descending, _) => {
                 let certain = !estimate.health.faults.contain(Fault::Uncertain);
                 let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
-                chain.level(known);
+                chain.level(if touched { Some(0.0) } else { known });
+            }
+            (Mode::Landing, _) => {
+                let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
+                let height = math::between(height, 0.0, self.settings.fence_height);
+                let seconds = LANDING_REST + LANDING_PATIENCE * height / self.settings.landing_speed;
+                self.landed_by = inputs.now.saturating_add((seconds * 1e6) as u64);
             }
             _ => {}
         }
@@ -244,7 +281,7 @@ impl<'m> Pilot<'m> {
             chain.fly_level(estimated, now.saturating_sub(self.since) >= LEVELLING_MAX)
         } else {
             if self.mode == Mode::Landing {
-                chain.come_down(self.settings.landing_speed);
+                chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);
             }
             chain.fly(&estimated.state)
         };

@@ -36,6 +36,11 @@ impl Sinking {
         Self { speed, ..Self::default() }
     }
 
+    /// Something has stopped it.
+    pub fn stop(&mut self) {
+        self.speed = 0.0;
+    }
+
     /// One tick of `period`, s, on; the vertical speed, m/s. What the estimate gains between its jumps is the
     /// accelerometer's.
     pub fn advance(&mut self, estimated: &EstimatedState, period: f32) -> f32 {

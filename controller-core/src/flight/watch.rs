@@ -26,6 +26,14 @@ use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, T
 use crate::estimator::EstimatedState;
 use nalgebra::Vector3;
 
+/// By how much a landing may be slower than its reference and goes down all the same, m/s.
+const FOLLOWING: f32 = 0.15;
+
+/// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
+/// pose takes each for the ground, us.
+const TOUCHED_LASTING: u64 = 3_000_000;
+const TOUCHING_LASTING: u64 = 1_000_000;
+
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
 
@@ -88,8 +96,8 @@ pub(super) struct Watch {
     calm: Calm,
     /// When the vehicle was last struck in guided flight, us.
     struck: Option<u64>,
-    /// Whether something has stopped a vehicle that goes down by the IMU alone.
-    jerked: bool,
+    /// When something last stopped a vehicle that goes down, us, and when it first did.
+    jerked: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
     /// Whether a low battery has had its landing: whoever flies on knows.
@@ -102,6 +110,9 @@ pub(super) struct Seen {
     pub tracking_lost: bool,
     pub saturated: bool,
     pub landed: bool,
+    /// Whether something has stopped a vehicle that goes down, and whether just now.
+    pub touched: bool,
+    pub touches: bool,
     pub crashed: bool,
     pub battery_low: bool,
     pub battery_critical: bool,
@@ -158,19 +169,31 @@ impl Look<'_> {
     }
 
     /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only
-    /// where nothing but the IMU is left.
-    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
-        let (Mode::Descending, Some(state), Some(chain), Some(flown)) = (self.mode, self.state, self.chain, self.flown)
+    /// of a vehicle that goes down.
+    fn going_down(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        let (true, Some(state), Some(chain), Some(flown)) =
+            (matches!(self.mode, Mode::Landing | Mode::Descending), self.state, self.chain, self.flown)
         else {
             return None;
         };
         Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
     }
 
+    /// The same, only where nothing but the IMU is left.
+    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        self.going_down().filter(|_| self.mode == Mode::Descending)
+    }
+
+    /// Whether a landing goes down as it should, as far as its poses say.
+    fn follows_down(&self) -> bool {
+        let (Some(state), Some(flown)) = (self.state, self.flown) else { return false };
+        self.mode == Mode::Landing && state.state.velocity.z < flown.reference.velocity.z + FOLLOWING
+    }
+
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         let now = Look { state, ..*self };
-        self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        self.chain.is_some_and(Chain::sinks) && now.going_down().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
@@ -178,8 +201,11 @@ impl Look<'_> {
     fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
-        self.by_imu().is_some_and(|(_, asked, state)| {
-            let moves = !hit && self.chain.is_some_and(Chain::moves);
+        self.going_down().filter(|_| jerked || self.mode == Mode::Descending).is_some_and(|(_, asked, state)| {
+            let moves = match self.mode {
+                Mode::Landing => self.follows_down(),
+                _ => !hit && self.chain.is_some_and(Chain::moves),
+            };
             !moves
                 && self.chain.is_some_and(Chain::sinks)
                 && asked < falling
@@ -216,13 +242,12 @@ impl Watch {
         let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
         let calm = self.calm.tick(state);
         let look = Look { mode, state: calm.as_ref(), chain, flown };
-        let descends = mode == Mode::Descending;
-        self.jerked = descends && (self.jerked || look.jerks(state, JERK));
-        self.hit = descends && (self.hit || look.jerks(state, HIT));
+        self.note_jerks(&look, state, now);
+        let touched = self.has_touched(mode, now);
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let rests = look.is_held_up(self.jerked, self.hit);
+        let rests = look.is_held_up(touched, self.hit);
         let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
@@ -232,12 +257,32 @@ impl Watch {
             tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now) || is_thrown,
             saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
             landed: left_behind || held_up || stands,
+            touched,
+            touches: self
+                .jerked
+                .is_some_and(|(first, last)| last == now && now.saturating_sub(first) < TOUCHING_LASTING),
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
             battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
             imu_doubtful: doubtful || turning,
             overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
         }
+    }
+
+    /// Remembers what stops a vehicle that goes down.
+    fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
+        if !matches!(look.mode, Mode::Landing | Mode::Descending) {
+            (self.jerked, self.hit) = (None, false);
+        } else if look.jerks(state, JERK) {
+            self.jerked = Some((self.jerked.map_or(now, |(first, _)| first), now));
+        }
+        self.hit |= look.mode == Mode::Descending && look.jerks(state, HIT);
+    }
+
+    /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
+    fn has_touched(&self, mode: Mode, now: u64) -> bool {
+        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_LASTING;
+        self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
     }
 
     /// Whether the estimate jumps just after the vehicle was struck.

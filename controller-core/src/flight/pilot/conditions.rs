@@ -55,7 +55,8 @@ impl Pilot<'_> {
         if let (Some(pose), false) = (estimate.pose, is_levelled) {
             self.hear(pose, inputs.now);
         }
-        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
+        let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
             (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
             _ => false,
@@ -71,6 +72,8 @@ impl Pilot<'_> {
             .with(Condition::Crashed, seen.crashed)
             .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
+            .with(Condition::PosesGivenUp, self.trust.is_given_up())
+            .with(Condition::LandingOver, inputs.now >= self.landed_by)
             .with(Condition::ImuDoubtful, seen.imu_doubtful)
             .with(Condition::PoseRegained, regained && !self.must_still_land)
             .with(Condition::PoseRegainedToLand, regained && self.must_still_land)

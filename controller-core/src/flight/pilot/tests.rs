@@ -23,7 +23,7 @@ fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, 
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
     let body_rate = Some(Stamped { value: zero, time: now });
     let inputs = Inputs { increments: &[increment], body_rate, poses: &[pose], request, ..quiet(now) };
-    let estimate = pilot.estimation.tick(&inputs, pilot.mode.is_armed(), pilot.is_airborne());
+    let estimate = pilot.estimation.tick(&inputs, pilot.mode.is_armed(), pilot.is_airborne(), false);
     let outcome = pilot.decide(&inputs, &estimate);
     (estimate, outcome)
 }
