@@ -91,6 +91,9 @@ const TILT_COSINE: f32 = 0.984_807_8;
 const GYRO_CHANGE: f32 = 0.008;
 const ACCELEROMETER_CHANGE: f32 = 0.06;
 
+/// How long a vertical speed by the accelerometer is as good as that of poses which may lie, s.
+const CLIMB_TIME: f32 = 8.0;
+
 /// Poses that may wait for the IMU.
 const WAITING: usize = 4;
 
@@ -124,6 +127,8 @@ pub struct Estimator {
     airborne: bool,
     /// The biases of gyro, rad/s, and accelerometer, m/s^2, when it last was not.
     grounded: Option<(Vector3<f32>, Vector3<f32>)>,
+    /// The vertical speed of [`Self::climb`], m/s.
+    climb: f32,
     waiting: Vec<Stamped<Pose>, WAITING>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
@@ -145,6 +150,7 @@ impl Estimator {
             stream: Stream::EMPTY,
             airborne: false,
             grounded: None,
+            climb: 0.0,
             waiting: Vec::new(),
             frame: None,
             statistics: Statistics::NONE,
@@ -173,7 +179,11 @@ impl Estimator {
         self.history.push(increment);
         self.stream.note(if self.airborne { self.stirs(increment) } else { self.moves(increment) });
         if let Some(latest) = &mut self.latest {
+            let before = latest.velocity.z;
             latest.advance(increment, self.settings.parameters().gravity);
+            let taught = self.grounded.map_or(0.0, |(_, grounded)| latest.accelerometer_bias.z - grounded.z);
+            let felt = latest.velocity.z - before + taught * increment.seconds();
+            self.climb += felt + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
         }
         self.take_waiting(increment.end);
     }
@@ -183,7 +193,15 @@ impl Estimator {
         self.airborne = airborne;
         if let (false, Some(Filter { nominal, .. })) = (airborne, &self.filter) {
             self.grounded = Some((nominal.gyro_bias, nominal.accelerometer_bias));
+            self.climb = 0.0;
         }
+    }
+
+    /// The vertical speed, m/s: at once that of the accelerometer, with its bias as it was on the ground, and after
+    /// [`CLIMB_TIME`] that of the poses.
+    #[must_use]
+    pub fn climb(&self) -> f32 {
+        self.climb
     }
 
     /// The poses since lift-off may have lied: what they taught of the gyro, and of the accelerometer along body z,

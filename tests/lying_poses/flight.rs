@@ -149,7 +149,11 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
             flown.out = flown.out.max(out);
         }
         if begun.is_some() && (goes_down || !mode.is_armed() && flown.flew) {
-            let down = down.get_or_insert(Down { since: now, from: state.position.z, touched: None });
+            let down = down.get_or_insert(Down {
+                since: now,
+                from: state.position.z + braking(state.velocity.z),
+                touched: None,
+            });
             flown.rose = flown.rose.max(state.position.z - down.from);
             if let Some(touchdown) = touched {
                 down.touched = down.touched.or(Some(now));
@@ -169,6 +173,13 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         }
     }
     flown
+}
+
+/// How far a vehicle that rises at `speed`, m/s, still does while its reference brakes, m.
+fn braking(speed: f64) -> f64 {
+    /// m/s^2: the study's vertical bound.
+    const BRAKES: f64 = 0.1755;
+    speed.max(0.0).powi(2) / (2.0 * BRAKES)
 }
 
 /// Up to a point, and then once round in 12 s on a circle of 1 m.

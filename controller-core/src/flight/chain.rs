@@ -203,11 +203,11 @@ impl<'m> Chain<'m> {
     }
 
     /// Turns to levelling: a hover at the last heading, the law restarted, at a vertical speed of `sinking`, m/s; of
-    /// its reference's, if that is not known.
-    pub fn level(&mut self, sinking: Option<f32>) {
+    /// its reference's, if that is not known. Poses that have `lied` leave more to be made up for.
+    pub fn level(&mut self, sinking: Option<f32>, lied: bool) {
         let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
-        self.sinking = Sinking::at(sinking);
+        self.sinking = Sinking::at(sinking, lied);
         self.law.restart();
     }
 

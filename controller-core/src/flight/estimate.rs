@@ -62,6 +62,11 @@ impl<'m> Estimation<'m> {
         Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
     }
 
+    /// How fast it climbs, m/s, as far as the accelerometer knows better than poses that lie.
+    pub fn climb(&self) -> f32 {
+        self.estimator.climb()
+    }
+
     /// Poses are lost, or lie: what they have taught of the sensors since lift-off counts only where a sensor may have
     /// changed so.
     pub fn distrust(&mut self) {

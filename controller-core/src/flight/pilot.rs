@@ -159,7 +159,7 @@ impl<'m> Pilot<'m> {
             }
             _ => None,
         });
-        let (output, flown) = self.output(estimate, inputs.now);
+        let (output, flown) = self.output(estimate, seen.touched, inputs.now);
         let scale = flown.as_ref().and_then(|flown| flown.as_ref().ok()).map(|flown| flown.thrust_scale);
         Outcome {
             output,
@@ -224,16 +224,12 @@ impl<'m> Pilot<'m> {
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
         }
-        match (transition.to, transition.reason) {
-            (_, Reason::PoseRegained) => self.trust.regain(false),
-            (_, Reason::LandingResumed) => self.trust.regain(true),
-            (Mode::Descending, reason) => {
-                self.estimation.distrust();
-                if reason == Reason::LandingOver {
-                    self.trust.give_up();
-                }
-            }
-            _ => {}
+        if transition.reason == Reason::LandingOver {
+            self.trust.give_up();
+        }
+        let lied = self.trust.is_given_up() || self.lies.is_some();
+        if transition.to == Mode::Descending {
+            self.estimation.distrust();
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {
@@ -254,7 +250,8 @@ impl<'m> Pilot<'m> {
             (Mode::Descending, _) => {
                 let certain = !estimate.health.faults.contain(Fault::Uncertain);
                 let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
-                chain.level(if touched { Some(0.0) } else { known });
+                let climbs = if lied { Some(self.estimation.climb()) } else { known };
+                chain.level(if touched { Some(0.0) } else { climbs }, lied);
             }
             (Mode::Landing, _) => {
                 let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
@@ -267,7 +264,7 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, estimate: &Estimate, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
+    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         match self.mode {
             Mode::MotorTest => return (self.bench.output(now.saturating_sub(self.since)), None),
             Mode::Idling => return (Output::Idle, None),
@@ -278,7 +275,7 @@ impl<'m> Pilot<'m> {
             return (Output::Stop, None);
         };
         let flown = if self.mode == Mode::Descending {
-            chain.fly_level(estimated, now.saturating_sub(self.since) >= LEVELLING_MAX)
+            chain.fly_level(estimated, touched || now.saturating_sub(self.since) >= LEVELLING_MAX)
         } else {
             if self.mode == Mode::Landing {
                 chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);

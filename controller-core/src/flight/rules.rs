@@ -45,6 +45,7 @@ pub const BRAKING_MAX: u64 = 5_000_000;
 /// How long a landing may take: so many times what its height takes at its speed, and so many seconds besides. Then its
 /// poses are no guide to the ground.
 pub const LANDING_PATIENCE: f32 = 2.0;
+/// See [`LANDING_PATIENCE`], s.
 pub const LANDING_REST: f32 = 12.0;
 
 /// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half

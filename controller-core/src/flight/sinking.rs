@@ -6,8 +6,10 @@ use crate::math;
 /// The least speed of a descent by the IMU alone, m/s.
 const DESCENT: f32 = 0.6;
 
-/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias.
+/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias. After
+/// poses that lied, the lean that they may have taught as well: 8 degrees.
 const DRIFT: f32 = 0.05;
+const DRIFT_AFTER_LIES: f32 = 0.2;
 
 /// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in
 /// a second: most drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
@@ -26,14 +28,16 @@ pub(super) struct Sinking {
     behind: f32,
     /// For how long, s.
     time: f32,
+    /// Whether the poses before had lied.
+    lied: bool,
     /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
     last: Option<(f32, u32)>,
 }
 
 impl Sinking {
-    /// Without a pose from now on, at a vertical speed of `speed`, m/s.
-    pub fn at(speed: f32) -> Self {
-        Self { speed, ..Self::default() }
+    /// Without a pose from now on, at a vertical speed of `speed`, m/s; after poses that have `lied`, or not.
+    pub fn at(speed: f32, lied: bool) -> Self {
+        Self { speed, lied, ..Self::default() }
     }
 
     /// Something has stopped it.
@@ -68,7 +72,7 @@ impl Sinking {
 
     /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.
     pub fn descent(&self) -> f32 {
-        DESCENT + DRIFT * self.time
+        DESCENT + if self.lied { DRIFT_AFTER_LIES } else { DRIFT } * self.time
     }
 }
 

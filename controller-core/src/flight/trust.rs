@@ -55,9 +55,10 @@ impl Trust {
         });
     }
 
-    /// Poses that were lost are flown again: by a landing, or not.
-    pub fn regain(&mut self, landing: bool) {
+    /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.
+    pub fn regain(&mut self, landing: bool) -> bool {
         self.doubt(if landing { RESUMED } else { REGAINED });
+        !self.is_given_up
     }
 
     fn doubt(&mut self, more: f32) {

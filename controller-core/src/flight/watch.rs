@@ -59,6 +59,10 @@ const HIT: f32 = 10.0;
 /// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
+/// The acceleration that is measured at most after a jerk, m/s^2: across, an attitude that is off by 8 degrees leaves as
+/// much.
+const LEANING: f32 = 1.5;
+
 /// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
 /// believed, us.
 const STRUCK: f32 = 25.0;
@@ -209,7 +213,8 @@ impl Look<'_> {
             !moves
                 && self.chain.is_some_and(Chain::sinks)
                 && asked < falling
-                && within(&state.acceleration, measured)
+                && state.acceleration.z.abs() <= measured
+                && within(&state.acceleration, if jerked { LEANING } else { measured })
                 && within(&state.state.angular_velocity, STILL.1)
         })
     }

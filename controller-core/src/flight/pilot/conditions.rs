@@ -58,7 +58,9 @@ impl Pilot<'_> {
         let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
         let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
-            (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
+            (Mode::Descending, Ok(chain), Some(estimated)) if may && self.trust.regain(self.must_still_land) => {
+                chain.regain(&estimated.state).is_ok()
+            }
             _ => false,
         };
         let patience = (self.settings.ground_station_patience * 1e6) as u64;

@@ -11,7 +11,7 @@ fn at_speed(speed: f32, jumps: u32) -> EstimatedState {
 
 #[test]
 fn what_the_estimate_gains_between_its_jumps_is_summed_up_and_no_jump_is() {
-    let mut sinking = Sinking::at(0.5);
+    let mut sinking = Sinking::at(0.5, false);
     assert_eq!(sinking.advance(&at_speed(2.0, 3), 0.01), 0.5);
     assert_eq!(sinking.advance(&at_speed(1.75, 3), 0.01), 0.25);
     assert_eq!(sinking.advance(&at_speed(-9.0, 4), 0.01), 0.25);
@@ -20,7 +20,7 @@ fn what_the_estimate_gains_between_its_jumps_is_summed_up_and_no_jump_is() {
 
 #[test]
 fn what_stays_behind_its_descent_is_summed_up_to_an_end_either_way() {
-    let mut sinking = Sinking::at(-0.2);
+    let mut sinking = Sinking::at(-0.2, false);
     let mut behind = |wanted: f32, ticks: u32| (0..ticks).fold(0.0, |_, _| sinking.behind(wanted, 0.01));
     assert!((behind(-0.7, 20) - 0.1).abs() < 1e-6);
     assert_eq!(behind(-0.7, 1_000), BEHIND);
@@ -31,9 +31,9 @@ fn what_stays_behind_its_descent_is_summed_up_to_an_end_either_way() {
 #[test]
 fn up_or_down_it_moves_beyond_a_drift_that_grows() {
     for (speed, moves) in [(0.31, true), (-0.31, true), (0.29, false), (-0.29, false)] {
-        assert_eq!(Sinking::at(speed).is_motion(), moves, "{speed} m/s");
+        assert_eq!(Sinking::at(speed, false).is_motion(), moves, "{speed} m/s");
     }
-    let mut sinking = Sinking::at(-0.35);
+    let mut sinking = Sinking::at(-0.35, false);
     (0..1_000).for_each(|_| _ = sinking.advance(&at_speed(0.0, 0), 0.01));
     assert!(!sinking.is_motion() && (sinking.descent() - 1.1).abs() < 1e-3, "{}", sinking.descent());
 }

@@ -47,7 +47,7 @@ fn seen(mode: Mode, chain: &mut Chain, estimated: &EstimatedState, ticks: u64) -
     let mut seen = Seen::default();
     for tick in 1..=ticks {
         if mode == Mode::Landing {
-            chain.come_down(0.5);
+            chain.come_down(0.5, true);
         }
         let _ = if mode == Mode::Descending { chain.fly_level(estimated, true) } else { chain.fly(&estimated.state) };
         let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
@@ -138,7 +138,7 @@ fn what_has_not_left_its_place_of_arming_has_landed_as_soon_as_it_flies() {
 fn descending(estimated: &EstimatedState) -> Chain<'static> {
     let mut chain = chain();
     (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
-    chain.level(Some(0.0));
+    chain.level(Some(0.0), false);
     (0..2_000).for_each(|_| _ = chain.fly_level(estimated, true));
     chain
 }
@@ -174,7 +174,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         let mut estimated = at(0.0);
         let mut chain = chain();
         (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
-        chain.level(Some(0.0));
+        chain.level(Some(0.0), false);
         let (mut watch, mut now) = (Watch::default(), 0);
         let mut tick = |chain: &mut Chain, estimated: &EstimatedState, mode: Mode, descends: bool| {
             now += PERIOD;
