@@ -118,6 +118,9 @@ fn explore() {
         seed: 1,
     });
     let only: Option<u64> = std::env::var("ONLY").ok().and_then(|only| only.parse().ok());
+    if let Some(only) = only {
+        cases = vec![cases[only as usize].clone()];
+    }
     let start = std::time::Instant::now();
     let flown = fly_all(cases);
     println!("{} flights in {:.1} s", flown.len(), start.elapsed().as_secs_f64());

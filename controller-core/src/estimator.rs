@@ -108,6 +108,9 @@ pub struct EstimatedState {
     /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
     /// [`Estimator::adopt`]. Who differentiates the state, begins anew when it changes.
     pub jumps: u32,
+    /// What the vertical speed has gained by the accelerometer alone, its bias as it was on the ground, m/s: of use are
+    /// differences.
+    pub gained: f32,
 }
 
 /// The estimator. Size: about 11 KB.
@@ -127,6 +130,8 @@ pub struct Estimator {
     airborne: bool,
     /// The biases of gyro, rad/s, and accelerometer, m/s^2, when it last was not.
     grounded: Option<(Vector3<f32>, Vector3<f32>)>,
+    /// What [`EstimatedState::gained`] was at the end of the history, m/s.
+    gained: f32,
     /// The vertical speed of [`Self::climb`], m/s.
     climb: f32,
     waiting: Vec<Stamped<Pose>, WAITING>,
@@ -150,6 +155,7 @@ impl Estimator {
             stream: Stream::EMPTY,
             airborne: false,
             grounded: None,
+            gained: 0.0,
             climb: 0.0,
             waiting: Vec::new(),
             frame: None,
@@ -183,6 +189,7 @@ impl Estimator {
             latest.advance(increment, self.settings.parameters().gravity);
             let taught = self.grounded.map_or(0.0, |(_, grounded)| latest.accelerometer_bias.z - grounded.z);
             let felt = latest.velocity.z - before + taught * increment.seconds();
+            self.gained += felt;
             self.climb += felt + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
         }
         self.take_waiting(increment.end);
@@ -253,7 +260,8 @@ impl Estimator {
         let angular_velocity = rate - gyro_bias;
         let state =
             State { position, velocity: velocity - rotated(&latest.attitude, &shaking), attitude, angular_velocity };
-        Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps })
+        let gained = self.gained + state.velocity.z - latest.velocity.z;
+        Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps, gained })
     }
 
     /// What the estimate is worth at `now`, us.

@@ -139,6 +139,23 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         let state = *vehicle.vehicle().state();
         let touched = vehicle.vehicle_mut().take_touchdown();
         flown.flew |= outcome.is_airborne && state.position.z > 0.05;
+        if std::env::var("TRACE").is_ok() && begun.is_some() && tick % 10 == 0 {
+            let e = outcome.estimated.unwrap().state;
+            let f = outcome.flown.as_ref().and_then(|f| f.as_ref().ok());
+            println!(
+                "TRACE {seconds:.2} {mode:?} z {:.2} vz {:.2} est z {:.2} vz {:.2}; flown v {:?} ref v {:?} pe {:?} pose {:?} dev {:.2?} bias {:.3?}",
+                state.position.z,
+                state.velocity.z,
+                e.position.z,
+                e.velocity.z,
+                f.map(|f| f.state.velocity.z),
+                f.map(|f| f.reference.velocity.z),
+                f.map(|f| f.position_error.z),
+                outcome.pose,
+                outcome.health.deviations,
+                outcome.health.biases
+            );
+        }
         if let (Some(transition), Some(_)) = (outcome.transition, begun) {
             flown.path.push(((seconds * 100.0).round() * 0.01, transition.reason));
         }

@@ -73,8 +73,9 @@ pub(super) struct Chain<'m> {
     law: Law,
     mixer: &'m mut Mixer,
     rotors: usize,
-    /// The greatest horizontal speed of a reference, m/s.
+    /// The greatest horizontal speed of a reference, m/s, and its greatest vertical acceleration, m/s^2.
     speed: f32,
+    brakes: f32,
     /// The vehicle's mass, kg, and gravity, m/s^2.
     mass: f32,
     gravity: f32,
@@ -132,6 +133,7 @@ impl<'m> Chain<'m> {
             mixer,
             rotors: rotors.len(),
             speed: configuration.bounds().horizontal_speed,
+            brakes: configuration.bounds().vertical_acceleration,
             mass: vehicle.mass,
             gravity: vehicle.gravity,
             period,
@@ -225,6 +227,12 @@ impl<'m> Chain<'m> {
             self.reference = resting(&state.position, &self.reference.heading);
         }
         Ok(())
+    }
+
+    /// Whether a reference that moves like `state` comes to rest within `height`, m, below it.
+    pub fn stops_within(&self, height: f32, state: &State) -> bool {
+        let down = state.velocity.z.min(0.0);
+        down * down < 2.0 * self.brakes * height
     }
 
     /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which

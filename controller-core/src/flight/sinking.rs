@@ -30,8 +30,8 @@ pub(super) struct Sinking {
     time: f32,
     /// Whether the poses before had lied.
     lied: bool,
-    /// The estimate's vertical speed at the last tick, m/s, and how often it had jumped.
-    last: Option<(f32, u32)>,
+    /// What the accelerometer had added to the vertical speed by the last tick, m/s.
+    last: Option<f32>,
 }
 
 impl Sinking {
@@ -45,14 +45,11 @@ impl Sinking {
         self.speed = 0.0;
     }
 
-    /// One tick of `period`, s, on; the vertical speed, m/s. What the estimate gains between its jumps is the
-    /// accelerometer's.
+    /// One tick of `period`, s, on; the vertical speed, m/s. Poses that come meanwhile say nothing of it.
     pub fn advance(&mut self, estimated: &EstimatedState, period: f32) -> f32 {
-        let (now, jumps) = (estimated.state.velocity.z, estimated.jumps);
-        if let Some((before, _)) = self.last.filter(|last| last.1 == jumps) {
-            self.speed += now - before;
-        }
-        self.last = Some((now, jumps));
+        let now = estimated.gained;
+        self.speed += now - self.last.unwrap_or(now);
+        self.last = Some(now);
         self.time += period;
         self.speed
     }

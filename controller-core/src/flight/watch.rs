@@ -172,20 +172,15 @@ impl Look<'_> {
         !within(&chain.unexpected(flown, state), STRUCK)
     }
 
-    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only
-    /// of a vehicle that goes down.
-    fn going_down(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
-        let (true, Some(state), Some(chain), Some(flown)) =
-            (matches!(self.mode, Mode::Landing | Mode::Descending), self.state, self.chain, self.flown)
-        else {
-            return None;
-        };
+    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for.
+    fn feels(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        let (Some(state), Some(chain), Some(flown)) = (self.state, self.chain, self.flown) else { return None };
         Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
     }
 
     /// The same, only where nothing but the IMU is left.
     fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
-        self.going_down().filter(|_| self.mode == Mode::Descending)
+        self.feels().filter(|_| self.mode == Mode::Descending)
     }
 
     /// Whether a landing goes down as it should, as far as its poses say.
@@ -197,7 +192,7 @@ impl Look<'_> {
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         let now = Look { state, ..*self };
-        self.chain.is_some_and(Chain::sinks) && now.going_down().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        self.chain.is_some_and(Chain::sinks) && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
@@ -205,7 +200,8 @@ impl Look<'_> {
     fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
-        self.going_down().filter(|_| jerked || self.mode == Mode::Descending).is_some_and(|(_, asked, state)| {
+        let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
+        self.feels().filter(|_| may).is_some_and(|(_, asked, state)| {
             let moves = match self.mode {
                 Mode::Landing => self.follows_down(),
                 _ => !hit && self.chain.is_some_and(Chain::moves),
@@ -276,12 +272,12 @@ impl Watch {
 
     /// Remembers what stops a vehicle that goes down.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
-        if !matches!(look.mode, Mode::Landing | Mode::Descending) {
-            (self.jerked, self.hit) = (None, false);
-        } else if look.jerks(state, JERK) {
-            self.jerked = Some((self.jerked.map_or(now, |(first, _)| first), now));
+        let descends = look.mode == Mode::Descending;
+        if look.jerks(state, JERK) {
+            let first = self.jerked.filter(|_| self.has_touched(look.mode, now)).map_or(now, |(first, _)| first);
+            self.jerked = Some((first, now));
         }
-        self.hit |= look.mode == Mode::Descending && look.jerks(state, HIT);
+        self.hit = descends && (self.hit || look.jerks(state, HIT));
     }
 
     /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.

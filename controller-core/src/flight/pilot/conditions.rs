@@ -1,7 +1,7 @@
 //! What the rules need to know in a tick.
 
 use super::Pilot;
-use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Fault, Rejected, Taken};
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::Inputs;
@@ -57,6 +57,10 @@ impl Pilot<'_> {
         }
         let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
         let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        if let (true, Ok(chain), Some(EstimatedState { state, .. })) = (may, &self.chain, &estimate.state) {
+            // What cannot hold above the ground lands.
+            self.must_still_land |= !chain.stops_within(state.position.z - self.fence.home().z, state);
+        }
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
             (Mode::Descending, Ok(chain), Some(estimated)) if may && self.trust.regain(self.must_still_land) => {
                 chain.regain(&estimated.state).is_ok()
