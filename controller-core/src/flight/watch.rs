@@ -26,6 +26,9 @@ use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, T
 use crate::estimator::EstimatedState;
 use nalgebra::Vector3;
 
+/// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
+const SINKING: f32 = 0.2;
+
 /// By how much a landing may be slower than its reference and goes down all the same, m/s.
 const FOLLOWING: f32 = 0.15;
 
@@ -192,7 +195,10 @@ impl Look<'_> {
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         let now = Look { state, ..*self };
-        self.chain.is_some_and(Chain::sinks) && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        // Also before it goes down, if it still sinks.
+        let sinks =
+            self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
+        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
@@ -273,7 +279,9 @@ impl Watch {
     /// Remembers what stops a vehicle that goes down.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
         let descends = look.mode == Mode::Descending;
-        if look.jerks(state, JERK) {
+        if !descends && look.mode != Mode::Landing {
+            self.jerked = None;
+        } else if look.jerks(state, JERK) {
             let first = self.jerked.filter(|_| self.has_touched(look.mode, now)).map_or(now, |(first, _)| first);
             self.jerked = Some((first, now));
         }
