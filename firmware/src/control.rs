@@ -110,6 +110,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander.put(order.map(|order| order.sender.0), now);
+            if self.shared.pose_delay_unknown.is_raised() {
+                self.shared.announce(Event::PoseDelayUnknown);
+            }
         }
         self.tell(&outcome, asked);
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());

@@ -126,7 +126,7 @@ impl<'m> Pilot<'m> {
             chain.stop_sinking();
         }
         if self.mode.flies() {
-            self.trust.hear(estimate.pose, inputs.now);
+            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), inputs.now);
         } else if !self.mode.is_armed() {
             self.trust = Trust::default();
         }
@@ -275,7 +275,9 @@ impl<'m> Pilot<'m> {
             return (Output::Stop, None);
         };
         let flown = if self.mode == Mode::Descending {
-            chain.fly_level(estimated, touched || now.saturating_sub(self.since) >= LEVELLING_MAX)
+            // Poses that are given up do not come back.
+            let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX;
+            chain.fly_level(estimated, descends)
         } else {
             if self.mode == Mode::Landing {
                 chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);

@@ -51,7 +51,7 @@ worded! {
         /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
         PoseLost = "Pose lost: levelling for 1 s, then going down",
         /// The source of poses has been refused and found again too often in this flight.
-        PosesGivenUp = "Poses given up: levelling, then going down",
+        PosesGivenUp = "Poses given up: going down by the IMU",
         /// A landing has lasted for longer than its height explains.
         LandingOver = "Landing takes too long: going down by the IMU",
         /// The same as [`Self::PoseLost`], while idling.

@@ -6,6 +6,7 @@
 //! | what happens in flight | doubt |
 //! |---|---|
 //! | poses are refused for what they say | for as long as that lasts |
+//! | poses are believed, and turn as the gyro's bias cannot explain | for as long as that lasts |
 //! | the estimate is reset to where the body was found again | [`REFOUND`] more |
 //! | the sender's frame moves | [`MOVED`] more |
 //! | poses that were lost are flown again | [`REGAINED`] more; [`RESUMED`] where a landing resumes |
@@ -41,8 +42,9 @@ pub(super) struct Trust {
 }
 
 impl Trust {
-    /// Takes note of what became of a tick's poses, in flight.
-    pub fn hear(&mut self, pose: Option<Result<Taken, Rejected>>, now: u64) {
+    /// Takes note of what became of a tick's poses, in flight. Where the gyro's bias is not `plausible` with them, they
+    /// turn as the vehicle does not, and are no better than refused.
+    pub fn hear(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
         let seconds = now.saturating_sub(self.heard).min(SPEAKS_FOR) as f32 * 1e-6;
         self.heard = now;
@@ -50,7 +52,8 @@ impl Trust {
             Err(rejected) if rejected.is_lie() => seconds,
             Ok(Taken::Refound) => REFOUND,
             Ok(Taken::Rebased) => MOVED,
-            Ok(taken) if taken.is_believed() => -FORGOTTEN * seconds,
+            Ok(taken) if taken.is_believed() && plausible => -FORGOTTEN * seconds,
+            Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
         });
     }

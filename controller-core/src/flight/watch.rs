@@ -26,6 +26,9 @@ use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, T
 use crate::estimator::EstimatedState;
 use nalgebra::Vector3;
 
+/// The speed, m/s, at which poses that lie may show a vehicle that stands.
+const LIED: f32 = 0.5;
+
 /// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
 const SINKING: f32 = 0.2;
 
@@ -186,10 +189,11 @@ impl Look<'_> {
         self.feels().filter(|_| self.mode == Mode::Descending)
     }
 
-    /// Whether a landing goes down as it should, as far as its poses say.
-    fn follows_down(&self) -> bool {
+    /// Whether a landing moves: down as it should, or as what stands does not, as far as its poses say.
+    fn moves_landing(&self) -> bool {
         let (Some(state), Some(flown)) = (self.state, self.flown) else { return false };
-        self.mode == Mode::Landing && state.state.velocity.z < flown.reference.velocity.z + FOLLOWING
+        let speed = state.state.velocity.z;
+        speed < flown.reference.velocity.z + FOLLOWING || speed.abs() > LIED
     }
 
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
@@ -209,7 +213,7 @@ impl Look<'_> {
         let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
         self.feels().filter(|_| may).is_some_and(|(_, asked, state)| {
             let moves = match self.mode {
-                Mode::Landing => self.follows_down(),
+                Mode::Landing => self.moves_landing(),
                 _ => !hit && self.chain.is_some_and(Chain::moves),
             };
             !moves

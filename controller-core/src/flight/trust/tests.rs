@@ -6,7 +6,7 @@ const TICK: u64 = 10_000;
 fn hear(trust: &mut Trust, now: &mut u64, pose: Result<Taken, Rejected>, seconds: f32) {
     for _ in 0..(seconds * 100.0) as u32 {
         *now += TICK;
-        trust.hear(Some(pose), *now);
+        trust.hear(Some(pose), true, *now);
     }
 }
 
@@ -67,4 +67,11 @@ fn what_is_refused_for_its_time_or_its_quality_is_no_lie() {
         hear(&mut trust, &mut now, Err(why), 100.0);
     }
     assert!(!trust.is_given_up());
+}
+
+#[test]
+fn poses_that_teach_the_gyro_a_bias_that_is_none_are_given_up() {
+    let mut trust = Trust::default();
+    (1..=210).for_each(|tick| trust.hear(Some(Ok(Taken::Fused)), false, tick * TICK));
+    assert!(trust.is_given_up());
 }
