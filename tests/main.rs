@@ -45,6 +45,7 @@ mod independent_law;
 mod kinematics;
 mod lockstep;
 mod lyapunov;
+mod lying_poses;
 mod paper;
 mod pilots_table;
 mod published;

@@ -69,8 +69,8 @@ pub struct Flown {
     pub rose: f64,
     /// The hardest touchdown, m/s.
     pub touchdown: f64,
-    /// How high it was when its motors stopped, m.
-    pub stopped_at: f64,
+    /// How far it was from where it was to hold, before it went down, m.
+    pub off: f64,
     /// Modes with the times at which they began, s after the first lie, and why.
     pub path: Vec<(f64, Reason)>,
 }
@@ -98,7 +98,7 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         off_after: None,
         rose: 0.0,
         touchdown: 0.0,
-        stopped_at: 0.0,
+        off: 0.0,
         path: Vec::new(),
     };
     let (mut mode, mut lasts, mut down) = (Mode::Boot, 0_u64, None::<Down>);
@@ -139,23 +139,6 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         let state = *vehicle.vehicle().state();
         let touched = vehicle.vehicle_mut().take_touchdown();
         flown.flew |= outcome.is_airborne && state.position.z > 0.05;
-        if std::env::var("TRACE").is_ok() && begun.is_some() && tick % 10 == 0 {
-            let e = outcome.estimated.unwrap().state;
-            let f = outcome.flown.as_ref().and_then(|f| f.as_ref().ok());
-            println!(
-                "TRACE {seconds:.2} {mode:?} z {:.2} vz {:.2} est z {:.2} vz {:.2}; flown v {:?} ref v {:?} pe {:?} pose {:?} dev {:.2?} bias {:.3?}",
-                state.position.z,
-                state.velocity.z,
-                e.position.z,
-                e.velocity.z,
-                f.map(|f| f.state.velocity.z),
-                f.map(|f| f.reference.velocity.z),
-                f.map(|f| f.position_error.z),
-                outcome.pose,
-                outcome.health.deviations,
-                outcome.health.biases
-            );
-        }
         if let (Some(transition), Some(_)) = (outcome.transition, begun) {
             flown.path.push(((seconds * 100.0).round() * 0.01, transition.reason));
         }
@@ -164,6 +147,9 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
             down = None;
             let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX);
             flown.out = flown.out.max(out);
+            if mode == Mode::Holding && lasts >= 50 {
+                flown.off = flown.off.max((state.position - Vector3::z() * f64::from(HEIGHT)).norm());
+            }
         }
         if begun.is_some() && (goes_down || !mode.is_armed() && flown.flew) {
             let down = down.get_or_insert(Down {
@@ -177,7 +163,6 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
                 flown.touchdown = flown.touchdown.max(touchdown.speed);
             }
             if outcome.output == Output::Stop && flown.down_after.is_none() {
-                flown.stopped_at = state.position.z;
                 flown.down_after = Some((now - down.since) as f64 * 1e-6);
                 flown.off_after = Some(down.touched.map_or(0.0, |touched| (now - touched) as f64 * 1e-6));
             }

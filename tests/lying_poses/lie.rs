@@ -40,6 +40,47 @@ pub enum Lie {
     Second { every: u64, off: Vector3<f32> },
 }
 
+impl Lie {
+    pub const NAMES: [&str; 13] = [
+        "heading off",
+        "heading drifts",
+        "leans",
+        "off",
+        "drifts",
+        "scaled",
+        "mirrored",
+        "freezes",
+        "comes and goes",
+        "late",
+        "noisy",
+        "claims",
+        "two sources",
+    ];
+
+    pub fn name(&self) -> &'static str {
+        Self::NAMES[match self {
+            Self::HeadingOff(_) => 0,
+            Self::HeadingDrifts(_) => 1,
+            Self::Leans(_) => 2,
+            Self::Off(_) => 3,
+            Self::Drifts(_) => 4,
+            Self::Scaled(_) => 5,
+            Self::Mirrored(_) => 6,
+            Self::Freezes => 7,
+            Self::Comes { .. } => 8,
+            Self::Late(_) => 9,
+            Self::Noisy(..) => 10,
+            Self::Claims(..) => 11,
+            Self::Second { .. } => 12,
+        }]
+    }
+
+    /// Whether nothing on board may tell it: positions that move, or are as far apart, as those of another flight.
+    pub fn is_beyond_telling(&self) -> bool {
+        matches!(self, Self::Drifts(_) | Self::Scaled(_))
+    }
+}
+
 /// A source that lies.
 pub struct Liar {
     pub lies: Vec<Lie>,
