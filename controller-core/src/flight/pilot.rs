@@ -13,7 +13,7 @@ use super::fence::Fence;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
-use super::rules::{self, BRAKING_MAX, Condition, LANDING_PATIENCE, LANDING_REST, LEVELLING_MAX, Mode, Transition};
+use super::rules::{self, BRAKING_MAX, Condition, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
 use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
@@ -22,7 +22,6 @@ use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
 use crate::estimator::{EstimatedState, Estimator, Fault, Taken};
 use crate::governor::GovernorLimits;
-use crate::math;
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 3 KB, and its [`Memory`] and [`Estimator`].
@@ -48,8 +47,8 @@ pub struct Pilot<'m> {
     must_still_land: bool,
     /// Whether poses may still be believed in this flight.
     trust: Trust,
-    /// By when a landing must have come to its end, us.
-    landed_by: u64,
+    /// How high above the place of arming a landing has been, m.
+    landing_from: f32,
     thrust_check: ThrustCheck,
 }
 
@@ -86,7 +85,7 @@ impl<'m> Pilot<'m> {
             wanted_since: None,
             must_still_land: false,
             trust: Trust::default(),
-            landed_by: 0,
+            landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
         }
     }
@@ -122,7 +121,10 @@ impl<'m> Pilot<'m> {
     fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let followed = self.follow(estimate);
         let seen = self.look(inputs, estimate);
-        if let (true, Ok(chain)) = (seen.touches && self.mode == Mode::Descending, &mut self.chain) {
+        if seen.lied {
+            self.trust.give_up();
+        }
+        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
             chain.stop_sinking();
         }
         if self.mode.flies() {
@@ -253,12 +255,7 @@ impl<'m> Pilot<'m> {
                 let climbs = if lied { Some(self.estimation.climb()) } else { known };
                 chain.level(if touched { Some(0.0) } else { climbs }, lied);
             }
-            (Mode::Landing, _) => {
-                let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
-                let height = math::between(height, 0.0, self.settings.fence_height);
-                let seconds = LANDING_REST + LANDING_PATIENCE * height / self.settings.landing_speed;
-                self.landed_by = inputs.now.saturating_add((seconds * 1e6) as u64);
-            }
+            (Mode::Landing, _) => self.landing_from = 0.0,
             _ => {}
         }
     }

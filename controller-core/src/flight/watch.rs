@@ -36,9 +36,14 @@ const SINKING: f32 = 0.2;
 const FOLLOWING: f32 = 0.15;
 
 /// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
-/// pose takes each for the ground, us.
+/// pose takes each for the ground, us: as long as it bounces, and so short that what only shakes keeps count of its
+/// speed.
 const TOUCHED_LASTING: u64 = 3_000_000;
-const TOUCHING_LASTING: u64 = 1_000_000;
+const TOUCHING_LASTING: u64 = 200_000;
+
+/// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
+/// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
+const TAUGHT: f32 = 1.0;
 
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
@@ -110,6 +115,8 @@ pub(super) struct Watch {
     jerked: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
+    /// What poses had added to the vertical speed before something stopped it, m/s.
+    taught: f32,
     /// Whether a low battery has had its landing: whoever flies on knows.
     low_is_told: bool,
 }
@@ -123,6 +130,8 @@ pub(super) struct Seen {
     /// Whether something has stopped a vehicle that goes down, and whether just now.
     pub touched: bool,
     pub touches: bool,
+    /// Whether poses have given a landing, since it has met the ground, a speed that it cannot have.
+    pub lied: bool,
     pub crashed: bool,
     pub battery_low: bool,
     pub battery_critical: bool,
@@ -253,12 +262,16 @@ impl Watch {
         let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
         let calm = self.calm.tick(state);
         let look = Look { mode, state: calm.as_ref(), chain, flown };
+        let is_blind = mode == Mode::Descending;
         self.note_jerks(&look, state, now);
-        let touched = self.has_touched(mode, now);
+        let jerked = self.has_jerked(mode, now);
+        let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
+        let touches = is_blind && self.jerked.is_some_and(begins);
+        let touched = jerked && (!is_blind || touches || !chain.is_some_and(Chain::moves));
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let rests = look.is_held_up(touched, self.hit);
+        let rests = look.is_held_up(jerked, self.hit);
         let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
@@ -269,9 +282,8 @@ impl Watch {
             saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
             landed: left_behind || held_up || stands,
             touched,
-            touches: self
-                .jerked
-                .is_some_and(|(first, last)| last == now && now.saturating_sub(first) < TOUCHING_LASTING),
+            touches,
+            lied: mode == Mode::Landing && self.is_taught(jerked, state),
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
             battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
@@ -286,14 +298,24 @@ impl Watch {
         if !descends && look.mode != Mode::Landing {
             self.jerked = None;
         } else if look.jerks(state, JERK) {
-            let first = self.jerked.filter(|_| self.has_touched(look.mode, now)).map_or(now, |(first, _)| first);
+            let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
             self.jerked = Some((first, now));
         }
         self.hit = descends && (self.hit || look.jerks(state, HIT));
     }
 
+    /// Whether poses have added to the vertical speed what no landing has `jerked` to.
+    fn is_taught(&mut self, jerked: bool, state: Option<&EstimatedState>) -> bool {
+        let Some(state) = state else { return false };
+        let taught = state.state.velocity.z - state.gained;
+        if !jerked {
+            self.taught = taught;
+        }
+        (taught - self.taught).abs() > TAUGHT
+    }
+
     /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
-    fn has_touched(&self, mode: Mode, now: u64) -> bool {
+    fn has_jerked(&self, mode: Mode, now: u64) -> bool {
         let recently = |last: u64| now.saturating_sub(last) < TOUCHED_LASTING;
         self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
     }

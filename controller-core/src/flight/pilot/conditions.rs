@@ -8,7 +8,8 @@ use crate::flight::exchange::Inputs;
 use crate::flight::refusal::Refusal;
 use crate::flight::request::Request;
 use crate::flight::rules::{
-    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LEVELLING_MAX, Mode,
+    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE, LANDING_REST,
+    LEVELLING_MAX, Mode,
 };
 use crate::flight::watch::Seen;
 use crate::measurement::is_fresh;
@@ -67,6 +68,9 @@ impl Pilot<'_> {
             }
             _ => false,
         };
+        let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
+        self.landing_from = self.landing_from.max(height);
+        let landing_max = LANDING_REST + LANDING_PATIENCE * self.landing_from / self.settings.landing_speed;
         let patience = (self.settings.ground_station_patience * 1e6) as u64;
         conditions
             .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
@@ -79,7 +83,7 @@ impl Pilot<'_> {
             .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
             .with(Condition::PosesGivenUp, self.trust.is_given_up())
-            .with(Condition::LandingOver, inputs.now >= self.landed_by)
+            .with(Condition::LandingOver, elapsed as f32 * 1e-6 >= landing_max)
             .with(Condition::ImuDoubtful, seen.imu_doubtful)
             .with(Condition::PoseRegained, regained && !self.must_still_land)
             .with(Condition::PoseRegainedToLand, regained && self.must_still_land)
