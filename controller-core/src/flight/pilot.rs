@@ -20,7 +20,7 @@ use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
-use crate::estimator::{EstimatedState, Estimator, Fault, Taken};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Taken};
 use crate::governor::GovernorLimits;
 use nalgebra::Vector3;
 
@@ -229,7 +229,9 @@ impl<'m> Pilot<'m> {
         if transition.reason == Reason::LandingOver {
             self.trust.give_up();
         }
-        let lied = self.trust.is_given_up() || self.lies.is_some();
+        // One outlier before an outage is no lie.
+        let lasted = self.lies.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER);
+        let lied = self.trust.is_given_up() || lasted;
         if transition.to == Mode::Descending {
             self.estimation.distrust();
         }
