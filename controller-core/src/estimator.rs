@@ -108,8 +108,7 @@ pub struct EstimatedState {
     /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
     /// [`Estimator::adopt`]. Who differentiates the state, begins anew when it changes.
     pub jumps: u32,
-    /// What the vertical speed has gained by the accelerometer alone, its bias as it was on the ground, m/s: of use are
-    /// differences.
+    /// What the vertical speed has gained by the accelerometer alone, m/s: of use are differences.
     pub gained: f32,
 }
 
@@ -188,9 +187,11 @@ impl Estimator {
             let before = latest.velocity.z;
             latest.advance(increment, self.settings.parameters().gravity);
             let taught = self.grounded.map_or(0.0, |(_, grounded)| latest.accelerometer_bias.z - grounded.z);
-            let felt = latest.velocity.z - before + taught * increment.seconds();
+            let felt = latest.velocity.z - before;
             self.gained += felt;
-            self.climb += felt + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
+            self.climb += felt
+                + taught * increment.seconds()
+                + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
         }
         self.take_waiting(increment.end);
     }

@@ -34,6 +34,9 @@ use nalgebra::{UnitQuaternion, Vector2, Vector3};
 /// The speed across at which a vehicle may go down, m/s.
 const AT_REST: f32 = 0.05;
 
+/// The speed, m/s, at which a vehicle hardly sinks: less than a landing's.
+const HARDLY: f32 = 0.3;
+
 /// How near the height of its take-off the reference has to be, m, and how slow, m/s.
 const RISEN: (f32, f32) = (0.01, 0.01);
 
@@ -229,10 +232,11 @@ impl<'m> Chain<'m> {
         Ok(())
     }
 
-    /// Whether a reference that moves like `state` comes to rest within `height`, m, below it.
+    /// Whether a reference that moves like `state` comes to rest within `height`, m, below it; one that hardly sinks
+    /// does, wherever the ground is.
     pub fn stops_within(&self, height: f32, state: &State) -> bool {
         let down = state.velocity.z.min(0.0);
-        down * down < 2.0 * self.brakes * height
+        down > -HARDLY || down * down < 2.0 * self.brakes * height
     }
 
     /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which

@@ -67,7 +67,7 @@ impl<'m> Estimation<'m> {
         self.estimator.climb()
     }
 
-    /// Poses are lost, or lie: what they have taught of the sensors since lift-off counts only where a sensor may have
+    /// Poses lie: what they have taught of the sensors since lift-off counts only where a sensor may have
     /// changed so.
     pub fn distrust(&mut self) {
         self.estimator.distrust();

@@ -232,7 +232,7 @@ impl<'m> Pilot<'m> {
         // One outlier before an outage is no lie.
         let lasted = self.lies.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER);
         let lied = self.trust.is_given_up() || lasted;
-        if transition.to == Mode::Descending {
+        if transition.to == Mode::Descending && lied {
             self.estimation.distrust();
         }
         let Ok(chain) = &mut self.chain else { return };

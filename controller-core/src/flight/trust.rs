@@ -17,13 +17,13 @@
 use crate::estimator::{Rejected, Taken};
 
 /// Doubt at which a source is given up, s.
-pub const DOUBT_MAX: f32 = 2.0;
+pub const DOUBT_MAX: f32 = 3.0;
 
 /// What adds to the doubt beside the time of refusals, s.
-const REFOUND: f32 = 0.5;
-const MOVED: f32 = 0.2;
-const REGAINED: f32 = 0.7;
-const RESUMED: f32 = 1.2;
+const REFOUND: f32 = 0.7;
+const MOVED: f32 = 0.3;
+const REGAINED: f32 = 1.1;
+const RESUMED: f32 = 1.6;
 
 /// What a second of belief takes from the doubt, s.
 const FORGOTTEN: f32 = 0.03;

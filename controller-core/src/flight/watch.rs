@@ -41,6 +41,9 @@ const FOLLOWING: f32 = 0.15;
 const TOUCHED_LASTING: u64 = 3_000_000;
 const TOUCHING_LASTING: u64 = 200_000;
 
+/// For how long what has been jolted is taken to shake, us: what shakes does not tell the ground by its jerks.
+const SHAKING_LASTING: u64 = 500_000;
+
 /// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
 /// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
 const TAUGHT: f32 = 1.0;
@@ -111,8 +114,11 @@ pub(super) struct Watch {
     calm: Calm,
     /// When the vehicle was last struck in guided flight, us.
     struck: Option<u64>,
-    /// When something last stopped a vehicle that goes down, us, and when it first did.
+    /// When something first stopped a vehicle that goes down, us, and when it last did.
     jerked: Option<(u64, u64)>,
+    /// When it was last jolted, wherever it went, us; and whether it shook so before something stopped it.
+    jolted: Option<u64>,
+    shakes: bool,
     /// Whether it has hit something.
     hit: bool,
     /// What poses had added to the vertical speed before something stopped it, m/s.
@@ -207,11 +213,16 @@ impl Look<'_> {
 
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
-        let now = Look { state, ..*self };
         // Also before it goes down, if it still sinks.
         let sinks =
             self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
-        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        sinks && self.feels_more(state, least)
+    }
+
+    /// Whether it is jolted upwards with more than `least`, m/s^2, in this very tick's `state`.
+    fn feels_more(&self, state: Option<&EstimatedState>, least: f32) -> bool {
+        let now = Look { state, ..*self };
+        now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
@@ -266,8 +277,9 @@ impl Watch {
         self.note_jerks(&look, state, now);
         let jerked = self.has_jerked(mode, now);
         let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
-        let touches = is_blind && self.jerked.is_some_and(begins);
-        let touched = jerked && (!is_blind || touches || !chain.is_some_and(Chain::moves));
+        let touches = is_blind && !self.shakes && self.jerked.is_some_and(begins);
+        let is_at_rest = !self.shakes && !chain.is_some_and(Chain::moves);
+        let touched = jerked && (!is_blind || touches || is_at_rest);
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
@@ -283,7 +295,7 @@ impl Watch {
             landed: left_behind || held_up || stands,
             touched,
             touches,
-            lied: mode == Mode::Landing && self.is_taught(jerked, state),
+            lied: mode == Mode::Landing && self.is_taught(jerked, &look, state),
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
             battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
@@ -295,23 +307,31 @@ impl Watch {
     /// Remembers what stops a vehicle that goes down.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
         let descends = look.mode == Mode::Descending;
+        let shaken = self.jolted.is_some_and(|jolted| now.saturating_sub(jolted) < SHAKING_LASTING);
         if !descends && look.mode != Mode::Landing {
             self.jerked = None;
         } else if look.jerks(state, JERK) {
             let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
+            self.shakes = if first == now { shaken } else { self.shakes };
             self.jerked = Some((first, now));
+        }
+        if look.feels_more(state, JERK) {
+            self.jolted = Some(now);
         }
         self.hit = descends && (self.hit || look.jerks(state, HIT));
     }
 
-    /// Whether poses have added to the vertical speed what no landing has `jerked` to.
-    fn is_taught(&mut self, jerked: bool, state: Option<&EstimatedState>) -> bool {
-        let Some(state) = state else { return false };
-        let taught = state.state.velocity.z - state.gained;
+    /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and
+    /// that is none of a vehicle which stands or goes on down.
+    fn is_taught(&mut self, jerked: bool, look: &Look, state: Option<&EstimatedState>) -> bool {
+        let (Some(state), Some(flown)) = (state, look.flown) else { return false };
+        let speed = state.state.velocity.z;
+        let taught = speed - state.gained;
         if !jerked {
             self.taught = taught;
         }
-        (taught - self.taught).abs() > TAUGHT
+        let possible = flown.reference.velocity.z - TAUGHT..=TAUGHT;
+        (taught - self.taught).abs() > TAUGHT && !possible.contains(&speed)
     }
 
     /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.

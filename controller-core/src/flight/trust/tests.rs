@@ -45,7 +45,7 @@ fn a_few_refused_poses_among_many_do_no_harm_and_every_second_one_does() {
             hear(&mut trust, &mut now, Err(Rejected::Position), refused as f32 * 0.0101);
         }
         if given_up {
-            hear(&mut trust, &mut now, Err(Rejected::Position), 1.1);
+            hear(&mut trust, &mut now, Err(Rejected::Position), 2.6);
         }
         assert_eq!(trust.is_given_up(), given_up, "{good} {refused}");
     }
@@ -72,6 +72,6 @@ fn what_is_refused_for_its_time_or_its_quality_is_no_lie() {
 #[test]
 fn poses_that_teach_the_gyro_a_bias_that_is_none_are_given_up() {
     let mut trust = Trust::default();
-    (1..=210).for_each(|tick| trust.hear(Some(Ok(Taken::Fused)), false, tick * TICK));
+    (1..=310).for_each(|tick| trust.hear(Some(Ok(Taken::Fused)), false, tick * TICK));
     assert!(trust.is_given_up());
 }
