@@ -41,12 +41,12 @@ const FOLLOWING: f32 = 0.15;
 const TOUCHED_LASTING: u64 = 3_000_000;
 const TOUCHING_LASTING: u64 = 200_000;
 
-/// For how long what has been jolted is taken to shake, us: what shakes does not tell the ground by its jerks.
-const SHAKING_LASTING: u64 = 500_000;
-
 /// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
 /// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
 const TAUGHT: f32 = 1.0;
+
+/// For how long they do, us: true poses take it back with the next.
+const LIED_LASTING: u64 = 50_000;
 
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
@@ -66,6 +66,10 @@ const STILL: (f32, f32) = (0.15, 0.5);
 /// The upward acceleration that only the ground gives, m/s^2.
 const JERK: f32 = 5.0;
 
+/// The upward acceleration of a touchdown that stops a vehicle within a tick or two, m/s^2: more than rotors out of
+/// balance make of a tick.
+const TOUCH: f32 = 15.0;
+
 /// The upward acceleration of a hit, m/s^2.
 const HIT: f32 = 10.0;
 
@@ -73,7 +77,7 @@ const HIT: f32 = 10.0;
 /// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
-/// The acceleration that is measured at most after a jerk, m/s^2: across, an attitude that is off by 8 degrees leaves as
+/// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees leaves as
 /// much.
 const LEANING: f32 = 1.5;
 
@@ -116,11 +120,11 @@ pub(super) struct Watch {
     struck: Option<u64>,
     /// When something first stopped a vehicle that goes down, us, and when it last did.
     jerked: Option<(u64, u64)>,
-    /// When it was last jolted, wherever it went, us; and whether it shook so before something stopped it.
-    jolted: Option<u64>,
-    shakes: bool,
+    /// The same of a jerk that nothing but the ground gives, without a pose.
+    touched: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
+    lied: Lasting,
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
     /// Whether a low battery has had its landing: whoever flies on knows.
@@ -216,18 +220,13 @@ impl Look<'_> {
         // Also before it goes down, if it still sinks.
         let sinks =
             self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
-        sinks && self.feels_more(state, least)
-    }
-
-    /// Whether it is jolted upwards with more than `least`, m/s^2, in this very tick's `state`.
-    fn feels_more(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         let now = Look { state, ..*self };
-        now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not, or with a
     /// `hit`.
-    fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
+    fn is_held_up(&self, jerked: bool, touched: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
         let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
@@ -240,7 +239,7 @@ impl Look<'_> {
                 && self.chain.is_some_and(Chain::sinks)
                 && asked < falling
                 && state.acceleration.z.abs() <= measured
-                && within(&state.acceleration, if jerked { LEANING } else { measured })
+                && within(&state.acceleration, if touched { LEANING } else { measured })
                 && within(&state.state.angular_velocity, STILL.1)
         })
     }
@@ -277,13 +276,15 @@ impl Watch {
         self.note_jerks(&look, state, now);
         let jerked = self.has_jerked(mode, now);
         let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
-        let touches = is_blind && !self.shakes && self.jerked.is_some_and(begins);
-        let is_at_rest = !self.shakes && !chain.is_some_and(Chain::moves);
-        let touched = jerked && (!is_blind || touches || is_at_rest);
+        let touches = is_blind && self.touched.is_some_and(begins);
+        let is_at_rest = !chain.is_some_and(Chain::moves);
+        let touched = if is_blind { touches || self.touched.is_some() && is_at_rest } else { jerked };
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let rests = look.is_held_up(jerked, self.hit);
+        let is_taught = mode == Mode::Landing && self.is_taught(jerked, &look, state);
+        let lied = self.lied.is_so(is_taught, LIED_LASTING, now);
+        let rests = look.is_held_up(jerked, self.touched.is_some(), self.hit);
         let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
@@ -295,7 +296,7 @@ impl Watch {
             landed: left_behind || held_up || stands,
             touched,
             touches,
-            lied: mode == Mode::Landing && self.is_taught(jerked, &look, state),
+            lied,
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
             battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
@@ -307,17 +308,17 @@ impl Watch {
     /// Remembers what stops a vehicle that goes down.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
         let descends = look.mode == Mode::Descending;
-        let shaken = self.jolted.is_some_and(|jolted| now.saturating_sub(jolted) < SHAKING_LASTING);
         if !descends && look.mode != Mode::Landing {
             self.jerked = None;
         } else if look.jerks(state, JERK) {
             let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
-            self.shakes = if first == now { shaken } else { self.shakes };
             self.jerked = Some((first, now));
         }
-        if look.feels_more(state, JERK) {
-            self.jolted = Some(now);
-        }
+        self.touched = match self.touched {
+            _ if !descends && look.mode != Mode::Landing => None,
+            touched if look.jerks(state, TOUCH) => Some((touched.map_or(now, |(first, _)| first), now)),
+            touched => touched,
+        };
         self.hit = descends && (self.hit || look.jerks(state, HIT));
     }
 
