@@ -66,9 +66,10 @@ const STILL: (f32, f32) = (0.15, 0.5);
 /// The upward acceleration that only the ground gives, m/s^2.
 const JERK: f32 = 5.0;
 
-/// The upward acceleration of a touchdown that stops a vehicle within a tick or two, m/s^2: more than rotors out of
-/// balance make of a tick.
-const TOUCH: f32 = 15.0;
+/// The upward acceleration of a touchdown that stops a vehicle within a tick or two, m/s^2, and by when after the first
+/// jerk, us: rotors out of balance jerk at it for longer before they make so much of a tick.
+const TOUCH: f32 = 9.0;
+const JERKING: u64 = 30_000;
 
 /// The upward acceleration of a hit, m/s^2.
 const HIT: f32 = 10.0;
@@ -277,8 +278,7 @@ impl Watch {
         let jerked = self.has_jerked(mode, now);
         let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
         let touches = is_blind && self.touched.is_some_and(begins);
-        let is_at_rest = !chain.is_some_and(Chain::moves);
-        let touched = if is_blind { touches || self.touched.is_some() && is_at_rest } else { jerked };
+        let touched = if is_blind { self.touched.is_some() } else { jerked };
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
@@ -314,9 +314,11 @@ impl Watch {
             let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
             self.jerked = Some((first, now));
         }
+        let fresh = self.jerked.is_some_and(|(first, _)| now.saturating_sub(first) < JERKING);
         self.touched = match self.touched {
             _ if !descends && look.mode != Mode::Landing => None,
-            touched if look.jerks(state, TOUCH) => Some((touched.map_or(now, |(first, _)| first), now)),
+            None if look.jerks(state, TOUCH) && fresh => Some((now, now)),
+            Some((first, _)) if look.jerks(state, TOUCH) => Some((first, now)),
             touched => touched,
         };
         self.hit = descends && (self.hit || look.jerks(state, HIT));
