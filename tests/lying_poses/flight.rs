@@ -179,9 +179,11 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
 
 /// How far a vehicle that rises at `speed`, m/s, still does while its reference brakes, m.
 fn braking(speed: f64) -> f64 {
-    /// m/s^2: the study's vertical bound.
+    /// The study's vertical bound, m/s^2, and how fast it may be reached, m/s^3.
     const BRAKES: f64 = 0.1755;
-    speed.max(0.0).powi(2) / (2.0 * BRAKES)
+    const JERK: f64 = 3.876;
+    let up = speed.max(0.0);
+    up.powi(2) / (2.0 * BRAKES) + up * BRAKES / (2.0 * JERK)
 }
 
 /// Up to a point, and then once round in 12 s on a circle of 1 m.

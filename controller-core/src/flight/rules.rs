@@ -42,8 +42,8 @@ pub const DESCENDING_MAX: u64 = 30_000_000;
 /// How long a landing may brake across before it goes down, us.
 pub const BRAKING_MAX: u64 = 5_000_000;
 
-/// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, and so
-/// many seconds besides. Then its poses are no guide to the ground.
+/// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
+/// as the fence reaches, and so many seconds besides. Then its poses are no guide to the ground.
 pub const LANDING_PATIENCE: f32 = 2.0;
 /// See [`LANDING_PATIENCE`], s.
 pub const LANDING_REST: f32 = 12.0;

@@ -15,6 +15,9 @@ const DRIFT_AFTER_LIES: f32 = 0.2;
 /// a second: most drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
 const MOVING: (f32, f32) = (0.3, 0.01);
 
+/// The same after poses that lied, which leave a speed that may be off.
+const MOVING_AFTER_LIES: (f32, f32) = (0.8, 0.05);
+
 /// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no
 /// more is left to be made up for where the draft ends.
 const BEHIND: f32 = 0.3;
@@ -63,7 +66,7 @@ impl Sinking {
 
     /// Whether the vehicle rises or sinks faster than an accelerometer's drift explains.
     pub fn is_motion(&self) -> bool {
-        let (speed, drift) = MOVING;
+        let (speed, drift) = if self.lied { MOVING_AFTER_LIES } else { MOVING };
         self.speed.abs() > speed + drift * self.time
     }
 

@@ -69,7 +69,7 @@ impl Pilot<'_> {
             _ => false,
         };
         let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
-        self.landing_from = self.landing_from.max(height);
+        self.landing_from = self.landing_from.max(height.min(self.settings.fence_height));
         let landing_max = LANDING_REST + LANDING_PATIENCE * self.landing_from / self.settings.landing_speed;
         let patience = (self.settings.ground_station_patience * 1e6) as u64;
         conditions
