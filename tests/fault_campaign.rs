@@ -37,9 +37,9 @@ use std::ops::Range;
 use std::path::Path;
 
 /// What no failure here leads to: what an operator asks for; and what the certificate and the checks of every input
-/// rule out, however the vehicle fails. `flight/pilot/tests.rs` and `flight/rules/tests.rs` in the core cause that on
+/// rule out, however the vehicle fails; and what it takes long lies for: `lying_poses`. `flight/pilot/tests.rs` and `flight/rules/tests.rs` in the core cause that on
 /// purpose.
-const NOT_BY_FAILURES: [Condition; 9] = [
+const NOT_BY_FAILURES: [Condition; 11] = [
     Condition::Uncertified,
     Condition::MotorTestPermitted,
     Condition::Requested,
@@ -49,6 +49,8 @@ const NOT_BY_FAILURES: [Condition; 9] = [
     Condition::SetpointsRequested,
     Condition::ThrustsRefused,
     Condition::Saturated,
+    Condition::PosesGivenUp,
+    Condition::LandingOver,
 ];
 
 /// How high it flies, m.

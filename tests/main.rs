@@ -10,7 +10,7 @@
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
-//! | the supervisor, whatever fails; hours of it | [`fault_campaign`], [`endurance`] |
+//! | the supervisor, whatever fails or lies; hours of it | [`fault_campaign`], [`lying_poses`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
 //! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_campaign_directory`], [`cli_certify`], [`cli_compare`], [`cli_identify`], |
 //! |  | [`cli_output`], [`cli_overwriting`], [`cli_verdicts`], [`documentation`] |
@@ -45,6 +45,7 @@ mod independent_law;
 mod kinematics;
 mod lockstep;
 mod lyapunov;
+mod lying_poses;
 mod paper;
 mod pilots_table;
 mod published;

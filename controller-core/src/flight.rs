@@ -13,6 +13,7 @@
 //! - `fall`: whether a vehicle that was stopped in the air lies still again;
 //! - `fence`: how far it may go;
 //! - [`FlightSettings`]: what an operator may choose about failures;
+//! - `trust`: whether a source of poses may still be believed;
 //! - `thrust_check`: whether the rotors give what they should;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
 //!   are brought up, and how a vehicle without a pose goes down.
@@ -50,6 +51,7 @@ mod spool;
 #[cfg(test)]
 pub(crate) mod tests;
 mod thrust_check;
+mod trust;
 mod watch;
 
 pub use crate::measurement::{

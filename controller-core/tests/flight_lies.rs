@@ -137,7 +137,7 @@ fn held_again(told: Told, lied: u64) -> Option<u64> {
     flight.ticks(300 - lied);
     assert_eq!(flight.pilot.mode(), Mode::Descending);
     (flight.told, flight.present.pose) = (Flight::new().told, true);
-    (1..=1_000).find(|_| flight.tick().mode == Mode::Holding)
+    (1..=1_000).find(|_| flight.tick().mode.is_guided())
 }
 
 #[test]

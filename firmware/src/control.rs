@@ -108,11 +108,15 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.pilot.choose(&flight::settings(&self.shared.parameters));
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
-        if outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed) {
+        let has_armed = outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed);
+        if has_armed {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander.put(order.map(|order| order.sender), now);
         }
         self.tell(&outcome, asked);
+        if has_armed && self.shared.pose_delay_unknown.is_raised() {
+            self.shared.announce(Event::PoseDelayUnknown);
+        }
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
         self.tell_of_the_estimate(&outcome, now);
         let report = self.report(&inputs, &outcome);

@@ -7,6 +7,7 @@
 //! | IMU | [`Shared::imu_fault`] | control | 1 s |
 //! | IMU | [`Shared::increments`] | control | a tick: each taken once |
 //! | link | [`Shared::poses`] | control | a tick: each taken once; [`controller_core::estimator`] decides |
+//! | link | [`Shared::pose_delay_unknown`] | control | as of the last pose |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
 //! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
@@ -124,6 +125,8 @@ pub struct Shared<M: RawMutex> {
     pub has_bootloader: Flag,
     /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
     pub on_port: Flag,
+    /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` knows.
+    pub pose_delay_unknown: Flag,
     /// Raised at boot where the clock's crystal does not run: nobody arms.
     pub clock_doubtful: Flag,
     /// Why the vehicle restarted by itself, where it did.
@@ -194,6 +197,7 @@ impl<M: RawMutex> Shared<M> {
             can_restart: Flag::new(),
             has_bootloader: Flag::new(),
             on_port: Flag::new(),
+            pose_delay_unknown: Flag::new(),
             clock_doubtful: Flag::new(),
             last_words: Latest::new(),
             killed: Latest::new(),

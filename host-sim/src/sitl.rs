@@ -64,7 +64,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 use voice::Voice;
-use world::World;
+use world::{PoseSource, World};
 
 /// Ticks that the flight recorder holds: a minute.
 const RECORDED: usize = 6_000;
@@ -83,6 +83,8 @@ pub struct Session {
     pub speed: f64,
     /// Vehicle time after which it ends, s; none: when somebody interrupts.
     pub duration: Option<f64>,
+    /// Where its poses come from.
+    pub poses: PoseSource,
     /// What fails.
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
@@ -179,7 +181,7 @@ impl Sitl {
         let warning = board::check(scenario, &session.file)?;
         let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
         let in_file = |what| format!("{}: {what}", session.file);
-        let world = World::new(scenario, &clock, faults.clone(), up.clone()).map_err(in_file)?;
+        let world = World::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;
         let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
 

@@ -89,6 +89,9 @@ const AT_ONCE: Answer = Answer {
 const LOST: Answer =
     Answer { in_flight: &[], most: Off, idling: None, descent_may_end: true, is_gentle: false, ..NOTHING };
 
+/// How long a landing within the fence takes at most, s: 12 s, and twice what 4 m take at 0.5 m/s.
+const CARRIED_FOR: f64 = 28.0;
+
 /// What must follow from a failure.
 pub fn answer(failure: Failure, phase: Phase) -> Answer {
     match failure {
@@ -200,5 +203,10 @@ pub fn most(phase: Phase, failed: &[(Failure, f64)]) -> Severity {
     let answers = || failed.iter().map(|(failure, _)| answer(*failure, phase));
     let (_, most) = of_phase(phase);
     let most = answers().map(|answer| answer.most).max().unwrap_or(CarryOn).max(most);
+    // A landing that is carried away lasts longer than the fence's height explains, and goes down by the IMU.
+    let carried = |(failure, since): &(Failure, f64)| {
+        matches!(failure, Failure::Gust | Failure::Updraft | Failure::Wind) && *since > CARRIED_FOR
+    };
+    let most = if failed.iter().any(carried) { most.max(Descend) } else { most };
     if most >= Descend && answers().any(|answer| answer.descent_may_end) { Off } else { most }
 }

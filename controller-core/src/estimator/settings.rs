@@ -37,8 +37,7 @@ pub struct EstimatorParameters {
     pub gyro_bias_max: f32,
     /// |b_a| beyond which the accelerometer and the poses do not agree on where up is, m/s^2.
     pub accelerometer_bias_max: f32,
-    /// Deviation of n_p on each axis, m, of poses that do not give their own; no pose is believed to be better than a
-    /// tenth of it.
+    /// Deviation of n_p on each axis, m, of poses that do not give their own; no pose is believed to be better.
     pub position_noise: f32,
     /// Deviation of n_q on each axis, rad, in the same way.
     pub attitude_noise: f32,
@@ -127,12 +126,12 @@ impl Settings {
         &self.0
     }
 
-    /// The deviations of a pose that says `given` of itself (position m, attitude rad): never better than a tenth of
-    /// the usual ones, so that exact poses do not make the filter deaf to all later ones.
+    /// The deviations of a pose that says `given` of itself (position m, attitude rad): never better than the usual
+    /// ones. What claims to be more exact than it is would be refused for its own noise.
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {
-            let least = if 0.1 * usual > DEVIATION_LEAST { 0.1 * usual } else { DEVIATION_LEAST };
+            let least = if usual > DEVIATION_LEAST { usual } else { DEVIATION_LEAST };
             crate::math::between(value, least, DEVIATION_MAX)
         };
         let (position, attitude) = given.unwrap_or(usual);

@@ -47,6 +47,8 @@ worded! {
         Turned = "Pose refused: poses turned against the gyro",
         /// Poses and accelerometer do not agree on where up is.
         Gravity = "Pose refused: up is elsewhere for accelerometer",
+        /// Its source has been refused too often in this flight.
+        GivenUp = "Pose refused: its source is given up",
         /// The filter had lost its numbers, and begins anew.
         NotFinite = "Pose refused: the estimate lost its numbers",
     }
@@ -78,7 +80,13 @@ impl Rejected {
             | Self::Drift
             | Self::Turned
             | Self::Gravity => true,
-            Self::Quality | Self::Future | Self::Repeated | Self::TooOld | Self::NoImu | Self::NotFinite => false,
+            Self::Quality
+            | Self::Future
+            | Self::Repeated
+            | Self::TooOld
+            | Self::NoImu
+            | Self::GivenUp
+            | Self::NotFinite => false,
         }
     }
 }

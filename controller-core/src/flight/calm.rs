@@ -43,7 +43,7 @@ impl Calm {
     /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has
     /// jumped.
     pub fn tick(&mut self, estimated: Option<&EstimatedState>) -> Option<EstimatedState> {
-        let Some(&EstimatedState { state, acceleration, jumps }) = estimated else {
+        let Some(&EstimatedState { state, acceleration, jumps, gained }) = estimated else {
             self.0 = None;
             return None;
         };
@@ -55,7 +55,7 @@ impl Calm {
         let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
         let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
-        let calm = EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps };
+        let calm = EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps, gained };
         self.0 = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });
         Some(calm)
     }

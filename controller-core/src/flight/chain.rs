@@ -16,7 +16,7 @@
 use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
 use super::refusal::{Grounded, field};
-use super::rules::REFUSALS_MAX;
+use super::rules::{Mode, REFUSALS_MAX};
 use super::sinking::Sinking;
 use super::spool::Spool;
 use crate::allocation::{Mixer, Thrusts};
@@ -33,6 +33,9 @@ use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 /// The speed across at which a vehicle may go down, m/s.
 const AT_REST: f32 = 0.05;
+
+/// The speed, m/s, at which a vehicle hardly sinks: less than a landing's.
+const HARDLY: f32 = 0.3;
 
 /// How near the height of its take-off the reference has to be, m, and how slow, m/s.
 const RISEN: (f32, f32) = (0.01, 0.01);
@@ -73,8 +76,9 @@ pub(super) struct Chain<'m> {
     law: Law,
     mixer: &'m mut Mixer,
     rotors: usize,
-    /// The greatest horizontal speed of a reference, m/s.
+    /// The greatest horizontal speed of a reference, m/s, and its greatest vertical acceleration, m/s^2.
     speed: f32,
+    brakes: f32,
     /// The vehicle's mass, kg, and gravity, m/s^2.
     mass: f32,
     gravity: f32,
@@ -133,6 +137,7 @@ impl<'m> Chain<'m> {
             mixer,
             rotors: rotors.len(),
             speed: configuration.bounds().horizontal_speed,
+            brakes: configuration.bounds().vertical_acceleration,
             mass: vehicle.mass,
             gravity: vehicle.gravity,
             period,
@@ -198,10 +203,10 @@ impl<'m> Chain<'m> {
         (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
     }
 
-    /// Comes to rest across, then goes down at `speed`, m/s; to be said again each tick. Both at once would brake as
-    /// slowly as the vertical bounds have it.
-    pub fn come_down(&mut self, speed: f32) {
-        if self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
+    /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be said again each
+    /// tick. Both at once would brake as slowly as the vertical bounds have it.
+    pub fn come_down(&mut self, speed: f32, may_brake: bool) {
+        if may_brake && self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
             return self.governor.stop();
         }
         let motion = Motion::Velocity(Vector3::new(0.0, 0.0, -speed));
@@ -210,11 +215,11 @@ impl<'m> Chain<'m> {
     }
 
     /// Turns to levelling: a hover at the last heading, the law restarted, at the vertical speed `sinking`, m/s, or at
-    /// the reference's if it is not known.
-    pub fn level(&mut self, sinking: Option<f32>) {
+    /// the reference's if it is not known. Poses that have `lied` leave more to be made up for.
+    pub fn level(&mut self, sinking: Option<f32>, lied: bool) {
         let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
-        self.sinking = Sinking::at(sinking);
+        self.sinking = Sinking::at(sinking, lied);
         self.law.restart();
     }
 
@@ -234,20 +239,33 @@ impl<'m> Chain<'m> {
         Ok(())
     }
 
+    /// Whether a reference that moves like `state` comes to rest within `height`, m, below it; one that hardly sinks
+    /// does, wherever the ground is.
+    pub fn stops_within(&self, height: f32, state: &State) -> bool {
+        let down = state.velocity.z.min(0.0);
+        down > -HARDLY || down * down < 2.0 * self.brakes * height
+    }
+
     /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which
-    /// may have jumped too, and as far up as it jumped if it `rises`. Nothing is learnt from the jump. The certificate
-    /// covers it as it covers any other jump of the reference.
+    /// may have jumped too. The reference of a take-off goes as far up as the vehicle jumped; that of a landing stays
+    /// as far below the vehicle as it was, and does not rise. Nothing is learnt from the jump. The certificate covers
+    /// it as it covers any other jump of the reference.
     ///
     /// # Errors
     /// Names the field the governor refuses.
-    pub fn jump(&mut self, before: &State, state: &State, rises: bool) -> Result<(), &'static str> {
+    pub fn jump(&mut self, before: &State, state: &State, mode: Mode) -> Result<(), &'static str> {
         if let Some(heading) = heading(&state.attitude) {
             self.reference.heading = heading;
         }
         self.law.hold_estimates();
         self.lift_off.displace(&state.position);
-        self.regain(state).map_err(field)?;
-        if rises {
+        let mut from = *state;
+        if mode == Mode::Landing {
+            from.position.z += (self.reference.position.z - before.position.z).min(0.0);
+            from.velocity.z = self.reference.velocity.z.min(0.0);
+        }
+        self.regain(&from).map_err(field)?;
+        if mode == Mode::TakingOff {
             self.reference.position = state.position;
             self.rising_to += state.position.z - before.position.z;
             self.rise_on()?;
@@ -352,6 +370,11 @@ impl<'m> Chain<'m> {
     /// Whether the vehicle has been levelled for a while, and goes down.
     pub fn sinks(&self) -> bool {
         self.reference.velocity.z < 0.0
+    }
+
+    /// Without a pose, the vehicle has met what stops it: it stands.
+    pub fn stop_sinking(&mut self) {
+        self.sinking.stop();
     }
 
     /// Whether the vehicle rises or sinks, without a pose, faster than an accelerometer's drift explains.

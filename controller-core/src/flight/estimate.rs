@@ -62,8 +62,20 @@ impl<'m> Estimation<'m> {
         Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
     }
 
-    /// Takes what the IMU did and the poses that came since the last tick, `armed` or not, in the air or not.
-    pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool) -> Estimate {
+    /// How fast it climbs, m/s, as far as the accelerometer knows better than poses that lie.
+    pub fn climb(&self) -> f32 {
+        self.estimator.climb()
+    }
+
+    /// Poses lie: what they have taught of the sensors since lift-off counts only where a sensor may have
+    /// changed so.
+    pub fn distrust(&mut self) {
+        self.estimator.distrust();
+    }
+
+    /// Takes what the IMU did and the poses that came since the last tick, `armed` or not, in the air or not. Poses of
+    /// a source that is `given_up` are refused.
+    pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool, given_up: bool) -> Estimate {
         let Inputs { increments, poses, now, .. } = *inputs;
         self.estimator.is_airborne(airborne);
         // What ends in a time to come did not happen.
@@ -72,7 +84,8 @@ impl<'m> Estimation<'m> {
         }
         let mut refused = None;
         for pose in poses {
-            if let Err(rejected) = self.estimator.pose(pose, now) {
+            let verdict = if given_up { Err(Rejected::GivenUp) } else { self.estimator.pose(pose, now) };
+            if let Err(rejected) = verdict {
                 refused = Some(Err(rejected));
             }
         }

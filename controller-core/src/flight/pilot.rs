@@ -13,13 +13,14 @@ use super::fence::Fence;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
-use super::rules::{self, Condition, LEVELLING_MAX, Mode, Transition};
+use super::rules::{self, BRAKING_MAX, Condition, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
 use super::thrust_check::ThrustCheck;
+use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use crate::certificate::certified::{Certified, Refused};
 use crate::error::InputError;
-use crate::estimator::{EstimatedState, Estimator, Fault};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Taken};
 use crate::governor::GovernorLimits;
 use nalgebra::Vector3;
 
@@ -44,6 +45,10 @@ pub struct Pilot<'m> {
     wanted_since: Option<u64>,
     /// Whether a vehicle without a pose was landing, or has been told to land: it does when there is one.
     must_still_land: bool,
+    /// Whether poses may still be believed in this flight.
+    trust: Trust,
+    /// How high above the place of arming a landing has been, m.
+    landing_from: f32,
     thrust_check: ThrustCheck,
 }
 
@@ -79,6 +84,8 @@ impl<'m> Pilot<'m> {
             newest: Newest::default(),
             wanted_since: None,
             must_still_land: false,
+            trust: Trust::default(),
+            landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
         }
     }
@@ -105,7 +112,8 @@ impl<'m> Pilot<'m> {
 
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne());
+        let given_up = self.trust.is_given_up();
+        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne(), given_up);
         self.decide(inputs, &estimate)
     }
 
@@ -113,6 +121,17 @@ impl<'m> Pilot<'m> {
     fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let followed = self.follow(estimate);
         let seen = self.look(inputs, estimate);
+        if seen.lied {
+            self.trust.give_up();
+        }
+        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
+            chain.stop_sinking();
+        }
+        if self.mode.flies() {
+            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), inputs.now);
+        } else if !self.mode.is_armed() {
+            self.trust = Trust::default();
+        }
         if let Some(setpoint) = &inputs.setpoint {
             self.hear_setpoint(setpoint, inputs.now);
         }
@@ -128,7 +147,7 @@ impl<'m> Pilot<'m> {
         let transition = rules::transition(self.mode, conditions);
         let was_airborne = self.is_airborne();
         if let Some(transition) = transition {
-            self.enter(&transition, inputs, estimate);
+            self.enter(&transition, inputs, estimate, seen.touched);
         }
         let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
         let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
@@ -142,7 +161,7 @@ impl<'m> Pilot<'m> {
             }
             _ => None,
         });
-        let (output, flown) = self.output(estimate, inputs.now);
+        let (output, flown) = self.output(estimate, seen.touched, inputs.now);
         let share = match (&self.chain, &flown) {
             (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
             _ => None,
@@ -169,8 +188,11 @@ impl<'m> Pilot<'m> {
     fn follow(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
             (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
-                self.fence.displace(before, state);
-                !self.mode.flies() || chain.jump(before, state, self.mode == Mode::TakingOff).is_ok()
+                // A body that is found again has not moved with its frame.
+                if !(self.mode.flies() && estimate.pose == Some(Ok(Taken::Refound))) {
+                    self.fence.displace(before, state);
+                }
+                !self.mode.flies() || chain.jump(before, state, self.mode).is_ok()
             }
             _ => true,
         }
@@ -197,7 +219,7 @@ impl<'m> Pilot<'m> {
 
     /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found
     /// possible.
-    fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate) {
+    fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate, touched: bool) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {
             self.wanted_since = None;
@@ -206,6 +228,15 @@ impl<'m> Pilot<'m> {
         self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
             self.watch.tell_low();
+        }
+        if transition.reason == Reason::LandingOver {
+            self.trust.give_up();
+        }
+        // One outlier before an outage is no lie.
+        let lasted = self.lies.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER);
+        let lied = self.trust.is_given_up() || lasted;
+        if transition.to == Mode::Descending && lied {
+            self.estimation.distrust();
         }
         let Ok(chain) = &mut self.chain else { return };
         match (transition.to, transition.reason) {
@@ -226,14 +257,16 @@ impl<'m> Pilot<'m> {
             (Mode::Descending, _) => {
                 let certain = !estimate.health.faults.contain(Fault::Uncertain);
                 let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
-                chain.level(known);
+                let climbs = if lied { Some(self.estimation.climb()) } else { known };
+                chain.level(if touched { Some(0.0) } else { climbs }, lied);
             }
+            (Mode::Landing, _) => self.landing_from = 0.0,
             _ => {}
         }
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, estimate: &Estimate, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
+    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         match self.mode {
             Mode::MotorTest => return (self.bench.output(now.saturating_sub(self.since)), None),
             Mode::Idling => return (Output::Idle, None),
@@ -244,10 +277,12 @@ impl<'m> Pilot<'m> {
             return (Output::Stop, None);
         };
         let flown = if self.mode == Mode::Descending {
-            chain.fly_level(estimated, now.saturating_sub(self.since) >= LEVELLING_MAX)
+            // Poses that are given up do not come back.
+            let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX;
+            chain.fly_level(estimated, descends)
         } else {
             if self.mode == Mode::Landing {
-                chain.come_down(self.settings.landing_speed);
+                chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);
             }
             chain.fly(&estimated.state)
         };

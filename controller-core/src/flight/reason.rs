@@ -52,7 +52,11 @@ worded! {
         ThrustsRefused = "Stopped: the law refused its input for 50 ms",
         /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
         PoseLost = "Pose lost: levelling for 1 s, then going down",
-        /// The same, while idling.
+        /// The source of poses has been refused and found again too often in this flight.
+        PosesGivenUp = "Poses given up: going down by the IMU",
+        /// A landing has lasted for longer than its height explains.
+        LandingOver = "Landing takes too long: going down by the IMU",
+        /// The same as [`Self::PoseLost`], while idling.
         PoseLostOnGround = "Disarmed: pose lost",
         /// Going down by the IMU alone, it does not fit what is commanded.
         ImuDoubtful = "Stopped: IMU does not fit what was commanded",
@@ -114,6 +118,8 @@ impl Reason {
             | Self::ImuLost
             | Self::ThrustsRefused
             | Self::PoseLost
+            | Self::PosesGivenUp
+            | Self::LandingOver
             | Self::PoseLostOnGround
             | Self::ImuDoubtful
             | Self::DescendingOver

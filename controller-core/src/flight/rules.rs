@@ -39,6 +39,15 @@ pub const LEVELLING_MAX: u64 = 1_000_000;
 /// How long it may go down by the IMU alone, us, levelling included: 20 m at the least speed.
 pub const DESCENDING_MAX: u64 = 30_000_000;
 
+/// How long a landing may brake across before it goes down, us.
+pub const BRAKING_MAX: u64 = 5_000_000;
+
+/// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
+/// as the fence reaches, and so many seconds besides. Then its poses are no guide to the ground.
+pub const LANDING_PATIENCE: f32 = 2.0;
+/// See [`LANDING_PATIENCE`], s.
+pub const LANDING_REST: f32 = 12.0;
+
 /// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half
 /// a second is for their jitter.
 pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;

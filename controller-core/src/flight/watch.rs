@@ -26,6 +26,28 @@ use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, T
 use crate::estimator::EstimatedState;
 use nalgebra::Vector3;
 
+/// The speed, m/s, at which poses that lie may show a vehicle that stands.
+const LIED: f32 = 0.5;
+
+/// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
+const SINKING: f32 = 0.2;
+
+/// By how much a landing may be slower than its reference and goes down all the same, m/s.
+const FOLLOWING: f32 = 0.15;
+
+/// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
+/// pose takes each for the ground, us: as long as it bounces, and so short that what only shakes keeps count of its
+/// speed.
+const TOUCHED_LASTING: u64 = 3_000_000;
+const TOUCHING_LASTING: u64 = 200_000;
+
+/// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
+/// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
+const TAUGHT: f32 = 1.0;
+
+/// For how long they do, us: true poses take it back with the next.
+const LIED_LASTING: u64 = 50_000;
+
 /// How long it must look like the ground, us.
 pub const GROUND_LASTING: u64 = 500_000;
 
@@ -44,12 +66,21 @@ const STILL: (f32, f32) = (0.15, 0.5);
 /// The upward acceleration that only the ground gives, m/s^2.
 const JERK: f32 = 5.0;
 
+/// The upward acceleration of a touchdown that stops a vehicle within a tick or two, m/s^2, and by when after the first
+/// jerk, us: rotors out of balance jerk at it for longer before they make so much of a tick.
+const TOUCH: f32 = 9.0;
+const JERKING: u64 = 30_000;
+
 /// The upward acceleration of a hit, m/s^2.
 const HIT: f32 = 10.0;
 
 /// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the
 /// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
+
+/// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees leaves as
+/// much.
+const LEANING: f32 = 1.5;
 
 /// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
 /// believed, us.
@@ -88,10 +119,15 @@ pub(super) struct Watch {
     calm: Calm,
     /// When the vehicle was last struck in guided flight, us.
     struck: Option<u64>,
-    /// Whether something has stopped a vehicle that goes down by the IMU alone.
-    jerked: bool,
+    /// When something first stopped a vehicle that goes down, us, and when it last did.
+    jerked: Option<(u64, u64)>,
+    /// The same of a jerk that nothing but the ground gives, without a pose.
+    touched: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
+    lied: Lasting,
+    /// What poses had added to the vertical speed before something stopped it, m/s.
+    taught: f32,
     /// Whether a low battery has had its landing: whoever flies on knows.
     low_is_told: bool,
 }
@@ -102,6 +138,11 @@ pub(super) struct Seen {
     pub tracking_lost: bool,
     pub saturated: bool,
     pub landed: bool,
+    /// Whether something has stopped a vehicle that goes down, and whether just now.
+    pub touched: bool,
+    pub touches: bool,
+    /// Whether poses have given a landing, since it has met the ground, a speed that it cannot have.
+    pub lied: bool,
     pub crashed: bool,
     pub battery_low: bool,
     pub battery_critical: bool,
@@ -157,33 +198,49 @@ impl Look<'_> {
         !within(&chain.unexpected(flown, state), STRUCK)
     }
 
-    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for. Only
-    /// where nothing but the IMU is left.
-    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
-        let (Mode::Descending, Some(state), Some(chain), Some(flown)) = (self.mode, self.state, self.chain, self.flown)
-        else {
-            return None;
-        };
+    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for.
+    fn feels(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        let (Some(state), Some(chain), Some(flown)) = (self.state, self.chain, self.flown) else { return None };
         Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
+    }
+
+    /// The same, only where nothing but the IMU is left.
+    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        self.feels().filter(|_| self.mode == Mode::Descending)
+    }
+
+    /// Whether a landing moves: down as it should, or as what stands does not, as far as its poses say.
+    fn moves_landing(&self) -> bool {
+        let (Some(state), Some(flown)) = (self.state, self.flown) else { return false };
+        let speed = state.state.velocity.z;
+        speed < flown.reference.velocity.z + FOLLOWING || speed.abs() > LIED
     }
 
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
+        // Also before it goes down, if it still sinks.
+        let sinks =
+            self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
         let now = Look { state, ..*self };
-        self.chain.is_some_and(Chain::sinks) && now.by_imu().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` before or not, or with a
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not, or with a
     /// `hit`.
-    fn is_held_up(&self, jerked: bool, hit: bool) -> bool {
+    fn is_held_up(&self, jerked: bool, touched: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
-        self.by_imu().is_some_and(|(_, asked, state)| {
-            let moves = !hit && self.chain.is_some_and(Chain::moves);
+        let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
+        self.feels().filter(|_| may).is_some_and(|(_, asked, state)| {
+            let moves = match self.mode {
+                Mode::Landing => self.moves_landing(),
+                _ => !hit && self.chain.is_some_and(Chain::moves),
+            };
             !moves
                 && self.chain.is_some_and(Chain::sinks)
                 && asked < falling
-                && within(&state.acceleration, measured)
+                && state.acceleration.z.abs() <= measured
+                && within(&state.acceleration, if touched { LEANING } else { measured })
                 && within(&state.state.angular_velocity, STILL.1)
         })
     }
@@ -216,13 +273,18 @@ impl Watch {
         let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
         let calm = self.calm.tick(state);
         let look = Look { mode, state: calm.as_ref(), chain, flown };
-        let descends = mode == Mode::Descending;
-        self.jerked = descends && (self.jerked || look.jerks(state, JERK));
-        self.hit = descends && (self.hit || look.jerks(state, HIT));
+        let is_blind = mode == Mode::Descending;
+        self.note_jerks(&look, state, now);
+        let jerked = self.has_jerked(mode, now);
+        let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
+        let touches = is_blind && self.touched.is_some_and(begins);
+        let touched = if is_blind { self.touched.is_some() } else { jerked };
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
         let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
-        let rests = look.is_held_up(self.jerked, self.hit);
+        let is_taught = mode == Mode::Landing && self.is_taught(jerked, &look, state);
+        let lied = self.lied.is_so(is_taught, LIED_LASTING, now);
+        let rests = look.is_held_up(jerked, self.touched.is_some(), self.hit);
         let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
         let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
@@ -232,12 +294,53 @@ impl Watch {
             tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now) || is_thrown,
             saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
             landed: left_behind || held_up || stands,
+            touched,
+            touches,
+            lied,
             crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
             battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
             battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
             imu_doubtful: doubtful || turning,
             overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
         }
+    }
+
+    /// Remembers what stops a vehicle that goes down.
+    fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
+        let descends = look.mode == Mode::Descending;
+        if !descends && look.mode != Mode::Landing {
+            self.jerked = None;
+        } else if look.jerks(state, JERK) {
+            let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
+            self.jerked = Some((first, now));
+        }
+        let fresh = self.jerked.is_some_and(|(first, _)| now.saturating_sub(first) < JERKING);
+        self.touched = match self.touched {
+            _ if !descends && look.mode != Mode::Landing => None,
+            None if look.jerks(state, TOUCH) && fresh => Some((now, now)),
+            Some((first, _)) if look.jerks(state, TOUCH) => Some((first, now)),
+            touched => touched,
+        };
+        self.hit = descends && (self.hit || look.jerks(state, HIT));
+    }
+
+    /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and
+    /// that is none of a vehicle which stands or goes on down.
+    fn is_taught(&mut self, jerked: bool, look: &Look, state: Option<&EstimatedState>) -> bool {
+        let (Some(state), Some(flown)) = (state, look.flown) else { return false };
+        let speed = state.state.velocity.z;
+        let taught = speed - state.gained;
+        if !jerked {
+            self.taught = taught;
+        }
+        let possible = flown.reference.velocity.z - TAUGHT..=TAUGHT;
+        (taught - self.taught).abs() > TAUGHT && !possible.contains(&speed)
+    }
+
+    /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
+    fn has_jerked(&self, mode: Mode, now: u64) -> bool {
+        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_LASTING;
+        self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
     }
 
     /// Whether the estimate jumps just after the vehicle was struck.

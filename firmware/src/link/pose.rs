@@ -120,6 +120,12 @@ impl Poses {
         }
     }
 
+    /// Whether the last pose's delay is known by TIMESYNC.
+    #[must_use]
+    pub fn is_synchronised(&self) -> bool {
+        self.source.is_some_and(|source| source.synchronised)
+    }
+
     /// The pose in `frame`; none in another message. Where the delay is unknown otherwise, it took `delay`, us, at
     /// least.
     ///

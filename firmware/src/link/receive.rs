@@ -230,6 +230,11 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         let delay = (self.shared.parameters.get(Name::PoseDelay) * 1e3) as u64;
         match self.poses.take(frame, delay) {
             Ok(Some(pose)) => {
+                if delay == 0 && !self.poses.is_synchronised() {
+                    self.shared.pose_delay_unknown.raise();
+                } else {
+                    self.shared.pose_delay_unknown.lower();
+                }
                 // Where control does not take them, one more or less makes no difference.
                 let _ = self.shared.poses.put(pose);
             }

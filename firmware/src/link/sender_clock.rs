@@ -12,17 +12,25 @@
 //! somebody who has measured it. A message is never stamped later than it arrived.
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
-//! that would be more than [`LATE_MAX`] late. A clock that was set back, or stood still, or begins anew, goes on from
-//! frame to frame as the vehicle's does. After [`STEADY`] such frames it is believed, and o is found anew. A line that
-//! is that late from some time on looks the same; who knows better by TIMESYNC must refuse its messages first.
+//! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
+//! [`LEAD_MAX`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
+//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`STEADY`] such frames, and more than
+//! were taken meanwhile, it is believed, and o is found anew: who forges fewer messages than are true never gets so far.
+//! A line that is that late from some time on looks the same; who knows better by TIMESYNC must refuse its messages
+//! first.
 
-/// Frames in a row that prove a clock that is not where it was: 50 ms at 100 Hz.
+/// Frames that prove a clock that is not where it was: 50 ms at 100 Hz.
 pub const STEADY: u8 = 5;
 
 /// How late a message may be, us.
 pub const LATE_MAX: u64 = 500_000;
 
-/// By how much the clocks may differ over those frames, us: what a line's delay may change by.
+/// How much quicker a line may become than at its first message, us.
+pub const LEAD_MAX: u64 = 100_000;
+
+/// By how much the clocks may differ over the frames that prove another clock, us, and how much quicker than those a
+/// line may become. Frames that come too early may differ by [`LEAD_MAX`]: the first message may have been a slow one on
+/// a line whose delay varies.
 const SPACING_ERROR: u64 = 20_000;
 
 /// One over the drift between two clocks.
@@ -33,6 +41,8 @@ pub(super) const DRIFT: u64 = 5_000;
 pub struct SenderClock {
     /// o, us.
     offset: i128,
+    /// By how much it may still come down, us.
+    spare: u64,
     /// The sender's time of the last message that was taken, and when that arrived, us.
     last: (u64, u64),
     /// When the first message of what is known arrived, us.
@@ -47,14 +57,18 @@ struct Trial {
     first: (u64, u64),
     /// The sender's time of the last, us.
     last: u64,
+    /// The least that o would be, us.
+    least: i128,
+    /// Frames of it, and frames that were taken meanwhile.
     count: u8,
+    taken: u8,
 }
 
 impl SenderClock {
     /// From a sender's first message.
     #[must_use]
     pub fn new(time: u64, arrived: u64) -> Self {
-        Self { offset: difference(arrived, time), last: (time, arrived), begun: arrived, trial: None }
+        Self { offset: difference(arrived, time), spare: LEAD_MAX, last: (time, arrived), begun: arrived, trial: None }
     }
 
     /// o, with what every message takes at least, us: the vehicle's clock less the sender's.
@@ -78,30 +92,46 @@ impl SenderClock {
     /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time
     /// is not a new one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
-        let drifted = self.offset + i128::from(arrived.saturating_sub(self.last.1) / DRIFT);
+        let parted = arrived.saturating_sub(self.last.1) / DRIFT;
+        let drifted = self.offset + i128::from(parted);
+        let offset = drifted.min(difference(arrived, time));
         let late = difference(arrived, time) - drifted;
-        if self.advances(time) && late <= i128::from(LATE_MAX) {
-            let offset = drifted.min(difference(arrived, time));
-            *self = Self { offset, last: (time, arrived), trial: None, ..*self };
+        let lowered = u64::try_from((self.offset - offset).max(0)).unwrap_or(u64::MAX);
+        let spare = self.spare.max(self.spare.saturating_add(parted).min(SPACING_ERROR)).checked_sub(lowered);
+        if let (true, Some(spare)) = (self.advances(time) && late <= i128::from(LATE_MAX), spare) {
+            let trial = self.trial.and_then(Trial::doubt);
+            *self = Self { offset, spare, last: (time, arrived), trial, ..*self };
         } else {
-            let trial = self.trial.and_then(|trial| trial.next(time, arrived));
-            let trial = trial.unwrap_or(Trial { first: (time, arrived), last: time, count: 1 });
+            let apart_max = if spare.is_none() { LEAD_MAX } else { SPACING_ERROR };
+            let trial = self.trial.and_then(|trial| trial.next(time, arrived, apart_max));
+            let trial = trial.unwrap_or_else(|| Trial::new(time, arrived));
             self.trial = Some(trial);
             if trial.count < STEADY {
                 return None;
             }
-            *self = Self::new(time, arrived);
+            *self = Self { offset: trial.least, spare: SPACING_ERROR, ..Self::new(time, arrived) };
         }
         u64::try_from(i128::from(time) + self.offset).ok()
     }
 }
 
 impl Trial {
+    fn new(time: u64, arrived: u64) -> Self {
+        Self { first: (time, arrived), last: time, least: difference(arrived, time), count: 1, taken: 0 }
+    }
+
     /// With one more frame, if its clock has gone on as the vehicle's has.
-    fn next(self, time: u64, arrived: u64) -> Option<Self> {
-        let Self { first, last, count } = self;
+    fn next(self, time: u64, arrived: u64, apart_max: u64) -> Option<Self> {
+        let Self { first, last, least, count, .. } = self;
         let apart = time.saturating_sub(first.0).abs_diff(arrived.saturating_sub(first.1));
-        (time > last && apart < SPACING_ERROR).then_some(Self { first, last: time, count: count + 1 })
+        let least = least.min(difference(arrived, time));
+        (time > last && apart < apart_max).then_some(Self { last: time, least, count: count + 1, ..self })
+    }
+
+    /// Another frame is taken: none, where more of those are than of its own.
+    fn doubt(self) -> Option<Self> {
+        let taken = self.taken + 1;
+        (taken < self.count).then_some(Self { taken, ..self })
     }
 }
 

@@ -70,6 +70,8 @@ pub enum Event {
     MotorsRegained,
     /// The battery that is to be watched is not measured.
     BatteryMissing,
+    /// The vehicle has armed with poses whose delay nobody knows.
+    PoseDelayUnknown,
     /// Anything else, in words.
     Words(Severity, Text),
 }
@@ -88,9 +90,12 @@ impl Event {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
             Self::Input(_) | Self::MotorsLost => Severity::Critical,
             Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
-            Self::Refused(_) | Self::Pose(Err(_)) | Self::Estimator(_) | Self::Thrust(_) | Self::BatteryMissing => {
-                Severity::Warning
-            }
+            Self::Refused(_)
+            | Self::Pose(Err(_))
+            | Self::Estimator(_)
+            | Self::Thrust(_)
+            | Self::BatteryMissing
+            | Self::PoseDelayUnknown => Severity::Warning,
             Self::Words(severity, _) => *severity,
         }
     }
@@ -109,6 +114,7 @@ impl fmt::Display for Event {
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
             Self::BatteryMissing => f.write_str("Battery: no reading for 1 s, nothing watches it"),
+            Self::PoseDelayUnknown => f.write_str("Poses: delay unknown; use TIMESYNC or POSE_DELAY"),
             Self::Words(_, text) => f.write_str(text.as_str()),
         }
     }

@@ -1,12 +1,13 @@
 //! What a session with somebody else's program is asked to be: `sitl` and `hil`, in clap's terms, and what of it is
 //! refused.
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 use host_sim::hil::Session;
 use host_sim::hil::port::Address;
 use host_sim::sitl;
 use host_sim::sitl::faults::Fault;
 use host_sim::sitl::port::Ports;
+use host_sim::sitl::world::PoseSource;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -22,6 +23,10 @@ pub struct SitlArguments {
     /// End after so much vehicle time, s [default: at Ctrl-C]
     #[arg(long, value_name = "SECONDS")]
     duration: Option<f64>,
+    /// Where poses come from: the simulation's own camera, or a client over MAVLink (ODOMETRY or ATT_POS_MOCAP); with
+    /// link, nothing else sends a pose
+    #[arg(long, value_name = "SOURCE", value_enum, default_value_t = Poses::Camera)]
+    poses: Poses,
     /// Let something fail: pose, gyro, accelerometer, motors, ground-station or battery=VOLTS; may be given again
     #[arg(long = "fault", value_name = "WHAT@START..END")]
     faults: Vec<Fault>,
@@ -37,6 +42,13 @@ pub struct SitlArguments {
     mcap: Option<PathBuf>,
     #[command(flatten)]
     ports: PortArguments,
+}
+
+/// Where poses come from, as the command line has it.
+#[derive(Clone, Copy, ValueEnum)]
+enum Poses {
+    Camera,
+    Link,
 }
 
 /// Where MAVLink clients are.
@@ -133,6 +145,10 @@ impl SitlArguments {
             ports: self.ports.ports()?,
             speed,
             duration: self.duration,
+            poses: match self.poses {
+                Poses::Camera => PoseSource::Camera,
+                Poses::Link => PoseSource::Link,
+            },
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
             signing_key: self.signing_key.as_deref().map(sitl::key::read).transpose()?,

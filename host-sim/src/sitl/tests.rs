@@ -2,11 +2,12 @@ use super::*;
 use controller_core::estimator::Fault as EstimatorFault;
 use firmware::link::signing::{AHEAD, Signing};
 use mavlink::dialects::common::{
-    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,
+    ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,
     SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use scenario::STUDY;
+use scenario::body::BodyState;
 use std::net::{Ipv4Addr, UdpSocket};
 
 /// A session without a desk's clock, and a client of it.
@@ -21,10 +22,16 @@ struct Flown {
 
 impl Flown {
     fn boot(text: &str, faults: &[&str], parameters: Option<PathBuf>) -> Self {
-        Self::boot_with(text, faults, parameters, None)
+        Self::boot_with(PoseSource::Camera, text, faults, parameters, None)
     }
 
-    fn boot_with(text: &str, faults: &[&str], parameters: Option<PathBuf>, signing_key: Option<Key>) -> Self {
+    fn boot_with(
+        poses: PoseSource,
+        text: &str,
+        faults: &[&str],
+        parameters: Option<PathBuf>,
+        signing_key: Option<Key>,
+    ) -> Self {
         let socket = || UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let (client, ground, free) = (socket(), socket(), socket());
         let port = |socket: &UdpSocket| socket.local_addr().unwrap().port();
@@ -36,6 +43,7 @@ impl Flown {
             ports,
             speed: 1.0,
             duration: None,
+            poses,
             faults,
             parameters,
             signing_key,
@@ -77,6 +85,24 @@ impl Flown {
         }
     }
 
+    /// Lets vehicle time pass, s, and sends a pose of where the vehicle really is every 10 ms.
+    fn pass_with_poses(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 100.0) as u32 {
+            let BodyState { position, attitude, .. } = self.sitl.world.state();
+            let q = firmware::frames::attitude(&attitude.cast()).coords;
+            let at = firmware::frames::world(&position.cast());
+            let time_usec = 7_000_000 + self.sitl.clock.now();
+            self.send(&ATT_POS_MOCAP_DATA {
+                time_usec,
+                q: [q.w, q.x, q.y, q.z],
+                x: at.x,
+                y: at.y,
+                z: at.z,
+            });
+            self.pass(0.01);
+        }
+    }
+
     fn mode(&self) -> Mode {
         self.sitl.summary(None).mode.unwrap()
     }
@@ -113,6 +139,48 @@ fn a_client_arms_takes_off_and_lands_with_late_and_noisy_poses() {
     let height = flown.sitl.world.state().position.z;
     assert!((-1e-3..=0.0).contains(&height), "{height}");
     assert_eq!(flown.sitl.summary(None).missed, 0);
+}
+
+#[test]
+fn a_client_sends_the_poses_and_is_told_that_nobody_knows_how_late_they_are() {
+    let mut flown = Flown::boot_with(PoseSource::Link, STUDY, &[], None, None);
+    flown.pass(5.0);
+    assert_eq!(flown.mode(), Mode::Checks, "no camera of its own");
+    flown.pass_with_poses(5.0);
+    assert_eq!(flown.mode(), Mode::Ready, "{:?}", flown.sitl.texts);
+    assert!(!flown.said("delay unknown"));
+    flown.ask(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0]);
+    flown.pass_with_poses(0.5);
+    assert!(flown.said("Poses: delay unknown; use TIMESYNC or POSE_DELAY"), "{:?}", flown.sitl.texts);
+    flown.ask(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0]);
+    flown.pass_with_poses(14.5);
+    assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
+    // A camera that answers TIMESYNC says how late it is.
+    assert!(!Flown::in_the_air(STUDY, &[]).said("delay unknown"));
+}
+
+#[test]
+fn motors_stop_within_a_second_of_touchdown_wherever_poses_are_lost() {
+    for lost in [14.0, 17.0, 20.5, 23.0] {
+        let mut flown = Flown::boot(STUDY, &[&format!("pose@{lost}")], None);
+        flown.pass(5.0);
+        flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+        flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+        flown.pass(5.0);
+        let mut touched = None;
+        let mut stopped = None;
+        while stopped.is_none() && flown.sitl.clock.now() < 60_000_000 {
+            flown.pass(0.02);
+            let now = flown.sitl.clock.now();
+            if flown.sitl.world.state().position.z < 1e-3 {
+                touched = touched.or(Some(now));
+            }
+            stopped = (!flown.mode().is_armed()).then_some(now);
+        }
+        let off = (stopped.unwrap() - touched.unwrap()) as f64 * 1e-6;
+        println!("poses lost at {lost} s: motors off {off:.2} s after touchdown");
+        assert!(off < 1.0, "{lost}: {off} s, {:?}", flown.sitl.texts);
+    }
 }
 
 #[test]
@@ -251,7 +319,7 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
 fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
     const ARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
     let key = Key::new([0x5A; 32]);
-    let mut flown = Flown::boot_with(STUDY, &[], None, key);
+    let mut flown = Flown::boot_with(PoseSource::Camera, STUDY, &[], None, key);
     // A ground station is heard if it signs, and not before.
     flown.pass(5.0);
     assert_eq!(flown.mode(), Mode::Checks);
@@ -283,6 +351,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
         ports: Ports::default(),
         speed: 1.0,
         duration: None,
+        poses: PoseSource::Camera,
         faults: Vec::new(),
         parameters: None,
         signing_key: None,

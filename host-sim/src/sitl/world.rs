@@ -7,6 +7,7 @@
 //!
 //! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
 //! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
+//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: nothing but the client is heard.
 //! The world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too
 //! late.
 
@@ -36,6 +37,16 @@ use std::rc::Rc;
 /// question.
 const CAMERA_AHEAD: u64 = 1_000_000_000;
 
+/// Where the vehicle's poses come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PoseSource {
+    /// The world's own camera.
+    #[default]
+    Camera,
+    /// A client: the world has no camera.
+    Link,
+}
+
 /// The world of one vehicle; clones are the same world.
 #[derive(Clone)]
 pub struct World(Rc<Inner>);
@@ -49,6 +60,7 @@ struct Inner {
 struct Body {
     vehicle: RealVehicle,
     instruments: Instruments,
+    source: PoseSource,
     /// What the poses say their deviations are, m and rad.
     deviations: (f32, f32),
     /// Plant steps in a millisecond.
@@ -70,11 +82,17 @@ struct Body {
 }
 
 impl World {
-    /// The scenario's, with poses on `line`.
+    /// The scenario's, with the poses of its camera, if it has one, on `line`.
     ///
     /// # Errors
     /// In words, if the scenario's numbers do not fit.
-    pub fn new(scenario: &Scenario, clock: &SimClock, faults: Faults, line: Line) -> Result<Self, String> {
+    pub fn new(
+        scenario: &Scenario,
+        source: PoseSource,
+        clock: &SimClock,
+        faults: Faults,
+        line: Line,
+    ) -> Result<Self, String> {
         let ratio = SAMPLE as f64 * 1e-6 / scenario.timing.step();
         let steps = ratio.round();
         if (ratio - steps).abs() > 1e-6 || steps < 1.0 {
@@ -90,6 +108,7 @@ impl World {
         let body = Body {
             vehicle: RealVehicle::new(&standing(scenario), configuration).switched_off(),
             instruments: Instruments::new(&what, gravity.into(), still, 0),
+            source,
             deviations: (believed.position_noise, believed.attitude_noise),
             steps: steps as u32,
             delay: (scenario.delay() * 1e6).round() as u64,
@@ -148,6 +167,9 @@ impl World {
     pub fn answer_time_sync(&self, asked: i64) {
         let mut bytes = Vec::new();
         let mut body = self.0.body.borrow_mut();
+        if body.source == PoseSource::Link {
+            return;
+        }
         body.encoder.time_sync(asked, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
         body.line.push(&bytes);
     }
@@ -191,7 +213,7 @@ impl Body {
         self.now += SAMPLE;
         self.sample = self.instruments.sample(self.vehicle.state(), self.now);
         while let Some(Stamped { value: pose, time }) = self.instruments.arrived() {
-            if faults.has(Part::Pose, self.now) {
+            if self.source == PoseSource::Link || faults.has(Part::Pose, self.now) {
                 continue;
             }
             let (position, attitude) = (pose.position(), pose.attitude());

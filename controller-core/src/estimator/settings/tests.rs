@@ -23,7 +23,7 @@ fn no_pose_is_believed_to_be_exact() {
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
     assert_eq!(settings.deviations(None), (1e-3, 5.2e-3));
     let (position, attitude) = settings.deviations(Some((0.0, 0.0)));
-    assert!((position - 1e-4).abs() < 1e-9 && (attitude - 5.2e-4).abs() < 1e-9);
+    assert_eq!((position, attitude), (1e-3, 5.2e-3));
     assert_eq!(settings.deviations(Some((0.02, 1e9))), (0.02, 10.0));
     let exact = EstimatorParameters { position_noise: 1e-6, attitude_noise: 1e-6, ..EstimatorParameters::BMI088 };
     assert_eq!(Settings::new(&exact).unwrap().deviations(None), (DEVIATION_LEAST, DEVIATION_LEAST));

@@ -8,7 +8,7 @@ fn moving(motion: f32, jumps: u32) -> EstimatedState {
     let all = Vector3::repeat(motion);
     let attitude = Quaternion::new(1.0, 0.0, 0.0, 0.0);
     let state = State { position: Vector3::zeros(), velocity: all, attitude, angular_velocity: all };
-    EstimatedState { state, acceleration: all, jumps }
+    EstimatedState { state, acceleration: all, jumps, gained: 0.0 }
 }
 
 /// What is left of it: of velocity and rate, and of acceleration.

@@ -58,6 +58,6 @@ fn only_what_points_up_of_a_thrust_carries() {
     // What the accelerometer says of it, and nothing else.
     let side = -thrust * 0.75_f32.sqrt();
     let acceleration = Vector3::new(0.0, side, 0.5 * thrust - 9.81);
-    let unexpected = chain.unexpected(&flown, &EstimatedState { state: tilted, acceleration, jumps: 0 });
+    let unexpected = chain.unexpected(&flown, &EstimatedState { state: tilted, acceleration, jumps: 0, gained: 0.0 });
     assert!(unexpected.norm() < 1e-4, "{unexpected}");
 }

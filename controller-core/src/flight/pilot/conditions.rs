@@ -1,14 +1,15 @@
 //! What the rules need to know in a tick.
 
 use super::Pilot;
-use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
+use crate::estimator::{COASTING_AFTER, EstimatedState, Fault, Rejected, Taken};
 use crate::flight::chain::Chain;
 use crate::flight::estimate::Estimate;
 use crate::flight::exchange::Inputs;
 use crate::flight::refusal::Refusal;
 use crate::flight::request::Request;
 use crate::flight::rules::{
-    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LEVELLING_MAX, Mode,
+    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE, LANDING_REST,
+    LEVELLING_MAX, Mode,
 };
 use crate::flight::watch::Seen;
 use crate::measurement::is_fresh;
@@ -55,12 +56,22 @@ impl Pilot<'_> {
         if let (Some(pose), false) = (estimate.pose, is_levelled) {
             self.hear(pose, inputs.now);
         }
-        let may = estimate.is_found() && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
+        let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        if let (true, Ok(chain), Some(EstimatedState { state, .. })) = (may, &self.chain, &estimate.state) {
+            // What cannot hold above the ground lands.
+            self.must_still_land |= !chain.stops_within(state.position.z - self.fence.home().z, state);
+        }
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
-            (Mode::Descending, Ok(chain), Some(estimated)) if may => chain.regain(&estimated.state).is_ok(),
+            (Mode::Descending, Ok(chain), Some(estimated)) if may && self.trust.regain(self.must_still_land) => {
+                chain.regain(&estimated.state).is_ok()
+            }
             _ => false,
         };
         let stands = self.chain.as_ref().is_ok_and(Chain::is_standing);
+        let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
+        self.landing_from = self.landing_from.max(height.min(self.settings.fence_height));
+        let landing_max = LANDING_REST + LANDING_PATIENCE * self.landing_from / self.settings.landing_speed;
         let patience = (self.settings.ground_station_patience * 1e6) as u64;
         conditions
             .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
@@ -73,6 +84,8 @@ impl Pilot<'_> {
             .with(Condition::Crashed, seen.crashed)
             .with(Condition::ImuStale, estimate.state.is_none())
             .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
+            .with(Condition::PosesGivenUp, self.trust.is_given_up())
+            .with(Condition::LandingOver, elapsed as f32 * 1e-6 >= landing_max)
             .with(Condition::ImuDoubtful, seen.imu_doubtful)
             .with(Condition::PoseRegained, regained && !self.must_still_land)
             .with(Condition::PoseRegainedToLand, regained && self.must_still_land)

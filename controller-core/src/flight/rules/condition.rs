@@ -47,6 +47,10 @@ listed! {
         ThrustsRefused,
         /// No pose has been believed for [`super::COASTING_MAX`], or the estimate is too uncertain.
         EstimateLost,
+        /// The source of poses has been refused and found again too often in this flight.
+        PosesGivenUp,
+        /// A landing has lasted for longer than its height explains.
+        LandingOver,
         /// Going down by the IMU alone, the vehicle does not do what is commanded, as far as the IMU says: one of them
         /// is wrong.
         ImuDoubtful,

@@ -22,7 +22,7 @@ const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row 
 
 /// The rules. Within a mode, an upper row goes before a lower one.
 #[rustfmt::skip]
-pub const TABLE: [Row; 101] = {
+pub const TABLE: [Row; 106] = {
     use Condition::*;
     use Mode::*;
     [
@@ -69,6 +69,7 @@ pub const TABLE: [Row; 101] = {
         row(TakingOff,  Crashed,             Stopped,    Reason::Crashed),
         row(TakingOff,  ImuStale,            Stopped,    Reason::ImuLost),
         row(TakingOff,  ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
+        row(TakingOff,  PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(TakingOff,  EstimateLost,        Descending, Reason::PoseLost),
         row(TakingOff,  BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(TakingOff,  BatteryLow,          Landing,    Reason::BatteryLow),
@@ -87,6 +88,7 @@ pub const TABLE: [Row; 101] = {
         row(Flying,     Crashed,             Stopped,    Reason::Crashed),
         row(Flying,     ImuStale,            Stopped,    Reason::ImuLost),
         row(Flying,     ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
+        row(Flying,     PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(Flying,     EstimateLost,        Descending, Reason::PoseLost),
         row(Flying,     BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(Flying,     BatteryLow,          Landing,    Reason::BatteryLow),
@@ -105,6 +107,7 @@ pub const TABLE: [Row; 101] = {
         row(Holding,    Crashed,             Stopped,    Reason::Crashed),
         row(Holding,    ImuStale,            Stopped,    Reason::ImuLost),
         row(Holding,    ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
+        row(Holding,    PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(Holding,    EstimateLost,        Descending, Reason::PoseLost),
         row(Holding,    BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(Holding,    BatteryLow,          Landing,    Reason::BatteryLow),
@@ -123,6 +126,8 @@ pub const TABLE: [Row; 101] = {
         row(Landing,    Crashed,             Stopped,    Reason::Crashed),
         row(Landing,    ImuStale,            Stopped,    Reason::ImuLost),
         row(Landing,    ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
+        row(Landing,    PosesGivenUp,        Descending, Reason::PosesGivenUp),
+        row(Landing,    LandingOver,         Descending, Reason::LandingOver),
         row(Landing,    EstimateLost,        Descending, Reason::PoseLost),
         row(Landing,    HoldRequested,       Holding,    Reason::HoldCommanded),
 

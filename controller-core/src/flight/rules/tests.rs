@@ -16,7 +16,7 @@ fn sets() -> impl Iterator<Item = Conditions> {
     let any = (0..100_000).map(move |_| {
         bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         // One half, a quarter and an eighth of the bits are set, in turn.
-        Conditions([bits, bits & bits << 13, bits & bits << 13 & bits << 27][(bits >> 60) as usize % 3] >> 31)
+        Conditions([bits, bits & bits << 13, bits & bits << 13 & bits << 27][(bits >> 60) as usize % 3] >> 29)
     });
     [Conditions::NONE].into_iter().chain(alone).chain(pairs).chain(any)
 }

@@ -55,12 +55,41 @@ fn a_time_that_does_not_advance_is_refused_however_long() {
 }
 
 #[test]
-fn a_clock_set_back_costs_four_frames_and_one_set_forward_none() {
+fn a_clock_that_is_set_costs_four_frames_back_or_forward() {
     let mut clock = SenderClock::new(5_000_000, 0);
     let stamps: Vec<_> = (1..8).map(|k| clock.stamp(3_000 + 10_000 * k, 10_000 * k)).collect();
     assert_eq!(stamps, [None, None, None, None, Some(50_000), Some(60_000), Some(70_000)]);
-    assert_eq!(clock.stamp(9_000_000, 80_000), Some(80_000));
-    assert_eq!(clock.stamp(9_010_000, 90_000), Some(90_000));
+    let stamps: Vec<_> = (8..14).map(|k| clock.stamp(9_000_000 + 10_000 * k, 10_000 * k)).collect();
+    assert_eq!(stamps, [None, None, None, None, Some(120_000), Some(130_000)]);
+}
+
+#[test]
+fn who_forges_every_fourth_message_stops_nobody() {
+    for forged in [50_000_i64, 150_000, 2_000_000, -600_000, -3_000_000] {
+        let mut clock = SenderClock::new(5_000_000, 0);
+        let mut refused = 0;
+        for k in 1..10_000_u64 {
+            let (time, arrived) = (5_000_000 + 10_000 * k, 10_000 * k + 2_000);
+            if k.is_multiple_of(4) {
+                clock.stamp(time.saturating_add_signed(forged), arrived - 1_000);
+            }
+            match clock.stamp(time, arrived) {
+                // Nor is what it says taken for older than the line may be quicker.
+                Some(stamp) => assert!(stamp <= arrived && arrived - stamp <= LEAD_MAX + 2_000, "{forged} {k}"),
+                None => refused += 1,
+            }
+        }
+        assert!(refused < 10, "{forged}: {refused}");
+    }
+}
+
+#[test]
+fn a_line_whose_first_message_was_slow_is_believed_again_however_its_delay_varies() {
+    let mut clock = SenderClock::new(5_000_000, 400_000);
+    // 0 to 60 ms late, in order.
+    let late = |k: u64| (k % 20).abs_diff(10) * 6_000;
+    let taken = (40..140_u64).filter(|&k| clock.stamp(5_000_000 + 10_000 * k, 10_000 * k + late(k)).is_some());
+    assert!(taken.count() >= 90);
 }
 
 #[test]

@@ -1,0 +1,190 @@
+//! Poses that lie: random sources of poses in any phase of a flight, flown in closed loop by the core's whole pilot on a
+//! simulated vehicle; and each flight held to what an operator may count on.
+//!
+//! - `lie`: what a source says instead of the truth; `flight`: one flight, to the ground.
+//!
+//! `cargo test -p host-sim lying_poses -- --nocapture` prints the figures; `LYING_FLIGHTS=5000` flies as many.
+
+mod flight;
+mod lie;
+
+use controller_core::certificate::certified::Certified;
+use controller_core::flight::Reason;
+use flight::{Begins, Case, Flown, fly};
+use lie::{Lie, drawn};
+use nalgebra::Vector3;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+use scenario::Scenario;
+
+/// Flights in each test run.
+const FLIGHTS: u64 = 300;
+
+/// What an operator may count on: s, m.
+const DOWN_WITHIN: f64 = 30.0;
+const OFF_WITHIN: f64 = 3.0;
+const OFF_MEDIAN: f64 = 1.0;
+const ROSE_MAX: f64 = 0.5;
+const OUT_MAX: f64 = 3.0;
+
+fn fly_all(cases: Vec<Case>) -> Vec<Flown> {
+    let scenario = Scenario::parse(scenario::STUDY, "study").unwrap();
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    cases.into_par_iter().map(|case| fly(&scenario, &certified, &case)).collect()
+}
+
+/// What must not be, in words.
+fn complaint(flown: &Flown) -> Option<String> {
+    let Flown { down_after, off_after, rose, out, .. } = *flown;
+    let (Some(down_after), Some(off_after)) = (down_after, off_after) else {
+        return flown.flew.then(|| "never down with its motors off".to_owned());
+    };
+    let can_be_told = !flown.case.lies.iter().any(Lie::is_beyond_telling);
+    let wrong = [
+        (down_after > DOWN_WITHIN, format!("down after {down_after:.1} s")),
+        (off_after > OFF_WITHIN, format!("motors off {off_after:.1} s after touchdown")),
+        (can_be_told && rose > ROSE_MAX, format!("rose {rose:.2} m")),
+        (can_be_told && out > OUT_MAX, format!("{out:.1} m out of its box")),
+    ];
+    wrong.into_iter().find(|(is_wrong, _)| *is_wrong).map(|(_, words)| words)
+}
+
+/// Says what went wrong, and fails if anything did.
+fn judge(flown: &[Flown]) {
+    let wrong: Vec<_> = flown.iter().filter_map(|flown| Some((flown, complaint(flown)?))).collect();
+    for (flown, words) in wrong.iter().take(20) {
+        println!("{words}: {flown:?}");
+    }
+    assert!(wrong.is_empty(), "{} of {} flights", wrong.len(), flown.len());
+}
+
+/// The greatest of something over flights.
+fn greatest(flown: &[Flown], of: impl Fn(&Flown) -> f64) -> f64 {
+    flown.iter().map(of).fold(0.0, f64::max)
+}
+
+fn print(name: &str, flown: &[Flown]) {
+    println!(
+        "{name:<16} {:>5} flights: down after {:>4.1} s, motors off {:>4.2} s after touchdown, rose {:>4.2} m, {:>4.2} m out, \
+         touched down at {:.2} m/s, at most",
+        flown.len(),
+        greatest(flown, |flown| flown.down_after.unwrap_or(f64::INFINITY)),
+        greatest(flown, |flown| flown.off_after.unwrap_or(f64::INFINITY)),
+        greatest(flown, |flown| flown.rose),
+        greatest(flown, |flown| flown.out),
+        greatest(flown, |flown| flown.touchdown),
+    );
+}
+
+#[test]
+fn whatever_poses_say_a_flight_ends_on_the_ground_with_motors_off() {
+    let count = std::env::var("LYING_FLIGHTS").ok().map_or(FLIGHTS, |count| count.parse().unwrap());
+    let mut random = ChaCha8Rng::seed_from_u64(30);
+    let cases = (0..count).map(|seed| Case {
+        begins: Begins::ALL[random.random_range(0..Begins::ALL.len())],
+        lies: drawn(&mut random),
+        ends_after: random.random_bool(0.3).then(|| random.random_range(0.5..10.0)),
+        land_after: random.random_range(1.0..15.0),
+        seed,
+    });
+    let mut flown = fly_all(cases.collect());
+    flown.retain(|flown| flown.flew);
+    println!("{} of {count} flights left the ground", flown.len());
+    for name in Lie::NAMES {
+        let of_kind: Vec<_> = flown.iter().filter(|flown| flown.case.lies[0].name() == name).cloned().collect();
+        print(name, &of_kind);
+    }
+    let mut off: Vec<f64> = flown.iter().filter_map(|flown| flown.off_after).collect();
+    off.sort_by(f64::total_cmp);
+    println!("motors off {:.2} s after touchdown in the median", off[off.len() / 2]);
+    judge(&flown);
+    assert!(off[off.len() / 2] <= OFF_MEDIAN);
+}
+
+/// Flies one lie from a phase on, for so long until LAND, with some seeds.
+fn told(lie: Lie, begins: Begins, land_after: f64) -> Vec<Flown> {
+    let case = |seed| Case { begins, lies: vec![lie], ends_after: None, land_after, seed };
+    let flown = fly_all((0..4).map(case).collect());
+    print(lie.name(), &flown);
+    judge(&flown);
+    flown
+}
+
+fn took(flown: &Flown, reason: Reason) -> usize {
+    flown.path.iter().filter(|(_, why)| *why == reason).count()
+}
+
+#[test]
+fn a_heading_that_is_wrong_at_the_source_is_given_up() {
+    for degrees in [45.0_f32, 60.0, 75.0, -60.0] {
+        for begins in [Begins::AtBoot, Begins::Holding] {
+            told(Lie::HeadingOff(degrees.to_radians()), begins, 15.0);
+        }
+    }
+}
+
+#[test]
+fn a_heading_that_drifts_is_told_by_the_gyro() {
+    for degrees in [1.0_f32, 2.0, 3.0, 5.0] {
+        for begins in [Begins::Holding, Begins::Moving] {
+            let flown = told(Lie::HeadingDrifts(degrees.to_radians()), begins, 60.0);
+            let is_told = |flown: &Flown| {
+                [Reason::PosesGivenUp, Reason::PoseLost, Reason::FenceBreached].iter().any(|why| took(flown, *why) > 0)
+            };
+            assert!(flown.iter().all(is_told), "{degrees} degrees a second: {flown:?}");
+        }
+    }
+}
+
+#[test]
+fn poses_that_come_and_go_make_a_landing_resume_once_at_most() {
+    for every in [1.1, 1.3, 1.6, 2.0, 2.8] {
+        for begins in [Begins::Holding, Begins::Landing] {
+            let flown = told(Lie::Comes { for_seconds: 0.03, every }, begins, 10.0);
+            assert!(flown.iter().all(|flown| took(flown, Reason::LandingResumed) <= 1), "{flown:?}");
+        }
+    }
+}
+
+#[test]
+fn a_landing_on_noisy_poses_does_not_rise() {
+    for noise in [0.02, 0.05, 0.1] {
+        told(Lie::Noisy(noise, 1e-3), Begins::Landing, 10.0);
+    }
+}
+
+#[test]
+fn a_source_that_claims_to_be_exact_is_flown_like_any_other() {
+    for claim in [1e-3, 1e-4, 1e-5, 0.0] {
+        for flown in told(Lie::Claims(claim, claim), Begins::AtBoot, 20.0) {
+            let reasons: Vec<_> =
+                flown.path.iter().map(|(_, reason)| *reason).filter(|why| why.is_own_doing()).collect();
+            assert!(flown.flew && reasons.is_empty(), "{claim}: {reasons:?}");
+        }
+    }
+}
+
+/// No test: what nothing on board can tell, and how far it leads in 30 s of holding.
+#[test]
+fn how_far_lies_lead_that_nothing_on_board_can_tell() {
+    let drift = |speed: f32| Lie::Drifts(Vector3::new(speed, 0.0, 0.0));
+    for (lie, begins) in [
+        (drift(0.01), Begins::Holding),
+        (drift(0.03), Begins::Holding),
+        (drift(0.1), Begins::Holding),
+        (drift(0.3), Begins::Holding),
+        (Lie::Drifts(Vector3::new(0.0, 0.0, -0.05)), Begins::Holding),
+        (Lie::Scaled(0.8), Begins::AtBoot),
+        (Lie::Scaled(0.5), Begins::AtBoot),
+        (Lie::Scaled(0.3), Begins::AtBoot),
+        (Lie::Leans(0.035), Begins::AtBoot),
+        (Lie::HeadingDrifts(0.5_f32.to_radians()), Begins::Holding),
+        (Lie::Late(5), Begins::AtBoot),
+    ] {
+        let case = Case { begins, lies: vec![lie], ends_after: None, land_after: 30.0, seed: 1 };
+        let flown = fly_all(vec![case]);
+        println!("{lie:?}: {:.2} m off in 30 s; {:?}", flown[0].off, flown[0].path);
+        judge(&flown);
+    }
+}
