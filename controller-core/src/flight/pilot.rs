@@ -24,7 +24,7 @@ use crate::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Taken};
 use crate::governor::GovernorLimits;
 use nalgebra::Vector3;
 
-/// Everything that decides what the motors do. Size: about 3 KB, and its [`Memory`] and [`Estimator`].
+/// Everything that decides what the motors do. Size: about 3.5 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m> {
     chain: Result<Chain<'m>, Grounded>,
