@@ -62,8 +62,8 @@ pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 pub use requests::{REQUESTS, Requests};
 
-use crate::last_words::LastWords;
 use self::lately::Lately;
+use crate::last_words::LastWords;
 use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;

@@ -86,7 +86,7 @@ pub enum Action {
 pub struct Call {
     /// Which.
     pub command: MavCmd,
-    /// Its first four parameters; the next two, unless they are a place; and the seventh.
+    /// Its parameters; of a COMMAND_INT the fifth and sixth are not numbers of this kind.
     pub parameters: [f32; 7],
     /// The place, units of degrees, and the frame that COMMAND_INT says.
     pub place: Option<(i32, i32, MavFrame)>,
@@ -184,16 +184,22 @@ const HERE: f32 = 2.0;
 
 /// Taking off, straight up. Most clients that name no height or place send NaN or the greatest number, some zero.
 fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
-    let [.., altitude] = call.parameters;
+    let [.., latitude, longitude, altitude] = call.parameters;
     let is_named = !altitude.is_nan() && altitude != 0.0;
-    let Some((latitude, longitude, frame)) = call.place else {
-        return Action::Ask(Request::TakeOff(is_named.then_some(altitude)));
+    let (place, height) = match call.place {
+        // What COMMAND_LONG says of a place is degrees, rounded to half a metre; NaN and zero are none.
+        None => {
+            let degrees = [latitude, longitude].map(|degrees| (degrees * 1e7) as i32);
+            ((degrees[0], degrees[1]), Some(altitude))
+        }
+        Some((latitude, longitude, frame)) => {
+            ((latitude, longitude), above_home(frame, altitude, origin.place(home).altitude))
+        }
     };
-    let Some(height) = above_home(frame, altitude, origin.place(home).altitude) else {
-        return unsupported("Take-off: in a global frame only");
-    };
+    let Some(height) = height else { return unsupported("Take-off: in a global frame only") };
+    let (latitude, longitude) = place;
     let away = origin.local(&Place { latitude, longitude, altitude }) - home;
-    if (latitude, longitude) != (0, 0) && latitude != i32::MAX && away.xy().norm_squared() > HERE * HERE {
+    if place != (0, 0) && latitude != i32::MAX && away.xy().norm_squared() > HERE * HERE {
         return denied("Take-off: from here, not from another place");
     }
     Action::Ask(Request::TakeOff(is_named.then_some(height)))

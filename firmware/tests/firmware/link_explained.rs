@@ -5,8 +5,9 @@ use crate::support::{extended, v2};
 use controller_core::flight::{Mode, Request};
 use core::f32::consts::FRAC_PI_2;
 use firmware::shared::{MissionList, Reply};
+use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_INT_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, MANUAL_CONTROL_DATA, MISSION_ITEM_DATA,
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, MANUAL_CONTROL_DATA, MISSION_ITEM_DATA,
     MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult, MavParamType, MavResult, PARAM_REQUEST_READ_DATA,
     PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA, VICON_POSITION_ESTIMATE_DATA, VISION_POSITION_ESTIMATE_DATA,
 };
@@ -128,7 +129,7 @@ fn take_off(frame: MavFrame, x: i32, y: i32, z: f32) -> COMMAND_INT_DATA {
 #[test]
 #[expect(deprecated, reason = "frames that clients still use")]
 fn the_frame_and_the_place_of_a_take_off_are_honoured_or_refused() {
-    let asked = |message: &COMMAND_INT_DATA| {
+    fn asked<D: MessageData + std::fmt::Debug>(message: &D) -> Option<Request> {
         let shared = Local::new();
         // Ten metres above the sea.
         let origin = firmware::link::origin::Origin::new(473_000_000, 85_000_000, 10_000).unwrap();
@@ -137,7 +138,7 @@ fn the_frame_and_the_place_of_a_take_off_are_honoured_or_refused() {
         let request = shared.requests.take().map(|asked| asked.request);
         assert_eq!(texts(&shared).len(), usize::from(request.is_none()), "{message:?}");
         request
-    };
+    }
     let (global, relative) = (MavFrame::MAV_FRAME_GLOBAL, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT);
     for (message, height) in [
         // As high above the sea, or above home.
@@ -159,4 +160,12 @@ fn the_frame_and_the_place_of_a_take_off_are_honoured_or_refused() {
     ] {
         assert_eq!(asked(&message), None, "{message:?}");
     }
+    // COMMAND_LONG says the place in degrees, and the height above where it stands.
+    let long = |param5, param6| {
+        let command = MavCmd::MAV_CMD_NAV_TAKEOFF;
+        asked(&COMMAND_LONG_DATA { command, target_system: 1, param5, param6, param7: 3.0, ..Default::default() })
+    };
+    assert_eq!(long(47.3, 8.5), Some(Request::TakeOff(Some(3.0))));
+    assert_eq!(long(f32::NAN, f32::NAN), Some(Request::TakeOff(Some(3.0))));
+    assert_eq!(long(47.301, 8.5), None);
 }
