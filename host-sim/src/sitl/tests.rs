@@ -92,13 +92,7 @@ impl Flown {
             let q = firmware::frames::attitude(&attitude.cast()).coords;
             let at = firmware::frames::world(&position.cast());
             let time_usec = 7_000_000 + self.sitl.clock.now();
-            self.send(&ATT_POS_MOCAP_DATA {
-                time_usec,
-                q: [q.w, q.x, q.y, q.z],
-                x: at.x,
-                y: at.y,
-                z: at.z,
-            });
+            self.send(&ATT_POS_MOCAP_DATA { time_usec, q: [q.w, q.x, q.y, q.z], x: at.x, y: at.y, z: at.z });
             self.pass(0.01);
         }
     }
