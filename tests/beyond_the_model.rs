@@ -4,9 +4,9 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
+use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::memory::Estimates;
-use controller_core::flight::{
+use flight::{
     FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};

@@ -3,7 +3,7 @@
 //! examples. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
-use controller_core::flight::rules::TABLE;
+use flight::rules::TABLE;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::collections::BTreeSet;

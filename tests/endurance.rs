@@ -2,7 +2,7 @@
 //! `cargo run --release -p host-sim --example endurance -- vehicles/study.toml 24` flies a day.
 
 use controller_core::certificate::certified::Certified;
-use controller_core::flight::Reason;
+use flight::Reason;
 use host_sim::campaign::hours::{Hours, Plan, fly};
 use rayon::prelude::*;
 use scenario::Scenario;

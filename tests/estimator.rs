@@ -7,7 +7,7 @@ mod sensors;
 mod truth;
 
 use crate::support::random;
-use controller_core::estimator::{EstimatorParameters, Rejected};
+use estimation::estimator::{EstimatorParameters, Rejected};
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use run::{Meddle, Shown};

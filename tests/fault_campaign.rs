@@ -21,8 +21,8 @@ mod watch;
 
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use controller_core::flight::rules::{Condition, Row, TABLE};
-use controller_core::flight::{FlightSettings, Mode, Reason, Transition};
+use flight::rules::{Condition, Row, TABLE};
+use flight::{FlightSettings, Mode, Reason, Transition};
 use controller_core::reference::ReferenceBounds;
 use failure::Failure;
 use phase::Phase;

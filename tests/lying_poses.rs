@@ -9,7 +9,7 @@ mod flight;
 mod lie;
 
 use controller_core::certificate::certified::Certified;
-use controller_core::flight::Reason;
+use flight::Reason;
 use flight::{Begins, Case, Flown, fly};
 use lie::{Lie, drawn};
 use nalgebra::Vector3;

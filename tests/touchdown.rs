@@ -7,7 +7,7 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use controller_core::flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
+use flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
 use host_sim::piloted::{Nobody, PilotedVehicle, Place};
 use scenario::reality::estimator::Estimator;
 

@@ -16,8 +16,8 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
+use estimation::estimator::PoseMeasurement;
+use flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
 use host_sim::instruments::{Felt, SAMPLE};
 use host_sim::piloted::{Meddler, PilotedVehicle, Place};
 use host_sim::reality::RealVehicle;

@@ -90,18 +90,27 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Shorthand for constructors: refuses `field` for `reason` unless `condition` holds.
-pub(crate) fn require(condition: bool, field: &'static str, reason: Reason) -> Result<(), ParameterError> {
+/// Shorthand for constructors.
+///
+/// # Errors
+/// `field`, for `reason`, unless `condition` holds.
+pub fn require(condition: bool, field: &'static str, reason: Reason) -> Result<(), ParameterError> {
     if condition { Ok(()) } else { Err(ParameterError { field, reason }) }
 }
 
-/// Refuses anything but a finite number.
-pub(crate) fn require_finite(value: f32, field: &'static str) -> Result<(), ParameterError> {
+/// Requires a finite number.
+///
+/// # Errors
+/// `field`, if it is none.
+pub fn require_finite(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require(value.is_finite(), field, Reason::NotFinite)
 }
 
-/// Refuses anything but a finite number above zero.
-pub(crate) fn require_positive(value: f32, field: &'static str) -> Result<(), ParameterError> {
+/// Requires a finite number above zero.
+///
+/// # Errors
+/// `field`, if it is none.
+pub fn require_positive(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require_finite(value, field)?;
     require(value > 0.0, field, Reason::NotPositive)
 }
@@ -128,6 +137,17 @@ pub enum InputError {
     },
     /// The reference falls so fast that the thrust direction could vanish: a_z must stay above M_p - g.
     FallsTooFast,
+}
+
+impl InputError {
+    /// The input that it is about.
+    #[must_use]
+    pub fn field(&self) -> &'static str {
+        match *self {
+            Self::NotFinite { field } | Self::OutOfRange { field } | Self::NotARotation { field } => field,
+            Self::FallsTooFast => "reference.acceleration",
+        }
+    }
 }
 
 impl fmt::Display for InputError {

@@ -297,4 +297,4 @@ const FARTHEST: f32 = 2_305_843_009_213_693_952.0;
 const LONGEST_TIME: f32 = 60.0;
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

@@ -1,12 +1,10 @@
 //! The harmonic reference: its phase after a month, its derivatives, and its bounds.
 
-mod support;
-
+use crate::support::{Random, bounds, demands, derivatives, psi, slope, turn};
 use controller_core::error::Reason;
 use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use core::f64::consts::{PI, SQRT_2, TAU};
-use support::{Random, bounds, demands, derivatives, psi, slope, turn};
 
 const THIRTY_DAYS_US: u64 = 30 * 24 * 3600 * 1_000_000;
 

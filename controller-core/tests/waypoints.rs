@@ -1,12 +1,10 @@
 //! Waypoint references: where they go, how smoothly, and whether their bounds are bounds.
 
-mod support;
-
+use crate::support::{Random, bounds, demands, derivatives, psi, slope, turn};
 use controller_core::error::Reason;
 use controller_core::reference::Trajectory;
 use controller_core::reference::waypoints::{CAPACITY, Waypoint, Waypoints};
 use core::f64::consts::PI;
-use support::{Random, bounds, demands, derivatives, psi, slope, turn};
 
 fn waypoint(time: f64, position: [f64; 3], heading_deg: f64) -> Waypoint {
     Waypoint { time, position, heading: heading_deg.to_radians() }

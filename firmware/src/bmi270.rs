@@ -22,7 +22,7 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
-use controller_core::imu::ImuParameters;
+use estimation::imu::ImuParameters;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::spi::SpiBus;
 

@@ -5,7 +5,7 @@
 //!                                                          '-> watchdog fed, if all of it was in time
 //! ```
 //!
-//! The task decides nothing about flight: [`controller_core::flight`] does. It keeps time: ticks are due a period
+//! The task decides nothing about flight: [`flight`] does. It keeps time: ticks are due a period
 //! apart, counted from the first one. A tick that has not written its command when the next is due has been missed; the
 //! ticks it overran are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided
 //! in time, the stop command included: a vehicle whose motors do not hear it, or that has no time left, is reset.
@@ -17,8 +17,8 @@ use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
-use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
+use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
+use flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;

@@ -7,7 +7,7 @@
 //! burst transfer wants them.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
-use controller_core::flight::Word;
+use flight::Word;
 use dshot_frame::{Command, NormalFrame};
 
 /// Bits in a second.

@@ -3,8 +3,8 @@
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
 
-use controller_core::flight::Word;
-use controller_core::imu::ImuParameters;
+use flight::Word;
+use estimation::imu::ImuParameters;
 use core::future::{Future, ready};
 use nalgebra::Vector3;
 

@@ -28,7 +28,7 @@ use crate::link::pose::odometry;
 use crate::link::writer::Writer;
 use crate::parameters::table::Name;
 use crate::shared::{Flag, Latest, Shared};
-use controller_core::flight::{PERIOD, Stamped};
+use flight::{PERIOD, Stamped};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;

@@ -32,7 +32,7 @@
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
 //! list them by priority and run them on Embassy's executors. They decide nothing about flight: that is
-//! [`controller_core::flight`].
+//! [`flight`].
 
 #![cfg_attr(target_os = "none", no_std)]
 

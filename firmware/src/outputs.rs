@@ -9,7 +9,7 @@ use crate::hardware::{MOTORS, MotorCommand};
 use controller_core::allocation::curve::Battery;
 use controller_core::allocation::{Rotor, Rotors, ThrustCurve};
 use controller_core::error::{ParameterError, Reason};
-use controller_core::flight::{Output, Stamped};
+use flight::{Output, Stamped};
 
 /// The outputs that the rotors' controllers are wired to, from 0: the first digit of `order` is the first rotor's
 /// output, from 1. None unless each of the outputs is there once.

@@ -22,7 +22,7 @@ pub mod sticks;
 
 use crate::hardware::Clock;
 use crate::shared::{Asked, Event, Severity, Shared};
-use controller_core::flight::{Mode, Request};
+use flight::{Mode, Request};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;

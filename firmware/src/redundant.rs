@@ -12,12 +12,12 @@
 //! that out, on the ground.
 //!
 //! A takeover by silence lasts at most 15 ms from the first's last sample to the second's first, which is bridged
-//! ([`controller_core::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up
+//! ([`estimation::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up
 //! anew.
 
 use crate::hardware::{Fault, Imu, RawImu, Unit};
-use controller_core::imu::watch::Watch;
-use controller_core::imu::{ImuFault, ImuParameters};
+use estimation::imu::watch::Watch;
+use estimation::imu::{ImuFault, ImuParameters};
 
 /// Faults of the first in a row after which the second takes over: 10 ms at worst.
 pub const TAKE_OVER_AFTER: u8 = 4;

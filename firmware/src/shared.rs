@@ -3,10 +3,10 @@
 //!
 //! | from | what | to | at most this old |
 //! |---|---|---|---|
-//! | IMU | [`Shared::imu`] | control | [`controller_core::flight`] decides |
+//! | IMU | [`Shared::imu`] | control | [`flight`] decides |
 //! | IMU | [`Shared::imu_fault`] | control | 1 s |
 //! | IMU | [`Shared::increments`] | control | a tick: each taken once |
-//! | link | [`Shared::poses`] | control | a tick: each taken once; [`controller_core::estimator`] decides |
+//! | link | [`Shared::poses`] | control | a tick: each taken once; [`estimation::estimator`] decides |
 //! | link | [`Shared::pose_delay_unknown`] | control | as of the last pose |
 //! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
 //! | link | [`Shared::setpoint`] | control | a tick: taken once |
@@ -68,10 +68,10 @@ use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
-use controller_core::estimator::{Increment, PoseMeasurement};
-use controller_core::flight::{ImuSample, Mode, Refusal, Stamped};
+use estimation::estimator::{Increment, PoseMeasurement};
+use flight::{ImuSample, Mode, Refusal, Stamped};
 use controller_core::governor::Setpoint;
-use controller_core::imu::ImuFault;
+use estimation::imu::ImuFault;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;

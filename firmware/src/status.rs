@@ -17,7 +17,7 @@ use crate::hardware::{Battery, Clock, Light};
 use crate::last_words::Teller;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Severity, Shared};
-use controller_core::flight::Mode;
+use flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 

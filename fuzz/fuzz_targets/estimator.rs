@@ -4,9 +4,9 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use controller_core::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings, Taken};
-use controller_core::flight::{Pose, Stamped, Velocity};
-use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use estimation::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings, Taken};
+use flight::{Pose, Stamped, Velocity};
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::{Quaternion, Vector3};
 

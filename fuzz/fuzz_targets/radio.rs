@@ -5,7 +5,7 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use controller_core::flight::{Mode, Request};
+use flight::{Mode, Request};
 use controller_core::governor::Motion;
 use controller_core::state::State;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;

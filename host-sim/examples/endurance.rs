@@ -5,8 +5,8 @@
 //! first.
 
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::Estimator;
-use controller_core::flight::{Memory, Pilot};
+use estimation::estimator::Estimator;
+use flight::{Memory, Pilot};
 use host_sim::campaign::hours::{Hours, Obeyed, Plan, TIMED, fly};
 use scenario::Scenario;
 use std::error::Error;

@@ -11,9 +11,9 @@
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;
-use controller_core::estimator::{Estimator, Fault, PoseMeasurement, Settings};
-use controller_core::flight::Stamped;
-use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
+use flight::Stamped;
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
 use nalgebra::UnitQuaternion;
 use scenario::Scenario;

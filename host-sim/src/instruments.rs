@@ -14,10 +14,10 @@
 //! that they last.
 
 use crate::sensors::{noise, single};
-use controller_core::estimator::EstimatorParameters;
-use controller_core::flight::{ImuSample, Pose, Stamped, Velocity};
-use controller_core::imu::ImuParameters;
-use controller_core::imu::low_pass::LowPass;
+use estimation::estimator::EstimatorParameters;
+use flight::{ImuSample, Pose, Stamped, Velocity};
+use estimation::imu::ImuParameters;
+use estimation::imu::low_pass::LowPass;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};

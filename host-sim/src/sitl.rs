@@ -36,7 +36,7 @@ use crate::recording::session::Moment;
 use clock::SimClock;
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
-use controller_core::flight::Mode;
+use flight::Mode;
 use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use faults::{Fault, Faults, Part};

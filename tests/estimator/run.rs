@@ -2,11 +2,11 @@
 
 use super::sensors::{Imu, pose};
 use super::truth::{Moment, Truth};
-use controller_core::estimator::covariance::Covariance;
-use controller_core::estimator::filter::Filter;
-use controller_core::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
-use controller_core::flight::Stamped;
-use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use estimation::estimator::covariance::Covariance;
+use estimation::estimator::filter::Filter;
+use estimation::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
+use flight::Stamped;
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
 use rand::Rng;

@@ -1,8 +1,8 @@
 //! What a BMI088 and a camera system make of a moment: white noise, biases that walk, poses with noise.
 
 use super::truth::Moment;
-use controller_core::estimator::{EstimatorParameters, PoseMeasurement};
-use controller_core::flight::{Pose, Velocity};
+use estimation::estimator::{EstimatorParameters, PoseMeasurement};
+use flight::{Pose, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};

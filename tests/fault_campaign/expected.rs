@@ -9,7 +9,7 @@
 
 use super::failure::Failure;
 use super::phase::Phase;
-use controller_core::flight::Mode;
+use flight::Mode;
 
 /// How much a vehicle does about a failure, the least first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

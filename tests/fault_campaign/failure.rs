@@ -1,7 +1,7 @@
 //! What fails, and how it shows: in the sensors, in the air, in what is said to the vehicle.
 
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{Battery, ImuSample, Inputs, Pose, Stamped, Velocity};
+use estimation::estimator::PoseMeasurement;
+use flight::{Battery, ImuSample, Inputs, Pose, Stamped, Velocity};
 use host_sim::piloted::{Meddler, PilotedVehicle};
 use host_sim::reality::RealVehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::phase::Phase;
 use super::run::{Case, Flown, fly};
 use super::{FLIGHT_HEIGHT, SETTINGS, Vehicle, vehicle};
-use controller_core::flight::{FlightSettings, Reason};
+use flight::{FlightSettings, Reason};
 
 /// Flies a case on the study, and holds it to what must follow.
 fn flown(phase: Phase, first: Failure, second: Option<(Failure, u64)>) -> Flown {

@@ -1,6 +1,6 @@
 //! Where in a flight it fails, and what an operator says to get there.
 
-use controller_core::flight::{Inputs, Mode, MotorTest, Request};
+use flight::{Inputs, Mode, MotorTest, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use nalgebra::Vector3;
 

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::phase::Phase;
 use super::run::Flown;
-use controller_core::flight::Mode;
+use flight::Mode;
 
 /// A mode in a letter.
 fn letter(mode: Mode) -> char {

@@ -5,8 +5,8 @@ use super::expected::{self, Severity};
 use super::failure::{Failure, Failures};
 use super::phase::{Phase, Sight};
 use super::watch;
-use controller_core::estimator::Rejected;
-use controller_core::flight::{Inputs, Mode, Outcome, Output, Reason, Request, Transition};
+use estimation::estimator::Rejected;
+use flight::{Inputs, Mode, Outcome, Output, Reason, Request, Transition};
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -3,8 +3,8 @@
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::form::Interval;
-use controller_core::flight::rules::{MOTOR_TEST_LEVEL_MAX, TABLE};
-use controller_core::flight::{Flown, Mode, Outcome, Output, Transition};
+use flight::rules::{MOTOR_TEST_LEVEL_MAX, TABLE};
+use flight::{Flown, Mode, Outcome, Output, Transition};
 use firmware::hardware::MotorCommand;
 
 /// Room for the rounding of a wrench's components against a bound, relative.

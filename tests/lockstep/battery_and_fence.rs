@@ -2,7 +2,7 @@
 
 use super::down::check_landed;
 use super::flight::Flight;
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::parameters::table::Name;
 use mavlink::dialects::common::MavResult;
 

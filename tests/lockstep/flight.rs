@@ -4,7 +4,7 @@ use super::clock::SimClock;
 use super::line::Line;
 use super::station::Station;
 use super::world::{Dark, SimBattery, SimImu, SimMotors, SimWatchdog, World};
-use controller_core::flight::{Mode, Pilot};
+use flight::{Mode, Pilot};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use firmware::control::Control;
 use firmware::hardware::Clock;

@@ -3,8 +3,8 @@
 use super::flight::Flight;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use controller_core::estimator::{Estimator, EstimatorParameters, Settings};
-use controller_core::flight::{FlightSettings, Memory, Mode, Pilot};
+use estimation::estimator::{Estimator, EstimatorParameters, Settings};
+use flight::{FlightSettings, Memory, Mode, Pilot};
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
 use firmware::configuration;

@@ -2,8 +2,8 @@
 
 use super::flight::Flight;
 use super::station::Station;
-use controller_core::flight::Mode;
-use controller_core::flight::rules::COASTING_MAX;
+use flight::Mode;
+use flight::rules::COASTING_MAX;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};

@@ -2,7 +2,7 @@
 
 use super::down::check_landed;
 use super::flight::Flight;
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::MotorCommand;
 
 /// A flight on its way to a point 20 m off, with its poses just gone.

@@ -1,7 +1,7 @@
 //! The motor test: one motor, slowly, not for long, and never against a disarm command.
 
 use super::flight::Flight;
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::{MOTORS, MotorCommand};
 use mavlink::dialects::common::MavResult;
 

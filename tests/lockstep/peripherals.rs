@@ -2,7 +2,7 @@
 
 use super::flight::Flight;
 use super::world::Health;
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::MavResult;
 

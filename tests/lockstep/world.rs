@@ -3,7 +3,7 @@
 use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
-use controller_core::imu::ImuParameters;
+use estimation::imu::ImuParameters;
 use controller_core::state::State;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
 use host_sim::plant::Plant;

@@ -2,7 +2,7 @@
 
 use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
-use controller_core::flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
+use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::Vector3;

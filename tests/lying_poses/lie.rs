@@ -1,7 +1,7 @@
 //! Poses that lie: what a source of poses says instead of the truth.
 
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{Pose, Stamped, Velocity};
+use estimation::estimator::PoseMeasurement;
+use flight::{Pose, Stamped, Velocity};
 use host_sim::piloted::Meddler;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::ChaCha8Rng;

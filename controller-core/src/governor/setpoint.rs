@@ -77,7 +77,7 @@ impl Setpoint {
     ///
     /// # Errors
     /// Names the field that is not finite or out of range.
-    pub(crate) fn check(&self) -> Result<(), InputError> {
+    pub fn check(&self) -> Result<(), InputError> {
         self.checked().map(|_| ())
     }
 

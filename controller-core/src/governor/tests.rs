@@ -6,6 +6,10 @@ use super::*;
 use nalgebra::Vector2;
 use std::boxed::Box;
 use std::string::{String, ToString};
+pub(super) use xorshift::Random;
+
+#[path = "../../../tests/support/xorshift.rs"]
+mod xorshift;
 
 /// Bounds a small quadrotor certifies.
 pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
@@ -17,28 +21,6 @@ pub(super) const TYPICAL: ReferenceBounds = ReferenceBounds {
     heading_rate: 1.3,
     heading_second_derivative: 1.8,
 };
-
-/// Xorshift, for tests that repeat to the bit.
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
-    }
-
-    /// In [0, 1).
-    pub(crate) fn unit(&mut self) -> f32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 40) as f32 / 16_777_216.0
-    }
-
-    /// In [-1, 1).
-    pub(crate) fn signed(&mut self) -> f32 {
-        2.0 * self.unit() - 1.0
-    }
-}
 
 pub(super) const PERIOD: f32 = 0.01;
 

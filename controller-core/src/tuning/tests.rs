@@ -1,9 +1,9 @@
 use super::judged::JudgedLoops;
 use super::*;
-use crate::flight::tests::example::certified;
+use crate::hummingbird;
 
 fn built() -> Configuration {
-    certified().configuration().clone()
+    hummingbird::certified().configuration().clone()
 }
 
 #[test]

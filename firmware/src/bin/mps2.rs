@@ -4,7 +4,7 @@
 
 #[cfg(target_os = "none")]
 mod target {
-    use controller_core::flight::Pilot;
+    use flight::Pilot;
     use defmt_semihosting as _;
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use firmware::boards::mps2::bench::{Lamp, NoBattery, NoMotors};

@@ -7,9 +7,9 @@
 mod target {
     use controller_core::controller::{Command, Controller};
     use controller_core::error::InputError;
-    use controller_core::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
-    use controller_core::flight::Stamped;
-    use controller_core::imu::{Conditioned, Conditioner};
+    use estimation::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
+    use flight::Stamped;
+    use estimation::imu::{Conditioned, Conditioner};
     use controller_core::reference::Reference;
     use controller_core::state::State;
     use core::hint::black_box;

@@ -13,7 +13,7 @@ use super::volume::{File, Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR};
 use crate::recorder::{tick, ulog};
 use crate::shared::{Event, Severity, Text};
-use controller_core::flight::PERIOD;
+use flight::PERIOD;
 
 /// What a file grows by, bytes: 3.8 s of flight.
 pub const CHUNK: u32 = 64 << 10;

@@ -8,7 +8,7 @@
 //! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
 //! | all zero | ends what is under way |
 //!
-//! Whether it stood still is [`standstill`](controller_core::imu::standstill)'s to say. The sensor that stands by is
+//! Whether it stood still is [`standstill`](estimation::imu::standstill)'s to say. The sensor that stands by is
 //! calibrated along with the other, from its own samples. What comes out is applied at once, and kept in the
 //! parameters. Six sides and the single one forget the level that was found with other offsets: level afterwards.
 //!
@@ -20,9 +20,9 @@ use crate::hardware::{Fault, RawImu, Unit};
 use crate::link::acknowledgement::Order;
 use crate::parameters::calibration;
 use crate::shared::{Event, Procedure, Reply, Severity, Shared};
-use controller_core::imu::Calibration;
-use controller_core::imu::six_point::{SixPoint, SixPointError};
-use controller_core::imu::standstill::{Moved, Rest, Standstill};
+use estimation::imu::Calibration;
+use estimation::imu::six_point::{SixPoint, SixPointError};
+use estimation::imu::standstill::{Moved, Rest, Standstill};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::MavResult;

@@ -10,7 +10,7 @@
 use crate::hardware::RawImu;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::error::ParameterError;
-use controller_core::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
+use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// How long a fault must have been away to be said again, us.

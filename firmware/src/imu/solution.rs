@@ -1,10 +1,10 @@
 //! From a sensor at rest to what corrects it, for each procedure.
 
 use crate::shared::Procedure;
-use controller_core::imu::Calibration;
-use controller_core::imu::calibration::NotLevel;
-use controller_core::imu::six_point::{SixPoint, SixPointError};
-use controller_core::imu::standstill::Rest;
+use estimation::imu::Calibration;
+use estimation::imu::calibration::NotLevel;
+use estimation::imu::six_point::{SixPoint, SixPointError};
+use estimation::imu::standstill::Rest;
 use core::fmt::{self, Display};
 use nalgebra::Vector3;
 

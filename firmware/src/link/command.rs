@@ -25,7 +25,7 @@ use super::telemetry::vehicle;
 use crate::frames;
 use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};
-use controller_core::flight::{MotorSetting, MotorTest, Request, Setting};
+use flight::{MotorSetting, MotorTest, Request, Setting};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use heapless::Deque;
 use mavlink::dialects::common::{

@@ -6,12 +6,12 @@
 //! radio armed it. Who armed is control's to say: many may have asked. Who is a ground station its heartbeat says.
 
 use super::command::Call;
-use controller_core::flight::Stamped;
+use flight::Stamped;
 use heapless::Deque;
 use mavlink::dialects::common::MavCmd;
 
 /// How long a commanding station may be silent, us: as long as the flight rules wait for it.
-pub const SILENCE: u64 = controller_core::flight::rules::GROUND_STATION_SILENCE_MAX;
+pub const SILENCE: u64 = flight::rules::GROUND_STATION_SILENCE_MAX;
 
 /// Ground stations that are remembered, the last.
 const STATIONS: usize = 4;

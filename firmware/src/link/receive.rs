@@ -16,7 +16,7 @@ use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::radio::SILENCE as RADIO_SILENCE;
 use crate::shared::{Event, Ping, Reply, Severity, Shared, Traffic};
-use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
+use flight::{SETPOINT_AGE_MAX, Stamped};
 use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};

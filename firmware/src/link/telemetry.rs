@@ -15,7 +15,7 @@ use super::origin::Origin;
 use super::time_sync;
 use super::writer::Writer;
 use crate::shared::{Report, Traffic};
-use controller_core::flight::Stamped;
+use flight::Stamped;
 
 /// What is known when a message is written.
 #[derive(Debug, Clone)]

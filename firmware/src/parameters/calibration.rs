@@ -6,8 +6,8 @@
 use super::table::{Name, PARAMETERS};
 use super::{NotTaken, Parameters};
 use crate::hardware::Unit;
-use controller_core::imu::Calibration;
-use controller_core::imu::standstill::Rest;
+use estimation::imu::Calibration;
+use estimation::imu::standstill::Rest;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use nalgebra::Vector3;
 

@@ -2,7 +2,7 @@
 
 use super::Parameters;
 use super::table::Name;
-use controller_core::flight::FlightSettings;
+use flight::FlightSettings;
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 

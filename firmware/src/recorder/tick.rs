@@ -4,7 +4,7 @@
 //! NaN.
 
 use crate::hardware::MotorCommand;
-use controller_core::flight::Mode;
+use flight::Mode;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::Vector3;

@@ -5,9 +5,9 @@
 //! other, the force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
 
 use super::{PERIOD_US, RECORD, digest, state};
-use controller_core::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
-use controller_core::flight::{Pose, Stamped, Velocity};
-use controller_core::imu::{Calibration, Conditioner, ImuParameters};
+use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
+use flight::{Pose, Stamped, Velocity};
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
 use heapless::Deque;
 use nalgebra::{UnitQuaternion, Vector3};

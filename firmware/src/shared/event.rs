@@ -2,8 +2,8 @@
 //! from.
 
 use controller_core::error::InputError;
-use controller_core::estimator::{Fault, Rejected, Taken};
-use controller_core::flight::{Reason, Refusal};
+use estimation::estimator::{Fault, Rejected, Taken};
+use flight::{Reason, Refusal};
 use core::fmt::{self, Write};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.

@@ -1,6 +1,6 @@
 //! The freshest value of something.
 
-use controller_core::flight::Stamped;
+use flight::Stamped;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;

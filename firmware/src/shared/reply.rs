@@ -4,7 +4,7 @@ use crate::link::acknowledgement::{Acknowledgement, Order};
 use crate::link::files::FileRequest;
 use crate::link::telemetry::kind::Kind;
 use crate::parameters::table::Name;
-use controller_core::flight::Request;
+use flight::Request;
 use mavlink::dialects::common::MavMissionResult;
 
 /// PING: superseded by TIMESYNC, but clients still send it and wait for the answer.

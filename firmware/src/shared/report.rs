@@ -2,9 +2,9 @@
 
 use crate::hardware::MotorCommand;
 use crate::recorder::tick::Tick;
-use controller_core::estimator::Health;
-use controller_core::flight::Mode;
-use controller_core::imu::ImuFault;
+use estimation::estimator::Health;
+use flight::Mode;
+use estimation::imu::ImuFault;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::Vector3;

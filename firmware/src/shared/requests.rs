@@ -5,7 +5,7 @@
 //! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
-use controller_core::flight::Request;
+use flight::Request;
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;

@@ -1,7 +1,7 @@
 //! The log: a few lines a second and one for each event. On boards only; a desktop has the events themselves.
 
 use crate::shared::{Event, Report, Shared};
-use controller_core::flight::Stamped;
+use flight::Stamped;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Logs an event.

@@ -3,9 +3,9 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{Mode, Pose, Request, Stamped, Velocity};
-use controller_core::imu::{Calibration, ImuParameters};
+use estimation::estimator::PoseMeasurement;
+use flight::{Mode, Pose, Request, Stamped, Velocity};
+use estimation::imu::{Calibration, ImuParameters};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::boot;
 use firmware::control::Control;

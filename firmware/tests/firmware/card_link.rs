@@ -6,7 +6,7 @@ use crate::support::card::{Simulation, files, parsed, small};
 use crate::support::line::Outgoing;
 use crate::support::receiver::{Fed, Local, report};
 use crate::support::{Simulated, sent};
-use controller_core::flight::Mode;
+use flight::Mode;
 use core::cell::RefCell;
 use core::ops::Range;
 use core::pin::Pin;

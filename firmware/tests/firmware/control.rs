@@ -2,7 +2,7 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::Local;
-use controller_core::flight::PERIOD;
+use flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use firmware::boot;
 use firmware::control::Control;

@@ -4,7 +4,7 @@ use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::Local;
 use crate::support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
 use crate::support::{Simulated, v2};
-use controller_core::flight::PERIOD;
+use flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use core::future::pending;
 use embedded_io_async::{ErrorKind, ErrorType, Read, Write};

@@ -3,9 +3,9 @@
 use crate::support::receiver::{Fed, Local, newest, ordered, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
-use controller_core::estimator::{Clipped, Increment};
-use controller_core::flight::{ImuSample, MotorTest, Request};
-use controller_core::imu::ImuParameters;
+use estimation::estimator::{Clipped, Increment};
+use flight::{ImuSample, MotorTest, Request};
+use estimation::imu::ImuParameters;
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, RawImu, Watchdog};

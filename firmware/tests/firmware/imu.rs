@@ -2,7 +2,7 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
-use controller_core::imu::ImuParameters;
+use estimation::imu::ImuParameters;
 use core::future::pending;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::imu::{PATIENCE, run};

@@ -3,7 +3,7 @@
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, ordered, report, texts};
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::Unit;
 use firmware::imu;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
@@ -277,7 +277,7 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
 #[test]
 fn stored_rows_and_calibration_are_the_same_thing() {
     let shared = Local::new();
-    assert_eq!(calibration::load(&shared.parameters, Unit::First), controller_core::imu::Calibration::NONE);
+    assert_eq!(calibration::load(&shared.parameters, Unit::First), estimation::imu::Calibration::NONE);
     for (name, value) in [(Name::Imu2ScaleX, 1.02), (Name::Imu2OffsetZ, -0.5), (Name::Imu2GyroX, 0.01)] {
         shared.parameters.set(name, value).unwrap();
     }
@@ -298,7 +298,7 @@ fn stored_rows_and_calibration_are_the_same_thing() {
     shared.parameters.set(Name::Imu2LevelX, 0.09).unwrap();
     shared.parameters.set(Name::Imu2LevelY, 0.09).unwrap();
     let loaded = calibration::load(&shared.parameters, Unit::Second);
-    assert_eq!((loaded.level, loaded.offset.z), (controller_core::imu::Calibration::NONE.level, -0.5));
+    assert_eq!((loaded.level, loaded.offset.z), (estimation::imu::Calibration::NONE.level, -0.5));
 }
 
 fn preflight(gyro: f32, accelerometer: f32) -> COMMAND_LONG_DATA {

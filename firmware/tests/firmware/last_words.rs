@@ -2,7 +2,7 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::last_words::{AGAIN, LastWords, SIZE, Teller};
 use firmware::shared::CardState;
 

@@ -3,7 +3,7 @@
 use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, answer, command, disarm, ordered, replies, report, texts};
 use crate::support::{patched, v1, v2, v2_of_payload};
-use controller_core::flight::{Mode, MotorSetting, MotorTest, Request, Setting};
+use flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::Name;
 use firmware::shared::{Asked, Reply};
 use mavlink::MessageData;

@@ -4,7 +4,7 @@ use crate::support::desk::Desk;
 use crate::support::line::{Live, Outgoing};
 use crate::support::receiver::{Fed, Local, command, disarm, ordered, replies, texts};
 use crate::support::{Simulated, from, sent, v2};
-use controller_core::flight::{Mode, Refusal, Request};
+use flight::{Mode, Refusal, Request};
 use core::cell::RefCell;
 use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;

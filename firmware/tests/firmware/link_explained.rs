@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, newest, replies, texts};
 use crate::support::{extended, v2};
-use controller_core::flight::{Mode, Request};
+use flight::{Mode, Request};
 use core::f32::consts::FRAC_PI_2;
 use firmware::shared::{MissionList, Reply};
 use mavlink::MessageData;

@@ -1,7 +1,7 @@
 //! Parameters read and set over a link: what is taken, and what is answered.
 
 use crate::support::receiver::{Fed, Local, disarm, replies, report, texts};
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::Reply;
 use mavlink::dialects::common::{

@@ -2,8 +2,8 @@
 
 use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::{extended, patched, v1, v2};
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::Stamped;
+use estimation::estimator::PoseMeasurement;
+use flight::Stamped;
 use core::f32::consts::FRAC_1_SQRT_2;
 use firmware::link::pose::SOURCE_SILENCE;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};

@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, ordered, replies, texts};
 use crate::support::{extended, v2_of_payload};
-use controller_core::flight::{Mode, Request};
+use flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;

@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, texts};
 use crate::support::{patched, v1};
-use controller_core::flight::Mode;
+use flight::Mode;
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;

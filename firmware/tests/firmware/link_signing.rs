@@ -13,7 +13,7 @@ use crate::support::chip::{Chip, Words};
 use crate::support::line::Outgoing;
 use crate::support::receiver::{Fed, Local, command, disarm, replies, report, texts};
 use crate::support::{Simulated, v1, v2};
-use controller_core::flight::Mode;
+use flight::Mode;
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;

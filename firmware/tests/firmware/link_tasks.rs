@@ -3,7 +3,7 @@
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::{Local, ordered, report};
 use crate::support::{Simulated, sent, v2};
-use controller_core::flight::{Mode, Refusal, Request};
+use flight::{Mode, Refusal, Request};
 use controller_core::state::State;
 use core::cell::RefCell;
 use embassy_futures::join::join;

@@ -1,9 +1,9 @@
 //! Telemetry out: what each message says of a vehicle whose state is known.
 
-use controller_core::estimator::{Estimator, EstimatorParameters, Health, Settings};
-use controller_core::flight::Mode;
+use estimation::estimator::{Estimator, EstimatorParameters, Health, Settings};
+use flight::Mode;
 use controller_core::heading::Heading;
-use controller_core::imu::ImuFault;
+use estimation::imu::ImuFault;
 use controller_core::reference::Reference;
 use controller_core::state::State;
 use firmware::link::origin::Origin;

@@ -3,7 +3,7 @@
 use crate::support::Simulated;
 use crate::support::chip::{Chip, RECORDS, Words};
 use crate::support::receiver::{Local, report, texts};
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::{Fault, Flash, Record};
 use firmware::outputs::wiring;
 use firmware::parameters::storage::Storage;

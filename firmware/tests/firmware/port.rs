@@ -3,7 +3,7 @@
 use crate::support::line::{Live, Outgoing};
 use crate::support::receiver::{Local, report, texts};
 use crate::support::{Simulated, sent, v2};
-use controller_core::flight::Mode;
+use flight::Mode;
 use core::cell::{Cell, RefCell};
 use embassy_futures::select::select;
 use firmware::hardware::Port;

@@ -4,7 +4,7 @@ use crate::support::Simulated;
 use crate::support::desk::Desk;
 use crate::support::line::{Delivery, Incoming, Line};
 use crate::support::receiver::{Fed, Local, command, texts};
-use controller_core::flight::{Mode, Request};
+use flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;

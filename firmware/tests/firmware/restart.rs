@@ -2,7 +2,7 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Fed, Local, command, ordered, replies, report, texts};
-use controller_core::flight::Mode;
+use flight::Mode;
 use firmware::hardware::Restart;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::restart::{self, GRACE};

@@ -3,7 +3,7 @@
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
 use controller_core::error::InputError;
-use controller_core::flight::{Mode, Reason, Refusal};
+use flight::{Mode, Reason, Refusal};
 use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;

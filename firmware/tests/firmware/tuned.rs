@@ -5,7 +5,7 @@ use crate::parameters::chip_with;
 use crate::support::Simulated;
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, replies, report, texts};
-use controller_core::flight::{Grounded, Mode, Request};
+use flight::{Grounded, Mode, Request};
 use controller_core::tuning::judged::JudgedLoops;
 use firmware::control::Control;
 use firmware::parameters::storage::Storage;

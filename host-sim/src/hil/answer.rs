@@ -1,6 +1,6 @@
 //! What a flight controller is told in answer to a command: poses, and the IMU's samples.
 
-use controller_core::flight::{ImuSample, Stamped};
+use flight::{ImuSample, Stamped};
 use nalgebra::{Quaternion, Vector3};
 
 /// A pose as it is told.

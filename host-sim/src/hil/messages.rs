@@ -1,7 +1,7 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
 use super::answer::{Answer, ToldPose};
-use controller_core::flight::{ImuSample, Stamped};
+use flight::{ImuSample, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};

@@ -10,7 +10,7 @@
 use super::answer::{Answer, ToldPose};
 use super::vehicle::Moved;
 use crate::instruments::{Instruments, SAMPLE};
-use controller_core::flight::{ImuSample, Stamped};
+use flight::{ImuSample, Stamped};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;

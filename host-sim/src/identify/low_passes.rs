@@ -17,8 +17,8 @@
 
 use super::flight_log::{FlightLog, Source};
 use crate::instruments::gyro_filter;
-use controller_core::imu::ImuParameters;
-use controller_core::imu::low_pass::LowPass;
+use estimation::imu::ImuParameters;
+use estimation::imu::low_pass::LowPass;
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// From how many samples the next is foretold.

@@ -1,5 +1,5 @@
 use super::*;
-use controller_core::estimator::Fault as EstimatorFault;
+use estimation::estimator::Fault as EstimatorFault;
 use firmware::link::signing::{AHEAD, Signing};
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,

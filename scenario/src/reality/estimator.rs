@@ -18,8 +18,8 @@
 use super::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use controller_core::estimator::EstimatorParameters;
-use controller_core::imu::ImuParameters;
+use estimation::estimator::EstimatorParameters;
+use estimation::imu::ImuParameters;
 
 /// Samples of the IMU each second.
 pub const IMU_RATE: f64 = 1e3;

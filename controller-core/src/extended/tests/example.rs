@@ -1,7 +1,7 @@
 //! Vehicles and constants to test with: the Hummingbird, and any plausible one.
 
 use super::Random;
-use crate::allocation::{QuadX, Rotor, Rotors, Spin, greatest_torques};
+use crate::allocation::{Rotor, Rotors, Spin, greatest_torques};
 use crate::certificate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
@@ -11,28 +11,7 @@ use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-pub(crate) fn vehicle() -> Vehicle {
-    let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
-    Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap()
-}
-
-pub(crate) const QUAD: QuadX =
-    QuadX { arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0 };
-
-pub(crate) fn rotors() -> Rotors {
-    Rotors::quad_x(QUAD).unwrap()
-}
-
-/// What it may be asked to fly.
-pub(crate) const REFERENCES: ReferenceBounds = ReferenceBounds {
-    horizontal_speed: 3.0,
-    horizontal_acceleration: 2.4675,
-    vertical_acceleration: 0.1755,
-    jerk: 3.876,
-    snap: 6.089,
-    heading_rate: 1.316,
-    heading_second_derivative: 1.7318,
-};
+pub(crate) use crate::hummingbird::{QUAD, REFERENCES, rotors, vehicle};
 
 /// Everything known of a vehicle.
 #[derive(Debug, Clone)]

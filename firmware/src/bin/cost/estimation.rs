@@ -2,11 +2,11 @@
 
 use crate::count::Cost;
 use crate::counter::Counter;
-use controller_core::estimator::{
+use estimation::estimator::{
     EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
 };
-use controller_core::flight::{Pose, Stamped, Velocity};
-use controller_core::imu::{Calibration, Conditioned, Conditioner, ImuParameters};
+use flight::{Pose, Stamped, Velocity};
+use estimation::imu::{Calibration, Conditioned, Conditioner, ImuParameters};
 use controller_core::math;
 use core::hint::black_box;
 use nalgebra::{Quaternion, Vector3};

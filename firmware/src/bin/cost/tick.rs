@@ -7,8 +7,8 @@ use crate::body;
 use crate::count::Cost;
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
-use controller_core::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
-use controller_core::flight::{
+use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
+use flight::{
     FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
 };
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};

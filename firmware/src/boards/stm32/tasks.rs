@@ -28,7 +28,7 @@ use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
 use crate::{boot, card, imu, link, radio, status};
-use controller_core::flight::Pilot;
+use flight::Pilot;
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;

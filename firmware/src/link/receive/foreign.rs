@@ -5,7 +5,7 @@
 use super::Receiver;
 use crate::link::frame::Frame;
 use crate::shared::{Event, MissionList, Reply, Severity};
-use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
+use flight::{SETPOINT_AGE_MAX, Stamped};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::MessageData;
 use mavlink::dialects::common::{

@@ -4,9 +4,9 @@ use crate::frames;
 use crate::link::origin::Origin;
 use crate::shared::Report;
 use crate::status::euler;
-use controller_core::estimator::health::NIS_MEAN_MAX;
-use controller_core::estimator::{COASTING_AFTER, Fault, Health};
-use controller_core::flight::Mode;
+use estimation::estimator::health::NIS_MEAN_MAX;
+use estimation::estimator::{COASTING_AFTER, Fault, Health};
+use flight::Mode;
 use controller_core::math;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, GLOBAL_POSITION_INT_DATA,

@@ -66,6 +66,6 @@ fn a_text_is_as_long_as_its_key_says_and_names_every_mode() {
         let length = key.strip_prefix("char[").and_then(|key| key.split_once(']')).unwrap().0;
         assert_eq!(length.parse(), Ok(text.len()), "{key}");
     }
-    let modes = controller_core::flight::Mode::ALL.map(|mode| format!("{} {}", mode as u8, mode));
+    let modes = flight::Mode::ALL.map(|mode| format!("{} {}", mode as u8, mode));
     assert_eq!(INFORMATION[2].text, modes.join(", "));
 }

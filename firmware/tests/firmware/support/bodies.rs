@@ -1,7 +1,7 @@
 //! Inertial sensors that feel what the test says, each in its own wrong way.
 
 use super::Simulated;
-use controller_core::imu::ImuParameters;
+use estimation::imu::ImuParameters;
 use core::cell::Cell;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use nalgebra::Vector3;

@@ -1,8 +1,8 @@
 //! A vehicle on a desk: it never moves, whatever its motors are told, and its sensors and poses say so.
 
 use super::receiver::Local;
-use controller_core::estimator::{Clipped, Increment, PoseMeasurement};
-use controller_core::flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
+use estimation::estimator::{Clipped, Increment, PoseMeasurement};
+use flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::boot;
 use firmware::control::Control;

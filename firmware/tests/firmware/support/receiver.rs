@@ -1,8 +1,8 @@
 //! A receiver fed with frames, and everything it may change.
 
 use super::{GROUND, v2};
-use controller_core::estimator::PoseMeasurement;
-use controller_core::flight::{Mode, Stamped};
+use estimation::estimator::PoseMeasurement;
+use flight::{Mode, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::frame::Parser;

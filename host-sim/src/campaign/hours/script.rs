@@ -1,6 +1,6 @@
 //! What happens in one mission, and when.
 
-use controller_core::flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
+use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};

@@ -1,7 +1,7 @@
 //! What hours of missions showed, and whether the last was as good as the first.
 
 use super::script::{HEIGHTS, SPEEDS};
-use controller_core::flight::Reason;
+use flight::Reason;
 use nalgebra::Vector3;
 
 /// What one hour showed.

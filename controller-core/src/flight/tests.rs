@@ -1,3 +1,0 @@
-//! What the tests of the parts of a flight share.
-
-pub(crate) mod example;

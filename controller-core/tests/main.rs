@@ -1,0 +1,7 @@
+//! The core from outside: references, rotors and allocation.
+
+mod allocation;
+mod harmonic;
+mod rotor_demand;
+mod support;
+mod waypoints;

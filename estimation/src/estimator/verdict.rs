@@ -1,0 +1,113 @@
+//! What became of a pose, and what is wrong with the estimate, in words that fit a MAVLink STATUSTEXT (50 characters).
+
+worded! {
+    /// What a pose was taken for.
+    pub enum Taken {
+        /// Fused.
+        Fused = "Poses: believed",
+        /// Kept until the IMU's increments reach its time; [`super::Health::last`] tells then.
+        Waiting = "Poses: waiting for the IMU",
+        /// One of the first: the estimate begins when enough of them agree.
+        Aligning = "Poses: aligning",
+        /// The estimate begins with it.
+        Started = "Poses: the estimate begins",
+        /// The sender's frame had moved, and it says so: the estimate is in the new frame.
+        Rebased = "Poses: the sender's frame has moved",
+        /// The body was lost and is found again, no further away than coasting explains: the estimate was reset to it.
+        Refound = "Poses: body found again, estimate reset to it",
+    }
+}
+
+worded! {
+    /// Why a pose was not believed.
+    pub enum Rejected {
+        /// The sender says that its tracking has failed.
+        Quality = "Pose refused: its sender says tracking failed",
+        /// Its time is still to come.
+        Future = "Pose refused: its time is still to come",
+        /// Its time was that of an earlier pose.
+        Repeated = "Pose refused: a pose of this time was here before",
+        /// Older than the IMU's history, or too late among newer poses.
+        TooOld = "Pose refused: too old",
+        /// Identical to many before it, while the IMU moved.
+        Frozen = "Pose refused: frozen while the vehicle moves",
+        /// No IMU to compare it with.
+        NoImu = "Pose refused: no IMU to compare it with",
+        /// Its position is not where the vehicle can be.
+        Position = "Pose refused: position off",
+        /// Its attitude is not the vehicle's.
+        Attitude = "Pose refused: attitude off",
+        /// Its velocity is not the vehicle's.
+        Velocity = "Pose refused: velocity off",
+        /// Poses agree among themselves, at another place.
+        Jump = "Pose refused: poses jumped to another place",
+        /// Poses agree among themselves, at another velocity.
+        Drift = "Pose refused: poses drift against the IMU",
+        /// Poses agree among themselves, at another attitude.
+        Turned = "Pose refused: poses turned against the gyro",
+        /// Poses and accelerometer do not agree on where up is.
+        Gravity = "Pose refused: up is elsewhere for accelerometer",
+        /// Its source has been refused too often in this flight.
+        GivenUp = "Pose refused: its source is given up",
+        /// The filter had lost its numbers, and begins anew.
+        NotFinite = "Pose refused: the estimate lost its numbers",
+    }
+}
+
+impl Taken {
+    /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves
+    /// the frame, which agrees with nothing yet.
+    #[must_use]
+    pub const fn is_believed(self) -> bool {
+        match self {
+            Self::Fused | Self::Started | Self::Refound => true,
+            Self::Waiting | Self::Aligning | Self::Rebased => false,
+        }
+    }
+}
+
+impl Rejected {
+    /// Whether it was refused for what it says of the vehicle: not for its time, nor for what its sender thinks of it,
+    /// nor because there was nothing to compare it with.
+    #[must_use]
+    pub const fn is_lie(self) -> bool {
+        match self {
+            Self::Frozen
+            | Self::Position
+            | Self::Attitude
+            | Self::Velocity
+            | Self::Jump
+            | Self::Drift
+            | Self::Turned
+            | Self::Gravity => true,
+            Self::Quality
+            | Self::Future
+            | Self::Repeated
+            | Self::TooOld
+            | Self::NoImu
+            | Self::GivenUp
+            | Self::NotFinite => false,
+        }
+    }
+}
+
+worded! {
+    /// What is wrong with the estimate, the worst first.
+    #[derive(PartialOrd, Ord)]
+    pub enum Fault {
+        /// There is none yet, or the IMU's data broke off.
+        NotStarted = "Estimator: not started, no consistent poses",
+        /// No IMU increment for [`super::EXTRAPOLATION_MAX`].
+        ImuStale = "Estimator: no IMU",
+        /// No pose was fused for [`super::COASTING_AFTER`].
+        NoPose = "Estimator: no believable pose",
+        /// The estimate is too uncertain to be flown on.
+        Uncertain = "Estimator: too uncertain",
+        /// The gyro's bias is not plausible.
+        GyroBias = "Estimator: gyro bias not plausible",
+        /// The accelerometer's bias is not plausible, or up is elsewhere for the poses.
+        AccelerometerBias = "Estimator: accelerometer and poses disagree on up",
+        /// The poses are noisier than they are said to be.
+        Inconsistent = "Estimator: poses noisier than they say",
+    }
+}

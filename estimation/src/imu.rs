@@ -1,0 +1,235 @@
+//! The inertial sensor's samples, made ready: integrated for the estimator, low-passed for the law, watched for faults.
+//!
+//! Two ways lead out of a sample, because two things are asked of it:
+//!
+//! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered:
+//!   an integral needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz
+//!   stays what it is, a motion to and fro.
+//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant
+//!   rate. So the gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether, and the newest
+//!   of its values is the law's.
+//!
+//! | sample at | low-pass | mean over 5 ms | a BMI088's own filter |
+//! |---|---|---|---|
+//! | 70 Hz | 0.31 | 0.81 | 0.94 |
+//! | 100 Hz | 0 | 0.64 | 0.80 |
+//! | 130 Hz | 0.15 | 0.44 | 0.62 |
+//! | 200 Hz | 0.28 | 0 | 0.32 |
+//! | delay | 3.7 ms | none: integrals | 1.9 ms |
+//!
+//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops
+//! that. What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample counts as of that much
+//! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
+//! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
+//!
+//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is
+//! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment says so, for
+//! the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
+//! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
+//! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//!
+//! SI units, body frame (x forward, y left, z up), time in us.
+
+pub mod calibration;
+pub mod integrator;
+pub mod low_pass;
+pub mod six_point;
+pub mod standstill;
+pub mod watch;
+
+pub use calibration::Calibration;
+pub use watch::ImuFault;
+
+use crate::estimator::Increment;
+use crate::measurement::{ImuSample, Stamped};
+use controller_core::error::{ParameterError, Reason, require, require_positive};
+use integrator::{Integrator, Sample};
+use low_pass::LowPass;
+use nalgebra::Vector3;
+use watch::{Ranges, Watch};
+
+/// How long an increment lasts, us, where no sample is missing.
+pub const INCREMENT: u64 = 5_000;
+
+/// The longest time without samples that is bridged, us: an increment then stays below
+/// [`crate::estimator::EXTRAPOLATION_MAX`].
+pub const BRIDGED_MAX: u64 = 15_000;
+
+/// A sensor and how it is to be read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImuParameters {
+    /// Samples a second, Hz.
+    pub rate: f32,
+    /// Of the poles of the low-pass for the law's body rates, Hz.
+    pub cutoff: f32,
+    /// What this low-pass stops altogether, Hz.
+    pub stopped: f32,
+    /// The gyro's full scale, rad/s.
+    pub gyro_range: f32,
+    /// The accelerometer's full scale, m/s^2.
+    pub accelerometer_range: f32,
+    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its full
+    /// scale: its own filter flattens a shock.
+    pub leap: f32,
+    /// How late a sample is when it can be read, by the sensor's own filters, us.
+    pub late: u64,
+}
+
+impl ImuParameters {
+    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz that stops the rate of the ticks.
+    ///
+    /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order
+    /// Butterworth filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is
+    /// not told apart. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
+    /// next, 52 m/s^2; some is left for shaking.
+    pub const BMI088: Self = Self {
+        rate: 1000.0,
+        cutoff: 60.0,
+        stopped: 100.0,
+        gyro_range: 34.906_586,
+        accelerometer_range: 235.36,
+        leap: 40.0,
+        late: 1_940,
+    };
+
+    /// The same as simulators have it, without filters of its own.
+    pub const PROMPT: Self = Self { leap: f32::MAX, late: 0, ..Self::BMI088 };
+
+    /// How late the law's body rates are at most, s, as long as they change slowly: by both filters, and by the time to
+    /// the next sample.
+    #[must_use]
+    pub fn rates_late(&self) -> f32 {
+        self.low_pass().delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
+    }
+
+    /// Where what it shows ends.
+    #[must_use]
+    pub fn ranges(&self) -> Ranges {
+        Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
+    }
+
+    /// The low-pass for the law's body rates.
+    #[must_use]
+    pub fn low_pass(&self) -> LowPass {
+        LowPass::new(self.cutoff.into(), self.stopped.into(), self.rate.into())
+    }
+}
+
+/// What a sample was good for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditioned {
+    /// An increment that it completes.
+    pub increment: Option<Increment>,
+    /// What is wrong with it, or with those before it.
+    pub fault: Option<ImuFault>,
+}
+
+/// From samples to increments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conditioner {
+    late: u64,
+    calibration: Calibration,
+    watch: Watch,
+    low_pass: LowPass,
+    integrator: Integrator,
+    newest: Option<Stamped<ImuSample>>,
+}
+
+impl Conditioner {
+    /// For a sensor with `parameters`, whose samples `calibration` corrects.
+    ///
+    /// # Errors
+    /// Names the parameter that is not positive, or a frequency of the low-pass beyond a quarter of the rate.
+    pub fn new(parameters: &ImuParameters, calibration: &Calibration) -> Result<Self, ParameterError> {
+        let p = parameters;
+        for (value, field) in [
+            (p.rate, "imu.rate"),
+            (p.cutoff, "imu.cutoff"),
+            (p.stopped, "imu.stopped"),
+            (p.gyro_range, "imu.gyro_range"),
+            (p.accelerometer_range, "imu.accelerometer_range"),
+            (p.leap, "imu.leap"),
+        ] {
+            require_positive(value, field)?;
+        }
+        require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::Above(0.25 * p.rate))?;
+        require(p.stopped <= 0.25 * p.rate, "imu.stopped", Reason::Above(0.25 * p.rate))?;
+        Ok(Self {
+            late: p.late,
+            calibration: *calibration,
+            watch: Watch::new(p.ranges()),
+            low_pass: p.low_pass(),
+            integrator: Integrator::EMPTY,
+            newest: None,
+        })
+    }
+
+    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the
+    /// last.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; nothing has changed then.
+    pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
+        let mut other = Self::new(parameters, calibration)?;
+        if let Some(newest) = &self.newest {
+            other.low_pass.settle(&newest.value.angular_velocity);
+        }
+        *self = Self { integrator: self.integrator.clone(), newest: self.newest, ..other };
+        Ok(())
+    }
+
+    /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it
+    /// shows, but for the low-pass.
+    #[must_use]
+    pub fn newest(&self) -> Option<Stamped<ImuSample>> {
+        self.newest
+    }
+
+    /// Corrects samples in another way from now on.
+    pub fn calibrate(&mut self, calibration: &Calibration) {
+        self.calibration = *calibration;
+    }
+
+    /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that
+    /// one answered; the last specific force counts on where it did not. A sample that is no number, or not later than
+    /// the last, is left out.
+    pub fn sample(
+        &mut self,
+        time: u64,
+        angular_velocity: &Vector3<f32>,
+        specific_force: Option<&Vector3<f32>>,
+    ) -> Conditioned {
+        let fault = self.watch.see(angular_velocity, specific_force);
+        if fault == Some(ImuFault::NotFinite) {
+            return Conditioned { increment: None, fault };
+        }
+        let rate = self.calibration.rate(angular_velocity);
+        let force = specific_force.map(|force| self.calibration.force(force));
+        let time = time.saturating_sub(self.late);
+        let sample = Sample { time, rate, force, clipped: self.watch.clipped() };
+        match self.integrator.age(time) {
+            Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
+            Some(age) if age <= BRIDGED_MAX => {
+                let smooth = self.low_pass.take(&rate);
+                let increment = self.integrator.take(&sample, INCREMENT);
+                self.keep(time, &smooth, force);
+                Conditioned { increment, fault }
+            }
+            before => {
+                self.low_pass.settle(&rate);
+                self.integrator.begin(&sample);
+                self.keep(time, &rate, force);
+                Conditioned { increment: None, fault: fault.or(before.map(|_| ImuFault::Gap)) }
+            }
+        }
+    }
+
+    fn keep(&mut self, time: u64, rate: &Vector3<f32>, force: Option<Vector3<f32>>) {
+        let before = || self.newest.map(|newest| newest.value.specific_force);
+        let specific_force = force.or_else(before).unwrap_or_default();
+        self.newest = Some(Stamped { value: ImuSample { angular_velocity: *rate, specific_force }, time });
+    }
+}
+
+#[cfg(test)]
+mod tests;

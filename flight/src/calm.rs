@@ -1,0 +1,65 @@
+//! The motion as a whole: what is left of it when the shaking of the rotors is taken away.
+//!
+//! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An
+//! average tells one from the other: each tick takes in a fifth of the new value, so that the average reaches nine
+//! tenths of a change after 0.1 s and keeps one eighth of a swing at 25 Hz. Accelerations shake most: theirs is the
+//! average of an average, which keeps one sixtieth. A hit at speed would stay in it for too long: an acceleration
+//! counts up to [`COUNTED`] only.
+
+use controller_core::math;
+use controller_core::state::State;
+use estimation::estimator::EstimatedState;
+use nalgebra::Vector3;
+
+/// What an average takes of each tick.
+const SHARE: f32 = 0.2;
+
+/// The greatest acceleration that counts along each axis, m/s^2. One tick of it leaves less in the average than wind
+/// may.
+const COUNTED: f32 = 40.0;
+
+/// Averages, and how often the state had jumped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Average {
+    /// m/s.
+    velocity: Vector3<f32>,
+    /// rad/s.
+    angular_velocity: Vector3<f32>,
+    /// m/s^2; the average of it, and the average of that.
+    acceleration: (Vector3<f32>, Vector3<f32>),
+    jumps: u32,
+}
+
+/// The average, if there is a state.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Calm(Option<Average>);
+
+impl Calm {
+    /// Whether a state has jumped since the last one.
+    pub fn jumps_to(&self, estimated: &EstimatedState) -> bool {
+        self.0.is_some_and(|last| last.jumps != estimated.jumps)
+    }
+
+    /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has
+    /// jumped.
+    pub fn tick(&mut self, estimated: Option<&EstimatedState>) -> Option<EstimatedState> {
+        let Some(&EstimatedState { state, acceleration, jumps, gained }) = estimated else {
+            self.0 = None;
+            return None;
+        };
+        let last = self.0.filter(|last| last.jumps == jumps);
+        let averaged =
+            |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * SHARE);
+        let velocity = averaged(state.velocity, last.map(|last| last.velocity));
+        let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
+        let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
+        let once = averaged(counted, last.map(|last| last.acceleration.0));
+        let acceleration = averaged(once, last.map(|last| last.acceleration.1));
+        let calm = EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps, gained };
+        self.0 = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });
+        Some(calm)
+    }
+}
+
+#[cfg(test)]
+mod tests;

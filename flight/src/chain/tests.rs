@@ -1,0 +1,63 @@
+extern crate std;
+use super::*;
+use crate::hummingbird;
+use nalgebra::Quaternion;
+use std::boxed::Box;
+
+fn chain() -> Chain<'static> {
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), 0.01, memory).unwrap();
+    chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
+    chain
+}
+
+fn at_rest() -> State {
+    let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    State { position: zero, velocity: zero, attitude, angular_velocity: zero }
+}
+
+#[test]
+fn a_velocity_is_slowed_across_and_keeps_its_direction_and_its_vertical_part() {
+    let slowed = |x, y, z| slowed(&Vector3::new(x, y, z), 5.0);
+    assert_eq!(slowed(3.0, -4.0, 9.0), Vector3::new(3.0, -4.0, 9.0));
+    assert!((slowed(6.0, -8.0, 9.0) - Vector3::new(3.0, -4.0, 9.0)).norm() < 1e-6);
+    assert_eq!(slowed(0.0, 0.0, -2.0), Vector3::new(0.0, 0.0, -2.0));
+}
+
+#[test]
+fn a_flight_is_taken_up_no_faster_across_than_references_may_be() {
+    let mut chain = chain();
+    (0..100).for_each(|_| _ = chain.fly(&at_rest()));
+    let fast = State { velocity: Vector3::new(0.0, 8.0, 0.0), ..at_rest() };
+    chain.regain(&fast).unwrap();
+    let reference = chain.fly(&fast).unwrap().reference;
+    assert!((reference.velocity.y - chain.speed).abs() < 0.01, "{}", reference.velocity);
+}
+
+#[test]
+fn a_take_off_has_risen_where_its_reference_rests_at_its_height() {
+    let mut chain = chain();
+    chain.rise(1.5).unwrap();
+    let mut still = 0;
+    while !chain.has_risen() {
+        let Reference { position, velocity, .. } = chain.fly(&at_rest()).unwrap().reference;
+        still += u32::from((position.z - 1.5).abs() < RISEN.0 && velocity.z > RISEN.1);
+    }
+    assert!(still > 0, "it never passes the last centimetre faster");
+    assert!((chain.reference().position.z - 1.5).abs() < RISEN.0 && chain.reference().velocity.z <= RISEN.1);
+}
+
+#[test]
+fn only_what_points_up_of_a_thrust_carries() {
+    let mut chain = chain();
+    // 60 degrees: half of it.
+    let tilted = State { attitude: Quaternion::new(0.75_f32.sqrt(), 0.5, 0.0, 0.0), ..at_rest() };
+    let flown = chain.fly(&tilted).unwrap();
+    let thrust = flown.wrench.thrust / 0.5;
+    assert!((chain.asked_acceleration(&flown) - (0.5 * thrust - 9.81)).abs() < 1e-4);
+    // What the accelerometer says of it, and nothing else.
+    let side = -thrust * 0.75_f32.sqrt();
+    let acceleration = Vector3::new(0.0, side, 0.5 * thrust - 9.81);
+    let unexpected = chain.unexpected(&flown, &EstimatedState { state: tilted, acceleration, jumps: 0, gained: 0.0 });
+    assert!(unexpected.norm() < 1e-4, "{unexpected}");
+}

@@ -1,0 +1,123 @@
+//! What is flown: the estimator's state, what it is worth, and since when.
+//!
+//! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that
+//! have jumped and agree among themselves; in flight it does not: such poses are refused as long as they lie.
+
+use super::exchange::Inputs;
+use super::rules::COASTING_MAX;
+use controller_core::state::State;
+use estimation::estimator::{
+    COASTING_AFTER, EXTRAPOLATION_MAX, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
+};
+use estimation::measurement::is_fresh;
+use nalgebra::Quaternion;
+
+/// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
+pub const SETTLED_AFTER: u64 = 1_000_000;
+
+/// What a tick flies on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Estimate {
+    /// The state at the tick's instant; none without an IMU, or where the estimator has lost it.
+    pub state: Option<EstimatedState>,
+    pub health: Health,
+    /// What became of this tick's poses: the last refusal, or else what the last was taken for.
+    pub pose: Option<Result<Taken, Rejected>>,
+    /// Where the state has jumped since the last tick: the one it would be, had it not.
+    pub jumped_from: Option<State>,
+    /// Whether all has been well for [`SETTLED_AFTER`].
+    pub settled: bool,
+}
+
+impl Estimate {
+    /// Whether poses are no longer believed, or the estimate has become too uncertain to be flown.
+    pub fn is_lost(&self) -> bool {
+        !self.is_certain_within(COASTING_MAX)
+    }
+
+    /// Whether poses are believed, and the estimate may be flown again.
+    pub fn is_found(&self) -> bool {
+        self.is_certain_within(COASTING_AFTER)
+    }
+
+    fn is_certain_within(&self, age_max: u64) -> bool {
+        let Health { faults, pose_age, .. } = self.health;
+        !faults.contain(Fault::Uncertain) && pose_age.is_some_and(|age| age <= age_max)
+    }
+}
+
+/// The estimator, and what the last tick left of it.
+#[derive(Debug, PartialEq)]
+pub(super) struct Estimation<'m> {
+    estimator: &'m mut Estimator,
+    /// Poses that were believed, and not.
+    counts: (u32, u32),
+    jumps: u32,
+    /// The state at the last tick, and when that was, us.
+    last: Option<(State, u64)>,
+    /// Since when all has been well, us.
+    since: Option<u64>,
+}
+
+impl<'m> Estimation<'m> {
+    pub fn new(estimator: &'m mut Estimator) -> Self {
+        Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
+    }
+
+    /// How fast it climbs, m/s, as far as the accelerometer knows better than poses that lie.
+    pub fn climb(&self) -> f32 {
+        self.estimator.climb()
+    }
+
+    /// Poses lie: what they have taught of the sensors since lift-off counts only where a sensor may have
+    /// changed so.
+    pub fn distrust(&mut self) {
+        self.estimator.distrust();
+    }
+
+    /// Takes what the IMU did and the poses that came since the last tick, `armed` or not, in the air or not. Poses of
+    /// a source that is `given_up` are refused.
+    pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool, given_up: bool) -> Estimate {
+        let Inputs { increments, poses, now, .. } = *inputs;
+        self.estimator.is_airborne(airborne);
+        // What ends in a time to come did not happen.
+        for increment in increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
+            self.estimator.imu(increment);
+        }
+        let mut refused = None;
+        for pose in poses {
+            let verdict = if given_up { Err(Rejected::GivenUp) } else { self.estimator.pose(pose, now) };
+            if let Err(rejected) = verdict {
+                refused = Some(Err(rejected));
+            }
+        }
+        if !armed {
+            // That it has is counted with the other jumps.
+            let _ = self.estimator.adopt();
+        }
+        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX, now));
+        let (health, state) =
+            (self.estimator.health(now), rate.and_then(|rate| self.estimator.state(now, &rate.value)));
+        let jumped = health.jumps != self.jumps;
+        let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
+        self.since = if steady { self.since.or(Some(now)) } else { None };
+        let pose = refused.or(health.last.filter(|_| health.counts != self.counts));
+        (self.jumps, self.counts) = (health.jumps, health.counts);
+        let current = state.map(|estimated| (estimated.state, now));
+        let last = core::mem::replace(&mut self.last, current);
+        Estimate {
+            state,
+            health,
+            pose,
+            jumped_from: last.filter(|_| jumped).map(|(state, then)| carried_on(&state, now.saturating_sub(then))),
+            settled: self.since.is_some_and(|since| now.saturating_sub(since) >= SETTLED_AFTER),
+        }
+    }
+}
+
+/// `state` after a tick's `time`, us, of going on and turning as it does; its attitude near unit length only.
+fn carried_on(state: &State, time: u64) -> State {
+    let seconds = time as f32 * 1e-6;
+    let turned = state.attitude * Quaternion::from_imag(state.angular_velocity * (0.5 * seconds));
+    State { position: state.position + state.velocity * seconds, attitude: state.attitude + turned, ..*state }
+}

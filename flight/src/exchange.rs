@@ -1,0 +1,129 @@
+//! What a tick is given, and what it decides.
+
+use super::chain::Flown;
+use super::motor::Word;
+use super::refusal::Refusal;
+use super::request::Request;
+use super::rules::{Mode, Transition};
+use controller_core::allocation::Thrusts;
+use controller_core::error::InputError;
+use controller_core::governor::Setpoint;
+use estimation::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
+use estimation::imu::ImuFault;
+use estimation::measurement::Stamped;
+use nalgebra::Vector3;
+
+/// The time between ticks, us.
+pub const PERIOD: u64 = 10_000;
+
+/// What the battery has left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Battery {
+    /// Nobody measures it, and nobody wants it watched.
+    #[default]
+    Unknown,
+    /// It is to be watched, and nobody measures it.
+    Missing,
+    /// Enough.
+    Good,
+    /// Time to land.
+    Low,
+    /// Next to nothing.
+    Critical,
+}
+
+/// What a tick is given: what has come since the last. Everything is handed over once, but for the newest
+/// body rate and the ground station's time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Inputs<'a> {
+    /// The vehicle's clock, us.
+    pub now: u64,
+    /// What the IMU did, each increment beginning where the last ended: two of 5 ms, where nothing is late.
+    pub increments: &'a [Increment],
+    /// The newest body rate, low-passed, rad/s, as the sensor has it.
+    pub body_rate: Option<Stamped<Vector3<f32>>>,
+    /// What is, or was within the last second, wrong with gyro or accelerometer.
+    pub imu_fault: Option<ImuFault>,
+    /// The poses that came, with the times at which they were true.
+    pub poses: &'a [Stamped<PoseMeasurement>],
+    /// When the ground station was last heard, us.
+    pub ground_station: Option<u64>,
+    /// What was asked for since the last tick.
+    pub request: Option<Request>,
+    /// Whether a disarm command with force came since the last tick: it stops motors in the air as well.
+    pub disarm: bool,
+    /// Whether the kill switch is on.
+    pub killed: bool,
+    /// Whether something is under way that may stall the processor: flash that is written.
+    pub is_busy: bool,
+    /// Whether nobody knows how exact the clock is: its crystal does not run.
+    pub is_clock_doubtful: bool,
+    /// Whether the last tick's command did not reach the motors.
+    pub motors_fail: bool,
+    /// What the battery has left.
+    pub battery: Battery,
+    /// Whether the last tick came to its end too late.
+    pub is_late: bool,
+    /// The newest setpoint since the last tick.
+    pub setpoint: Option<Setpoint>,
+}
+
+/// What the motors do until the next tick.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// Every motor stops.
+    Stop,
+    /// Every motor turns as slowly as it reliably does.
+    Idle,
+    /// Each rotor's thrust, N, in the rotors' order, within its range.
+    Thrusts(Thrusts),
+    /// One motor turns, the others stop.
+    Test {
+        /// Its index in the rotors' order.
+        rotor: usize,
+        /// Part of the command's range, at most [`super::rules::MOTOR_TEST_LEVEL_MAX`].
+        level: f32,
+    },
+    /// One motor's controller is told something, the others stop.
+    Tell {
+        /// The motor's index in the rotors' order.
+        rotor: usize,
+        /// What.
+        word: Word,
+    },
+}
+
+/// What a tick decided.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// For the motors.
+    pub output: Output,
+    /// The mode of this tick.
+    pub mode: Mode,
+    /// How it came about, if it is new.
+    pub transition: Option<Transition>,
+    /// The answer to the request.
+    pub answer: Option<Result<(), Refusal>>,
+    /// What arming would be answered, while no motor turns.
+    pub ready: Option<Result<(), Refusal>>,
+    /// Where it was armed; where it stands, if it is not and there is an estimate, m, world.
+    pub home: Option<Vector3<f32>>,
+    /// Whether the vehicle has left the ground where it was armed, and has not landed.
+    pub is_airborne: bool,
+    /// Whether its motors were stopped in the air, and nothing says yet that it lies still.
+    pub may_fall: bool,
+    /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited
+    /// for.
+    pub setpoint: Option<Result<(), Refusal>>,
+    /// The state at this tick, while there is one.
+    pub estimated: Option<EstimatedState>,
+    /// What it is worth.
+    pub health: Health,
+    /// What became of this tick's poses: the last refusal, or else what the last was taken for; none where none came,
+    /// or where all of them wait for the IMU.
+    pub pose: Option<Result<Taken, Rejected>>,
+    /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
+    pub flown: Option<Result<Flown, InputError>>,
+    /// The rotors' thrust over the commanded thrust, in the ticks in which a lasting doubt about it is to be reported.
+    pub doubtful_thrust: Option<f32>,
+}

@@ -1,0 +1,26 @@
+//! Whether a vehicle whose motors were stopped in the air may still fall.
+//!
+//! Nothing that falls is still for longer than a moment, so one that is still for a while lies somewhere.
+
+use super::lasting::Lasting;
+use super::watch::{GROUND_LASTING, is_still};
+use estimation::estimator::EstimatedState;
+
+/// Since it was stopped.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Fall {
+    may_last: bool,
+    still: Lasting,
+}
+
+impl Fall {
+    /// Whether it may fall, once a tick; `is_stopped` in the one that stops it in the air. Without
+    /// a state the last answer stands.
+    pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) -> bool {
+        let lies = self.still.is_so(state.is_some_and(is_still), GROUND_LASTING, now);
+        // What has hovered until now was still as well.
+        self.still = if is_stopped { Lasting::default() } else { self.still };
+        self.may_last = is_stopped || self.may_last && !lies;
+        self.may_last
+    }
+}

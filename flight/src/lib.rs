@@ -1,0 +1,79 @@
+//! Flight: which of the law's outputs reach the motors, and when.
+//!
+//! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
+//! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
+//! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
+//! - `permission`: what arming and turning a motor need; `motor`, `bench`: what is asked of one
+//!   motor while nothing else turns, and done with it;
+//! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
+//! - `estimate`: what the [estimator](estimation::estimator) makes of a tick's increments and poses, and since when all is
+//!   well;
+//! - `lift_off`: whether an armed vehicle still stands where it was armed;
+//! - `watch`: whether it follows, has landed, or lies on its back;
+//! - `fall`: whether a vehicle that was stopped in the air lies still again;
+//! - `fence`: how far it may go;
+//! - [`FlightSettings`]: what an operator may choose about failures;
+//! - `trust`: whether a source of poses may still be believed;
+//! - `thrust_check`: whether the rotors give what they should;
+//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
+//!   are brought up, and how a vehicle without a pose goes down.
+//!
+//! An armed vehicle idles until a command to take off or to fly setpoints; then its rotors are brought up to the law's
+//! thrusts within a second. A landing ends with the ground found and the motors stopped. A vehicle set down by its
+//! setpoint keeps turning its rotors until a command to land.
+//!
+//! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator
+//! refuses it, says why, and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for
+//! [`rules::LEVELLING_MAX`], then goes down. Poses that are believed again are flown at once. Where the estimate jumps,
+//! because the sender says that its frame has moved or because a lost body was found again, the reference jumps with
+//! it, and brakes from there: the vehicle does not lurch.
+
+#![no_std]
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)
+)]
+
+#[cfg(test)]
+#[path = "../../tests/support/hummingbird.rs"]
+mod hummingbird;
+
+mod bench;
+mod calm;
+mod chain;
+mod estimate;
+mod exchange;
+mod fall;
+mod fence;
+mod lasting;
+mod leaning;
+mod lift_off;
+mod motor;
+mod permission;
+pub mod pilot;
+pub mod reason;
+mod refusal;
+mod request;
+pub mod rules;
+mod settings;
+mod sinking;
+mod spool;
+mod thrust_check;
+mod trust;
+mod watch;
+
+pub use chain::{Flown, Memory};
+pub use estimate::SETTLED_AFTER;
+pub use estimation::measurement::{
+    DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
+};
+pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
+pub use motor::{MotorSetting, MotorTest, Setting, Word};
+pub use pilot::Pilot;
+pub use reason::Reason;
+pub use refusal::{Grounded, Refusal};
+pub use request::{Request, SETPOINT_AGE_MAX};
+pub use rules::{Mode, Transition};
+pub use settings::FlightSettings;

@@ -1,0 +1,82 @@
+//! What arming, turning a motor and the ways of flying need, and why they are refused.
+
+use super::estimate::Estimate;
+use super::leaning::{heading, up};
+use super::refusal::Refusal;
+use super::rules::Mode;
+use controller_core::heading::Heading;
+use estimation::estimator::{EstimatedState, Fault};
+use nalgebra::Vector3;
+
+/// The cosine of the greatest tilt that arms, 30 degrees.
+const TILT_COSINE: f32 = 0.866_025_4;
+
+/// The acceleration, m/s^2, beyond which the accelerometer and the estimate do not agree on gravity: what 10 degrees
+/// between two ups make of it, 2 g sin 5 degrees. A vehicle at rest has none.
+const GRAVITY_ERROR: f32 = 1.71;
+
+/// The speed, m/s, and the body rate, rad/s, beyond which a vehicle does not arm.
+const MOVING: (f32, f32) = (0.2, 0.2);
+
+/// Where a flight starts.
+pub(super) struct Start {
+    pub position: Vector3<f32>,
+    pub heading: Heading,
+}
+
+/// Only where no motor turns, and nobody has to look first, may one begin to.
+pub(super) fn to_turn_motors(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Checks | Mode::Ready | Mode::Locked => Ok(()),
+        // There the IMU has not been heard.
+        Mode::Boot => Err(Refusal::ImuStale),
+        Mode::MotorTest => Err(Refusal::MotorTestRunning),
+        Mode::Stopped => Err(Refusal::Stopped),
+        Mode::Idling | Mode::TakingOff | Mode::Flying | Mode::Holding | Mode::Landing | Mode::Descending => {
+            Err(Refusal::AlreadyArmed)
+        }
+    }
+}
+
+/// Holding, or flying to a point: in the air, with an estimate, unless the vehicle must land.
+pub(super) fn to_hold(mode: Mode, must_land: bool) -> Result<(), Refusal> {
+    match mode {
+        Mode::Landing if must_land => Err(Refusal::MustLand),
+        Mode::Descending => Err(Refusal::WithoutPose),
+        _ => require(mode.is_guided(), Refusal::NotInTheAir),
+    }
+}
+
+/// Flying setpoints: from now on, or from arming on; not in place of a landing, which somebody has to end first.
+pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Landing => Err(Refusal::Landing),
+        Mode::Descending => Err(Refusal::WithoutPose),
+        _ => require(mode.may_arm() || mode == Mode::Idling || mode.is_guided(), Refusal::NotInTheAir),
+    }
+}
+
+/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and somebody
+/// at the other end of the link.
+pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
+    let faults = estimate.health.faults;
+    // Without an IMU nothing else can be well.
+    require(!faults.contain(Fault::ImuStale), Refusal::ImuStale)?;
+    faults.worst().map_or(Ok(()), |fault| Err(Refusal::Estimator(fault)))?;
+    // With an estimate it is the body rate that is missing.
+    let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::ImuStale)?;
+    let (speed, rate) = MOVING;
+    // Written so that a number that is none is refused.
+    let still = state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate;
+    require(still, Refusal::Moving)?;
+    require(acceleration.norm_squared() < GRAVITY_ERROR * GRAVITY_ERROR, Refusal::Gravity)?;
+    require(estimate.settled, Refusal::PosesUnsettled)?;
+    require(up(&state.attitude) > TILT_COSINE, Refusal::Tilted)?;
+    require(!ground_station_silent, Refusal::GroundStationSilent)?;
+    let heading = heading(&state.attitude).ok_or(Refusal::Tilted)?;
+    Ok(Start { position: state.position, heading })
+}
+
+pub(super) fn require(condition: bool, refusal: Refusal) -> Result<(), Refusal> {
+    if condition { Ok(()) } else { Err(refusal) }
+}

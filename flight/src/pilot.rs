@@ -1,0 +1,297 @@
+//! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
+//!
+//! In a tick, in this order: the estimator takes what was measured; a jump of the estimate is followed; the flight is
+//! looked at; a request is answered; the rules' conditions are worked out and the table decides; a new mode is entered;
+//! a setpoint is taken; and the mode's output is worked out.
+
+use super::bench::Bench;
+use super::chain::{Chain, Flown, Memory};
+use super::estimate::{Estimate, Estimation};
+use super::exchange::{Inputs, Outcome, Output, PERIOD};
+use super::fall::Fall;
+use super::fence::Fence;
+use super::reason::Reason;
+use super::refusal::Grounded;
+use super::request::Newest;
+use super::rules::{self, BRAKING_MAX, Condition, LEVELLING_MAX, Mode, Transition};
+use super::settings::FlightSettings;
+use super::thrust_check::ThrustCheck;
+use super::trust::Trust;
+use super::watch::{Seen, Watch};
+use controller_core::certificate::certified::{Certified, Refused};
+use controller_core::error::InputError;
+use controller_core::governor::GovernorLimits;
+use estimation::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Taken};
+use nalgebra::Vector3;
+
+/// Everything that decides what the motors do. Size: about 3.5 KB, and its [`Memory`] and [`Estimator`].
+#[derive(Debug, PartialEq)]
+pub struct Pilot<'m> {
+    chain: Result<Chain<'m>, Grounded>,
+    settings: FlightSettings,
+    mode: Mode,
+    /// When the mode was entered, us.
+    since: u64,
+    estimation: Estimation<'m>,
+    watch: Watch,
+    fall: Fall,
+    fence: Fence,
+    /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle
+    /// without a pose has levelled.
+    lies: Option<(u64, u64)>,
+    bench: Bench,
+    /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
+    newest: Newest,
+    wanted_since: Option<u64>,
+    /// Whether a vehicle without a pose was landing, or has been told to land: it does when there is one.
+    must_still_land: bool,
+    /// Whether poses may still be believed in this flight.
+    trust: Trust,
+    /// How high above the place of arming a landing has been, m.
+    landing_from: f32,
+    thrust_check: ThrustCheck,
+}
+
+impl<'m> Pilot<'m> {
+    /// A pilot at boot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration
+    /// time. It flies on what `estimator` makes of the measurements; its governor and mixer lie in `memory`.
+    ///
+    /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
+    /// never arms, and says why.
+    #[must_use]
+    pub fn new(
+        certification: Result<&Certified, &Refused>,
+        limits: &GovernorLimits,
+        settings: &FlightSettings,
+        estimator: &'m mut Estimator,
+        memory: &'m mut Memory,
+    ) -> Self {
+        let settings = settings.within_range();
+        Self {
+            chain: match certification {
+                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
+                Err(refused) => Err(Grounded::from(refused)),
+            },
+            settings,
+            mode: Mode::Boot,
+            since: 0,
+            estimation: Estimation::new(estimator),
+            watch: Watch::default(),
+            fall: Fall::default(),
+            fence: Fence::new(&settings),
+            lies: None,
+            bench: Bench::NONE,
+            newest: Newest::default(),
+            wanted_since: None,
+            must_still_land: false,
+            trust: Trust::default(),
+            landing_from: 0.0,
+            thrust_check: ThrustCheck::default(),
+        }
+    }
+
+    /// Other settings from now on, while the law drives nothing; an armed vehicle keeps those that it was armed with.
+    pub fn choose(&mut self, settings: &FlightSettings) {
+        if !self.mode.is_armed() {
+            self.settings = settings.within_range();
+            self.fence.choose(&self.settings);
+        }
+    }
+
+    /// The mode after the last tick.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Why it can never arm, if so.
+    #[must_use]
+    pub fn grounded(&self) -> Option<Grounded> {
+        self.chain.as_ref().err().copied()
+    }
+
+    /// One tick: what has arrived since the last, in; what the motors do until the next, out.
+    pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
+        let given_up = self.trust.is_given_up();
+        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne(), given_up);
+        self.decide(inputs, &estimate)
+    }
+
+    /// The tick on an estimate.
+    fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
+        let followed = self.follow(estimate);
+        let seen = self.look(inputs, estimate);
+        if seen.lied {
+            self.trust.give_up();
+        }
+        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
+            chain.stop_sinking();
+        }
+        if self.mode.flies() {
+            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), inputs.now);
+        } else if !self.mode.is_armed() {
+            self.trust = Trust::default();
+        }
+        if let Some(setpoint) = &inputs.setpoint {
+            self.hear_setpoint(setpoint, inputs.now);
+        }
+        self.take_back(inputs);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
+        let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
+        let conditions = self.requested(inputs, estimate, answer);
+        let conditions = self.happened(conditions, inputs, estimate, &seen);
+        let conditions = conditions
+            .with(Condition::EstimateLost, estimate.is_lost() || !followed)
+            .with(Condition::ChecksPass, ready == Some(Ok(())))
+            .with(Condition::ChecksFail, ready != Some(Ok(())));
+        let transition = rules::transition(self.mode, conditions);
+        let was_airborne = self.is_airborne();
+        if let Some(transition) = transition {
+            self.enter(&transition, inputs, estimate, seen.touched);
+        }
+        let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
+        let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
+        let may_fall = self.fall.tick(is_stopped, estimate.state.as_ref(), inputs.now);
+        let setpoint = inputs.setpoint.and_then(|setpoint| match self.mode {
+            Mode::Flying => Some(self.accept(&setpoint)),
+            // Somebody waits for a flight that it does not begin.
+            Mode::Idling if self.wanted_since.is_some() => {
+                let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
+                may_begin.err().map(Err)
+            }
+            _ => None,
+        });
+        let (output, flown) = self.output(estimate, seen.touched, inputs.now);
+        let share = match (&self.chain, &flown) {
+            (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
+            _ => None,
+        };
+        Outcome {
+            output,
+            mode: self.mode,
+            transition,
+            answer,
+            ready,
+            home: self.home(estimate),
+            is_airborne: self.is_airborne(),
+            may_fall,
+            setpoint,
+            estimated: estimate.state,
+            health: estimate.health,
+            pose: estimate.pose,
+            flown,
+            doubtful_thrust: self.thrust_check.tick(share, inputs.now),
+        }
+    }
+
+    /// Goes along where the estimate has jumped; in flight, whether that was possible.
+    fn follow(&mut self, estimate: &Estimate) -> bool {
+        match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
+            (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
+                // A body that is found again has not moved with its frame.
+                if !(self.mode.flies() && estimate.pose == Some(Ok(Taken::Refound))) {
+                    self.fence.displace(before, state);
+                }
+                !self.mode.flies() || chain.jump(before, state, self.mode).is_ok()
+            }
+            _ => true,
+        }
+    }
+
+    fn look(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
+        if !self.mode.is_armed() {
+            self.watch = Watch::default();
+        }
+        let chain = self.chain.as_ref().ok();
+        self.watch.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs)
+    }
+
+    fn is_airborne(&self) -> bool {
+        self.mode.flies() && self.chain.as_ref().is_ok_and(|chain| !chain.is_standing())
+    }
+
+    fn home(&self, estimate: &Estimate) -> Option<Vector3<f32>> {
+        match self.mode {
+            mode if mode.is_armed() => Some(self.fence.home()),
+            _ => estimate.state.as_ref().map(|estimated| estimated.state.position),
+        }
+    }
+
+    /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found
+    /// possible.
+    fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate, touched: bool) {
+        (self.mode, self.since) = (transition.to, inputs.now);
+        if transition.from.is_armed() {
+            self.wanted_since = None;
+        }
+        self.must_still_land |= transition.from == Mode::Landing;
+        self.must_still_land &= transition.to == Mode::Descending;
+        if transition.reason == Reason::BatteryLow {
+            self.watch.tell_low();
+        }
+        if transition.reason == Reason::LandingOver {
+            self.trust.give_up();
+        }
+        // One outlier before an outage is no lie.
+        let lasted = self.lies.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER);
+        let lied = self.trust.is_given_up() || lasted;
+        if transition.to == Mode::Descending && lied {
+            self.estimation.distrust();
+        }
+        let Ok(chain) = &mut self.chain else { return };
+        match (transition.to, transition.reason) {
+            (Mode::Idling, _) => {
+                self.fence.place(&chain.reference().position);
+                // What is armed was at rest.
+                self.fall = Fall::default();
+            }
+            (Mode::Flying, _) => {
+                if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
+                    // It was checked when it came.
+                    let _ = chain.accept(setpoint);
+                }
+            }
+            // A request has said already what the reference does.
+            (Mode::Holding, Reason::HoldCommanded | Reason::PoseRegained) => {}
+            (Mode::Holding, _) => chain.hold(),
+            (Mode::Descending, _) => {
+                let certain = !estimate.health.faults.contain(Fault::Uncertain);
+                let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
+                let climbs = if lied { Some(self.estimation.climb()) } else { known };
+                chain.level(if touched { Some(0.0) } else { climbs }, lied);
+            }
+            (Mode::Landing, _) => self.landing_from = 0.0,
+            _ => {}
+        }
+    }
+
+    /// What the mode does in this tick.
+    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
+        match self.mode {
+            Mode::MotorTest => return (self.bench.output(now.saturating_sub(self.since)), None),
+            Mode::Idling => return (Output::Idle, None),
+            _ => {}
+        }
+        // Every mode that flies has both, by the rules.
+        let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
+            return (Output::Stop, None);
+        };
+        let flown = if self.mode == Mode::Descending {
+            // Poses that are given up do not come back.
+            let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX;
+            chain.fly_level(estimated, descends)
+        } else {
+            if self.mode == Mode::Landing {
+                chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);
+            }
+            chain.fly(&estimated.state)
+        };
+        let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
+        (output, Some(flown))
+    }
+}
+
+mod answers;
+mod conditions;
+#[cfg(test)]
+mod tests;

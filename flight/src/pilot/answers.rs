@@ -1,0 +1,172 @@
+//! What is granted of what is asked for.
+
+use super::Pilot;
+use crate::bench::Bench;
+use crate::chain::Chain;
+use crate::estimate::Estimate;
+use crate::exchange::{Battery, Inputs};
+use crate::permission::{self, Start, require};
+use crate::refusal::Refusal;
+use crate::request::Request;
+use crate::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_WANTED_MAX};
+use crate::watch::Seen;
+use controller_core::allocation::geometry::ROTORS_MIN;
+use controller_core::governor::Setpoint;
+
+impl<'m> Pilot<'m> {
+    /// Everything that arming needs.
+    pub(super) fn may_arm(&self, inputs: &Inputs, estimate: &Estimate) -> Result<Start, Refusal> {
+        self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
+        require(!inputs.killed, Refusal::Killed)?;
+        require(!inputs.is_busy, Refusal::Busy)?;
+        require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
+        require(!inputs.motors_fail, Refusal::MotorsFail)?;
+        require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
+        require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
+        // An accelerometer that has failed says what it said last, which is what one at rest says.
+        inputs.imu_fault.map_or(Ok(()), |fault| Err(Refusal::Imu(fault)))?;
+        permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
+    }
+
+    /// Readies the chain for a flight from here.
+    pub(super) fn begin(&mut self, inputs: &Inputs, estimate: &Estimate) -> Result<(), Refusal> {
+        let start = self.may_arm(inputs, estimate)?;
+        let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
+        chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(error.field()))
+    }
+
+    /// Setpoints are no longer wanted where anything else is asked for but arming, or somebody stops the motors, or
+    /// they have been wanted on the ground for too long.
+    pub(super) fn take_back(&mut self, inputs: &Inputs) {
+        let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
+        let stops = inputs.disarm || inputs.killed;
+        let since = self.wanted_since.filter(|_| goes_on && !stops);
+        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_WANTED_MAX;
+        self.wanted_since = since.filter(|since| self.mode.is_armed() || is_recent(since));
+    }
+
+    /// Whether a request is granted. Granting one readies the chain for it.
+    pub(super) fn answer(
+        &mut self,
+        request: Request,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        seen: &Seen,
+    ) -> Result<(), Refusal> {
+        // Whatever is asked for in the tick of a disarm command came before it.
+        require(!inputs.disarm, Refusal::DisarmCommanded)?;
+        match request {
+            // It is so: who heard no answer asks again.
+            Request::Arm if self.mode.is_armed() => require(!inputs.killed, Refusal::Killed),
+            Request::Arm => {
+                permission::to_turn_motors(self.mode)?;
+                self.begin(inputs, estimate)
+            }
+            Request::Disarm => require(!self.is_airborne(), Refusal::InTheAir),
+            Request::MotorTest(test) => self.begin_on_the_bench(Bench::Turning(test), inputs),
+            Request::MotorSetting(setting) => self.begin_on_the_bench(Bench::Setting(setting), inputs),
+            Request::TakeOff(height) => self.take_off(height, inputs, estimate),
+            Request::FlySetpoints => {
+                permission::to_fly_setpoints(self.mode)?;
+                if self.mode.is_guided() {
+                    self.has_setpoint(inputs.now)?;
+                }
+                self.wanted_since = Some(inputs.now);
+                Ok(())
+            }
+            Request::Hold => {
+                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                self.with_chain(|chain| {
+                    chain.hold();
+                    Ok(())
+                })
+            }
+            Request::GoTo(setpoint) => {
+                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                require(self.is_airborne(), Refusal::NotInTheAir)?;
+                self.accept(&setpoint)
+            }
+            Request::Land => {
+                let has_landed = matches!(self.mode, Mode::Checks | Mode::Ready);
+                let may = has_landed || self.mode.is_armed();
+                // If poses are lost in this tick, it is remembered.
+                self.must_still_land = self.mode.flies();
+                require(may, Refusal::NotInTheAir)
+            }
+        }
+    }
+
+    fn begin_on_the_bench(&mut self, bench: Bench, inputs: &Inputs) -> Result<(), Refusal> {
+        permission::to_turn_motors(self.mode)?;
+        require(!inputs.killed, Refusal::Killed)?;
+        require(!inputs.is_busy, Refusal::Busy)?;
+        bench.check(self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
+        self.bench = bench;
+        Ok(())
+    }
+
+    pub(super) fn take_off(
+        &mut self,
+        height: Option<f32>,
+        inputs: &Inputs,
+        estimate: &Estimate,
+    ) -> Result<(), Refusal> {
+        let height = height.unwrap_or(self.settings.take_off_height);
+        if self.mode == Mode::TakingOff && self.chain.as_ref().is_ok_and(|chain| chain.rises(height)) {
+            return Ok(());
+        }
+        require(self.mode == Mode::Idling, Refusal::NotIdling)?;
+        require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
+        require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
+        self.begin(inputs, estimate)?;
+        self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))
+    }
+
+    pub(super) fn with_chain(
+        &mut self,
+        act: impl FnOnce(&mut Chain<'m>) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded)).and_then(act)
+    }
+
+    /// Whether what makes a vehicle land, whoever would like to fly on, is so.
+    pub(super) fn must_land(&self, seen: &Seen, estimate: &Estimate) -> bool {
+        let Seen { battery_critical, tracking_lost, saturated, overrun, .. } = *seen;
+        battery_critical || tracking_lost || saturated || overrun || self.is_outside(estimate)
+    }
+
+    pub(super) fn is_outside(&self, estimate: &Estimate) -> bool {
+        let state = estimate.state.as_ref();
+        self.mode.is_guided() && state.is_some_and(|estimated| !self.fence.contains(&estimated.state.position))
+    }
+
+    pub(super) fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
+        self.check(setpoint)?;
+        self.with_chain(|chain| chain.accept(setpoint).map_err(Refusal::Setpoint))
+    }
+
+    /// Whether a setpoint may be flown.
+    #[inline(never)] // it would be copied to where setpoints are heard, asked for and taken
+    pub(super) fn check(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
+        // First, because what is no place is outside of any fence.
+        setpoint.check().map_err(|error| Refusal::Setpoint(error.field()))?;
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)
+    }
+
+    /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by
+    /// arming, so before that it is not asked.
+    pub(super) fn hear_setpoint(&mut self, setpoint: &Setpoint, now: u64) {
+        match self.check(setpoint) {
+            Err(refusal) if self.mode.is_armed() || refusal != Refusal::OutsideFence => {
+                self.newest.refuse(refusal, now);
+            }
+            _ => self.newest.keep(setpoint, now),
+        }
+    }
+
+    /// Whether there is a setpoint to be flown now, and why not.
+    pub(super) fn has_setpoint(&self, now: u64) -> Result<(), Refusal> {
+        let setpoint = self.newest.fresh(now).ok_or_else(|| self.newest.refused(now))?;
+        require(self.fence.allows(setpoint), Refusal::OutsideFence)
+    }
+}

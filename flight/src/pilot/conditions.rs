@@ -1,0 +1,127 @@
+//! What the rules need to know in a tick.
+
+use super::Pilot;
+use crate::chain::Chain;
+use crate::estimate::Estimate;
+use crate::exchange::Inputs;
+use crate::refusal::Refusal;
+use crate::request::Request;
+use crate::rules::{
+    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE, LANDING_REST,
+    LEVELLING_MAX, Mode,
+};
+use crate::watch::Seen;
+use estimation::estimator::{COASTING_AFTER, EstimatedState, Fault, Rejected, Taken};
+use estimation::measurement::is_fresh;
+
+impl Pilot<'_> {
+    /// What was asked for and granted.
+    pub(super) fn requested(
+        &mut self,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        answer: Option<Result<(), Refusal>>,
+    ) -> Conditions {
+        let granted = inputs.request.filter(|_| answer == Some(Ok(())));
+        let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
+        // What was granted since goes before a landing that could not go on.
+        self.must_still_land &= granted.is_none_or(|request| request == Request::Land);
+        let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now).is_ok();
+        let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
+        Conditions::NONE
+            .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
+            .with(Condition::Killed, inputs.killed)
+            .with(Condition::ArmingPermitted, is(|request| *request == Request::Arm))
+            .with(
+                Condition::MotorTestPermitted,
+                is(|request| matches!(request, Request::MotorTest(_) | Request::MotorSetting(_))),
+            )
+            .with(Condition::Requested, inputs.request.is_some())
+            .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
+            .with(Condition::HoldRequested, is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
+            .with(Condition::LandRequested, is(|request| *request == Request::Land))
+            .with(Condition::SetpointsRequested, setpoints)
+    }
+
+    /// What happened besides.
+    pub(super) fn happened(
+        &mut self,
+        conditions: Conditions,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        seen: &Seen,
+    ) -> Conditions {
+        let elapsed = inputs.now.saturating_sub(self.since);
+        let is_levelled = self.mode == Mode::Descending && elapsed >= LEVELLING_MAX;
+        if let (Some(pose), false) = (estimate.pose, is_levelled) {
+            self.hear(pose, inputs.now);
+        }
+        let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
+        let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        if let (true, Ok(chain), Some(EstimatedState { state, .. })) = (may, &self.chain, &estimate.state) {
+            // What cannot hold above the ground lands.
+            self.must_still_land |= !chain.stops_within(state.position.z - self.fence.home().z, state);
+        }
+        let regained = match (self.mode, &mut self.chain, &estimate.state) {
+            (Mode::Descending, Ok(chain), Some(estimated)) if may && self.trust.regain(self.must_still_land) => {
+                chain.regain(&estimated.state).is_ok()
+            }
+            _ => false,
+        };
+        let stands = self.chain.as_ref().is_ok_and(Chain::is_standing);
+        let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
+        self.landing_from = self.landing_from.max(height.min(self.settings.fence_height));
+        let landing_max = LANDING_REST + LANDING_PATIENCE * self.landing_from / self.settings.landing_speed;
+        let patience = (self.settings.ground_station_patience * 1e6) as u64;
+        conditions
+            .with(Condition::Started, estimate.state.is_some() || !estimate.health.faults.contain(Fault::ImuStale))
+            .with(Condition::Uncertified, self.chain.is_err())
+            .with(Condition::MotorTestOver, self.bench.is_over(elapsed))
+            .with(Condition::IdlingOver, elapsed >= IDLING_MAX)
+            .with(Condition::HeldOnGround, stands && (self.mode == Mode::Holding || elapsed >= IDLING_MAX))
+            .with(Condition::TakenOff, self.chain.as_ref().is_ok_and(Chain::has_risen))
+            .with(Condition::Landed, seen.landed)
+            .with(Condition::Crashed, seen.crashed)
+            .with(Condition::ImuStale, estimate.state.is_none())
+            .with(Condition::ThrustsRefused, self.chain.as_ref().is_ok_and(Chain::is_refused))
+            .with(Condition::PosesGivenUp, self.trust.is_given_up())
+            .with(Condition::LandingOver, elapsed as f32 * 1e-6 >= landing_max)
+            .with(Condition::ImuDoubtful, seen.imu_doubtful)
+            .with(Condition::PoseRegained, regained && !self.must_still_land)
+            .with(Condition::PoseRegainedToLand, regained && self.must_still_land)
+            .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
+            .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
+            .with(Condition::GroundStationGone, self.is_silent(inputs, patience))
+            .with(Condition::SetpointsLost, self.newest.has_ended(inputs.now))
+            .with(Condition::BatteryLow, seen.battery_low)
+            .with(Condition::BatteryCritical, seen.battery_critical)
+            .with(Condition::FenceBreached, self.is_outside(estimate))
+            .with(Condition::TrackingLost, seen.tracking_lost)
+            .with(Condition::Saturated, seen.saturated)
+            .with(Condition::Overrun, seen.overrun)
+    }
+
+    /// Remembers from when on poses have been refused for what they say, and until when, none having been believed
+    /// since.
+    fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {
+        match pose {
+            Ok(taken) if taken.is_believed() => self.lies = None,
+            Err(rejected) if rejected.is_lie() => self.lies = Some((self.lies.map_or(now, |(first, _)| first), now)),
+            Ok(_) | Err(_) => {}
+        }
+    }
+
+    /// Whether poses lied for a while before the vehicle had levelled, or still did then: what they agree on later is
+    /// no better.
+    fn poses_lie(&self) -> bool {
+        let levelled = self.since.saturating_add(LEVELLING_MAX);
+        self.lies.is_some_and(|(first, last)| {
+            last.saturating_sub(first) >= COASTING_AFTER || levelled.saturating_sub(last) <= COASTING_AFTER
+        })
+    }
+
+    /// Whether the ground station has been silent for so long, us.
+    pub(super) fn is_silent(&self, inputs: &Inputs, patience: u64) -> bool {
+        !inputs.ground_station.is_some_and(|heard| is_fresh(heard, patience.saturating_sub(1), inputs.now))
+    }
+}

@@ -1,0 +1,165 @@
+//! Why a vehicle may not fly, and why a request is refused, in words.
+//!
+//! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
+
+use controller_core::certificate::certified::Refused;
+use controller_core::error::ParameterError;
+use core::fmt;
+use estimation::estimator::Fault;
+use estimation::imu::ImuFault;
+
+/// Why a pilot can never arm until it is made anew, with another configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Grounded {
+    /// This inequality of the certificate fails.
+    Inequality(&'static str),
+    /// This parameter is one that the certificate, the governor or the law cannot work with.
+    Parameter(&'static str),
+    /// The configuration has no rotors.
+    NoRotors,
+}
+
+impl From<ParameterError> for Grounded {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error.field)
+    }
+}
+
+impl From<&Refused> for Grounded {
+    fn from(refused: &Refused) -> Self {
+        match refused {
+            Refused::Fails(certificate) => {
+                let failed = certificate.inequalities().find(|inequality| !inequality.holds());
+                Self::Inequality(failed.map_or("", |inequality| inequality.name))
+            }
+            Refused::Undefined(error) => Self::Parameter(error.field),
+        }
+    }
+}
+
+impl fmt::Display for Grounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Inequality(name) => write!(f, "Not certified: {name:.35}"),
+            Self::Parameter(field) => write!(f, "Cannot fly with {field:.34}"),
+            Self::NoRotors => f.write_str("Cannot fly: the configuration has no rotors"),
+        }
+    }
+}
+
+/// Why a request or a setpoint was refused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Refusal {
+    /// Nothing certified to fly with.
+    Grounded(Grounded),
+    /// The motors turn already.
+    AlreadyArmed,
+    /// The vehicle was stopped in flight or crashed, and nobody has disarmed it since.
+    Stopped,
+    /// The kill switch is on.
+    Killed,
+    /// Flash is being written, which may stall the processor; or a changed configuration is certified; or a restart is
+    /// under way.
+    Busy,
+    /// The clock's crystal does not run.
+    ClockDoubtful,
+    /// Commands do not reach the motors.
+    MotorsFail,
+    /// The battery is low.
+    BatteryLow,
+    /// The battery is to be watched, and there is no reading of it.
+    BatteryMissing,
+    /// Motors stop in the air by force only.
+    InTheAir,
+    /// Only an armed vehicle on the ground takes off.
+    NotIdling,
+    /// Only in the air there is somewhere to hold or land.
+    NotInTheAir,
+    /// A landing goes on until somebody has the vehicle hold.
+    Landing,
+    /// It goes down by the IMU alone, and knows of no place to hold or fly to.
+    WithoutPose,
+    /// What made it land is still so.
+    MustLand,
+    /// No setpoint that may be flown came in the last second.
+    NoSetpoints,
+    /// A height of no take-off: not in 0.5 m to 50 m.
+    TakeOffHeight,
+    /// The point is outside the fence.
+    OutsideFence,
+    /// A motor test was running; the request has ended it.
+    MotorTestRunning,
+    /// A disarm command came in the same tick.
+    DisarmCommanded,
+    /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
+    ImuStale,
+    /// Gyro or accelerometer has failed, or had a moment ago.
+    Imu(ImuFault),
+    /// The estimate is not healthy, for this before all.
+    Estimator(Fault),
+    /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
+    PosesUnsettled,
+    /// The vehicle moves, at 0.2 m/s or 0.2 rad/s or more.
+    Moving,
+    /// Gravity is 10 degrees or more elsewhere for the accelerometer, or not there at all.
+    Gravity,
+    /// Body z is 30 degrees or more from up.
+    Tilted,
+    /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+    GroundStationSilent,
+    /// The governor cannot start at the vehicle: the field to blame.
+    Reference(&'static str),
+    /// The vehicle has fewer rotors.
+    NoSuchRotor,
+    /// A test level outside (0, [`super::rules::MOTOR_TEST_LEVEL_MAX`]].
+    MotorTestLevel,
+    /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
+    MotorTestDuration,
+    /// A setpoint with a field that is not finite or out of range.
+    Setpoint(&'static str),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Grounded(grounded) => return grounded.fmt(f),
+            Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
+            Self::Setpoint(field) => return write!(f, "Refused: {field:.28} out of range"),
+            Self::AlreadyArmed => "Refused: armed already",
+            Self::Stopped => "Refused: stopped in flight; disarm first",
+            Self::Killed => "Refused: the kill switch is on",
+            Self::Busy => "Refused: parameters in work, or a restart",
+            Self::ClockDoubtful => "Refused: the clock's crystal does not run",
+            Self::MotorsFail => "Refused: the motors' frames do not go out",
+            Self::BatteryLow => "Refused: the battery is low",
+            Self::BatteryMissing => "Refused: battery to be watched is not measured",
+            Self::InTheAir => "Refused: in the air; land, or disarm by force",
+            Self::NotIdling => "Refused: arm on the ground first",
+            Self::NotInTheAir => "Refused: not in the air",
+            Self::Landing => "Refused: it lands; let it hold first",
+            Self::WithoutPose => "Refused: without a pose it can only go down",
+            Self::MustLand => "Refused: what made it land is still so",
+            Self::NoSetpoints => "Refused: no usable setpoint in the last second",
+            Self::TakeOffHeight => "Refused: take-off height not in 0.5 to 50 m",
+            Self::OutsideFence => "Refused: outside the fence",
+            Self::MotorTestRunning => "Refused: a motor test was running",
+            Self::DisarmCommanded => "Refused: disarm commanded",
+            Self::ImuStale => "Refused: no IMU sample for 20 ms",
+            Self::Imu(fault) => fault.text(),
+            Self::Estimator(fault) => fault.text(),
+            Self::PosesUnsettled => "Refused: poses not believed for a whole second",
+            Self::Moving => "Refused: the vehicle moves",
+            Self::Gravity => "Refused: gravity is not what accelerometer says",
+            Self::Tilted => "Refused: tilted by 30 degrees or more",
+            Self::GroundStationSilent => "Refused: no ground station for 2.5 s",
+            Self::NoSuchRotor => "Motor test refused: no such rotor",
+            Self::MotorTestLevel => "Motor test refused: level not in 0 to 15 %",
+            Self::MotorTestDuration => "Motor test refused: duration not in 0 to 2 s",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

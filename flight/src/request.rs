@@ -1,0 +1,68 @@
+//! What somebody may ask for, and the setpoints that come beside it.
+
+use super::motor::{MotorSetting, MotorTest};
+use super::refusal::Refusal;
+use controller_core::governor::{Motion, Setpoint};
+
+/// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
+pub const SETPOINT_AGE_MAX: u64 = 1_000_000;
+
+/// What somebody may ask for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Request {
+    /// Arm and idle.
+    Arm,
+    /// Stop the motors of a vehicle on the ground.
+    Disarm,
+    /// Go up so high, m, or as high as the settings say; then hold.
+    TakeOff(Option<f32>),
+    /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_WANTED_MAX`] and
+    /// unless anything else is asked for.
+    FlySetpoints,
+    /// Come to rest and hold position.
+    Hold,
+    /// Fly to a setpoint and hold it.
+    GoTo(Setpoint),
+    /// Land and disarm; without a pose, as soon as there is one.
+    Land,
+    /// Turn one motor slowly.
+    MotorTest(MotorTest),
+    /// Tell one motor's controller something, while no motor turns.
+    MotorSetting(MotorSetting),
+}
+
+/// The newest setpoint that may be flown, and the newest refusal of one, each with its time, us.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Newest(Option<(Setpoint, u64)>, Option<(Refusal, u64)>);
+
+impl Newest {
+    /// Keeps one that came at `now`, us.
+    pub fn keep(&mut self, setpoint: &Setpoint, now: u64) {
+        self.0 = Some((*setpoint, now));
+    }
+
+    /// Remembers why one that came at `now`, us, is not flown.
+    pub fn refuse(&mut self, refusal: Refusal, now: u64) {
+        self.1 = Some((refusal, now));
+    }
+
+    /// Why there is none at `now`, us.
+    pub fn refused(&self, now: u64) -> Refusal {
+        let recent = self.1.filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX);
+        recent.map_or(Refusal::NoSetpoints, |(refusal, _)| refusal)
+    }
+
+    /// It, if it is fresh at `now`, us.
+    pub fn fresh(&self, now: u64) -> Option<&Setpoint> {
+        self.0.as_ref().filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX).map(|(setpoint, _)| setpoint)
+    }
+
+    /// Whether it has ended: it moved and was not renewed. A point is flown to for as long as it takes.
+    pub fn has_ended(&self, now: u64) -> bool {
+        let rests = matches!(self.0, Some((Setpoint { motion: Motion::Position(_), .. }, _)));
+        !rests && self.fresh(now).is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,18 @@
+use super::*;
+use controller_core::governor::Turn;
+use nalgebra::Vector3;
+
+#[test]
+fn what_moves_ends_and_what_rests_does_not() {
+    let mut newest = Newest::default();
+    assert!(newest.has_ended(5) && newest.fresh(5).is_none());
+    let zero = Vector3::zeros();
+    let moving = Motion::PositionVelocityAcceleration { position: zero, velocity: zero, acceleration: zero };
+    for (motion, ends) in [(Motion::Position(zero), false), (Motion::Velocity(zero), true), (moving, true)] {
+        let setpoint = Setpoint { motion, turn: Turn::Keep };
+        newest.keep(&setpoint, 7);
+        assert_eq!(newest.fresh(6 + SETPOINT_AGE_MAX), Some(&setpoint));
+        assert!(!newest.has_ended(6 + SETPOINT_AGE_MAX));
+        assert_eq!((newest.fresh(7 + SETPOINT_AGE_MAX), newest.has_ended(7 + SETPOINT_AGE_MAX)), (None, ends));
+    }
+}

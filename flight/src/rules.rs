@@ -1,0 +1,108 @@
+//! The flight rules: a table of modes and transitions, and every time limit they use.
+//!
+//! Once a tick, the rows of the present mode are read from top to bottom and the first whose condition holds is taken:
+//! at most one transition a tick, and the order of the rows is the order of precedence. What the conditions mean is
+//! said at [`Condition`]; [`super::pilot`] works them out, and carries out what a mode means. Nothing else changes the
+//! mode.
+//!
+//! - [`mode`](Mode): what the vehicle is doing, with the picture of how the modes hang together;
+//! - `condition`: what a transition can depend on;
+//! - `table`: the rows.
+//!
+//! What is lost in flight ends in the mildest way that what is left allows: holding, with an estimate and somebody who
+//! may come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
+//! new arm request, with every check made anew.
+
+mod condition;
+mod mode;
+mod table;
+
+pub use condition::{Condition, Conditions};
+pub use mode::Mode;
+pub use table::{Row, TABLE};
+
+use super::reason::Reason;
+use estimation::estimator::EXTRAPOLATION_MAX;
+
+/// How long a flight goes on by IMU alone after the last pose that was believed, us. Drift grows with the square of the
+/// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
+pub const COASTING_MAX: u64 = 1_000_000;
+
+/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of
+/// its own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without
+/// rates nothing tells where up is.
+pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
+
+/// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.
+pub const LEVELLING_MAX: u64 = 1_000_000;
+
+/// How long it may go down by the IMU alone, us, levelling included: 20 m at the least speed.
+pub const DESCENDING_MAX: u64 = 30_000_000;
+
+/// How long a landing may brake across before it goes down, us.
+pub const BRAKING_MAX: u64 = 5_000_000;
+
+/// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
+/// as the fence reaches, and so many seconds besides. Then its poses are no guide to the ground.
+pub const LANDING_PATIENCE: f32 = 2.0;
+/// See [`LANDING_PATIENCE`], s.
+pub const LANDING_REST: f32 = 12.0;
+
+/// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half
+/// a second is for their jitter.
+pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
+
+/// How long an armed vehicle may idle on the ground, us, or fly setpoints that do not lift it.
+pub const IDLING_MAX: u64 = 10_000_000;
+
+/// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and
+/// arms within a second or two, and who arms later may not know that anybody did.
+pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
+
+/// How long a battery must be low before anything is done, us: it sags under a burst of thrust.
+pub const BATTERY_LASTING: u64 = 3_000_000;
+
+/// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not
+/// end.
+pub const TRACKING_LASTING: u64 = 5_000_000;
+
+/// How long the rotors may give less than they are asked for, us. In a certified flight they never do.
+pub const SATURATION_LASTING: u64 = 1_000_000;
+
+/// How long control may be late with every tick, us.
+pub const OVERRUN_LASTING: u64 = 100_000;
+
+/// The greatest level of a motor test, as a part of the command's range: turns a rotor, lifts nothing.
+pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
+
+/// The longest motor test, us.
+pub const MOTOR_TEST_MAX: u64 = 2_000_000;
+
+/// Ticks in a row without new thrusts (the law or the allocation refused their input) that the last thrusts are held
+/// for. Inputs are checked before the law sees them, so a refusal is a defect; 50 ms outlast a passing one.
+pub const REFUSALS_MAX: u32 = 5;
+
+/// A change of mode, and why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Transition {
+    /// The mode before.
+    pub from: Mode,
+    /// The mode from this tick on.
+    pub to: Mode,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// What the table says in `mode` under `conditions`: a transition, or none where the mode stays.
+#[must_use]
+pub fn transition(mode: Mode, conditions: Conditions) -> Option<Transition> {
+    TABLE
+        .iter()
+        .find(|row| row.from == mode && conditions.contain(row.condition))
+        .filter(|row| row.to != row.from)
+        .map(|row| Transition { from: row.from, to: row.to, reason: row.reason })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,68 @@
+//! What an operator may choose about failures, each with a default that a first flight can live with.
+
+use controller_core::math;
+
+/// Limits and answers to failures. Numbers outside what their fields say are brought to the nearest that is allowed;
+/// one that is not a number is the default.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightSettings {
+    /// How high a take-off goes that names no height, m, in [0.5, 50].
+    pub take_off_height: f32,
+    /// How fast a landing goes down, m/s, in [0.1, 2].
+    pub landing_speed: f32,
+    /// How long the ground station may be silent before a vehicle that holds lands, s, in [2.5, 600].
+    pub ground_station_patience: f32,
+    /// The fence: the greatest horizontal distance from where the vehicle was armed, m, in [2, 10000].
+    pub fence_radius: f32,
+    /// The fence: the greatest height above that place, m, in [2, 10000].
+    pub fence_height: f32,
+    /// How far the vehicle may be from its reference for longer than a while, m, in [0.5, 100].
+    pub tracking_error_max: f32,
+}
+
+impl FlightSettings {
+    /// For a first flight.
+    pub const DEFAULT: Self = Self {
+        take_off_height: 1.5,
+        landing_speed: 0.5,
+        ground_station_patience: 10.0,
+        fence_radius: 100.0,
+        fence_height: 50.0,
+        tracking_error_max: 3.0,
+    };
+
+    /// These, within what is allowed.
+    #[must_use]
+    pub(super) fn within_range(&self) -> Self {
+        let Self {
+            take_off_height,
+            landing_speed,
+            ground_station_patience,
+            fence_radius,
+            fence_height,
+            tracking_error_max,
+        } = *self;
+        let default = Self::DEFAULT;
+        Self {
+            take_off_height: within(take_off_height, 0.5, 50.0, default.take_off_height),
+            landing_speed: within(landing_speed, 0.1, 2.0, default.landing_speed),
+            ground_station_patience: within(ground_station_patience, 2.5, 600.0, default.ground_station_patience),
+            fence_radius: within(fence_radius, 2.0, 10_000.0, default.fence_radius),
+            fence_height: within(fence_height, 2.0, 10_000.0, default.fence_height),
+            tracking_error_max: within(tracking_error_max, 0.5, 100.0, default.tracking_error_max),
+        }
+    }
+}
+
+impl Default for FlightSettings {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+fn within(value: f32, least: f32, most: f32, default: f32) -> f32 {
+    if value.is_nan() { default } else { math::between(value, least, most) }
+}
+
+#[cfg(test)]
+mod tests;

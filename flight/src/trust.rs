@@ -1,0 +1,84 @@
+//! Whether a source of poses may still be believed in this flight.
+//!
+//! A pose that is refused proves nothing, and a body that was lost may be found again. A source whose poses are refused
+//! and found again over and over lies. What speaks against it is counted in seconds of doubt and forgotten slowly:
+//!
+//! | what happens in flight | doubt |
+//! |---|---|
+//! | poses are refused for what they say | for as long as that lasts |
+//! | poses are believed, and turn as the gyro's bias cannot explain | for as long as that lasts |
+//! | the estimate is reset to where the body was found again | [`REFOUND`] more |
+//! | the sender's frame moves | [`MOVED`] more |
+//! | poses that were lost are flown again | [`REGAINED`] more; [`RESUMED`] where a landing resumes |
+//! | poses are believed | [`FORGOTTEN`] of that time less |
+//!
+//! At [`DOUBT_MAX`] the source is given up until the vehicle is disarmed.
+
+use estimation::estimator::{Rejected, Taken};
+
+/// Doubt at which a source is given up, s.
+pub const DOUBT_MAX: f32 = 3.0;
+
+/// What adds to the doubt beside the time of refusals, s.
+const REFOUND: f32 = 0.7;
+const MOVED: f32 = 0.3;
+const REGAINED: f32 = 1.1;
+const RESUMED: f32 = 1.6;
+
+/// What a second of belief takes from the doubt, s.
+const FORGOTTEN: f32 = 0.03;
+
+/// The longest time that one pose speaks for, us.
+const SPEAKS_FOR: u64 = 100_000;
+
+/// What speaks against a source of poses.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Trust {
+    /// s.
+    doubt: f32,
+    /// When poses were heard last, us.
+    heard: u64,
+    is_given_up: bool,
+}
+
+impl Trust {
+    /// Takes note of what became of a tick's poses, in flight. Where the gyro's bias is not `plausible` with them, they
+    /// turn as the vehicle does not, and are no better than refused.
+    pub fn hear(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
+        let Some(pose) = pose else { return };
+        let seconds = now.saturating_sub(self.heard).min(SPEAKS_FOR) as f32 * 1e-6;
+        self.heard = now;
+        self.doubt(match pose {
+            Err(rejected) if rejected.is_lie() => seconds,
+            Ok(Taken::Refound) => REFOUND,
+            Ok(Taken::Rebased) => MOVED,
+            Ok(taken) if taken.is_believed() && plausible => -FORGOTTEN * seconds,
+            Ok(taken) if taken.is_believed() => seconds,
+            Ok(_) | Err(_) => 0.0,
+        });
+    }
+
+    /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.
+    pub fn regain(&mut self, landing: bool) -> bool {
+        self.doubt(if landing { RESUMED } else { REGAINED });
+        !self.is_given_up
+    }
+
+    fn doubt(&mut self, more: f32) {
+        self.doubt = (self.doubt + more).max(0.0);
+        self.is_given_up |= self.doubt >= DOUBT_MAX;
+    }
+
+    /// The source is given up.
+    pub fn give_up(&mut self) {
+        self.is_given_up = true;
+    }
+
+    /// Whether it is.
+    pub fn is_given_up(&self) -> bool {
+        self.is_given_up
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,373 @@
+//! What a flight looks like: whether the vehicle follows its reference, has landed, or lies on its back.
+//!
+//! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer
+//!   than a vehicle does that turns round in the air: where wind carries it upwards faster than it may go down, say.
+//! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust
+//!   than carries it. Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not.
+//!   Rotors that give 8 % more than the law knows would look the same: with the law's thrust scale and force they do
+//!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
+//!   false speed.
+//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not
+//!   as the ground's, or the vehicle does not come upright, or turns on.
+//! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a
+//!   vehicle turns or falls.
+//! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
+//!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
+//!
+//! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the
+//! [average](super::calm). A jerk is over too soon for that.
+
+use super::calm::Calm;
+use super::chain::{Chain, Flown};
+use super::exchange::{Battery, Inputs};
+use super::lasting::Lasting;
+use super::leaning::up;
+use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, TRACKING_LASTING};
+use estimation::estimator::EstimatedState;
+use nalgebra::Vector3;
+
+/// The speed, m/s, at which poses that lie may show a vehicle that stands.
+const LIED: f32 = 0.5;
+
+/// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
+const SINKING: f32 = 0.2;
+
+/// By how much a landing may be slower than its reference and goes down all the same, m/s.
+const FOLLOWING: f32 = 0.15;
+
+/// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
+/// pose takes each for the ground, us: as long as it bounces, and so short that what only shakes keeps count of its
+/// speed.
+const TOUCHED_LASTING: u64 = 3_000_000;
+const TOUCHING_LASTING: u64 = 200_000;
+
+/// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
+/// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
+const TAUGHT: f32 = 1.0;
+
+/// For how long they do, us: true poses take it back with the next.
+const LIED_LASTING: u64 = 50_000;
+
+/// How long it must look like the ground, us.
+pub const GROUND_LASTING: u64 = 500_000;
+
+/// How far below the vehicle the reference is when it has landed, m; how slow the vehicle is then, m/s; and for how
+/// long, us.
+const GONE_ON: f32 = 0.25;
+const STANDING: f32 = 0.1;
+const STANDING_LASTING: u64 = 1_000_000;
+
+/// How far above the vehicle the reference may be that does not move towards it, m.
+const HELD_DOWN: f32 = 0.5;
+
+/// The speed, m/s, and the rate, rad/s, at most, of what lies on the ground.
+const STILL: (f32, f32) = (0.15, 0.5);
+
+/// The upward acceleration that only the ground gives, m/s^2.
+const JERK: f32 = 5.0;
+
+/// The upward acceleration of a touchdown that stops a vehicle within a tick or two, m/s^2, and by when after the first
+/// jerk, us: rotors out of balance jerk at it for longer before they make so much of a tick.
+const TOUCH: f32 = 9.0;
+const JERKING: u64 = 30_000;
+
+/// The upward acceleration of a hit, m/s^2.
+const HIT: f32 = 10.0;
+
+/// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the
+/// greatest that is measured instead.
+const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
+
+/// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees leaves as
+/// much.
+const LEANING: f32 = 1.5;
+
+/// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
+/// believed, us.
+const STRUCK: f32 = 25.0;
+const STRUCK_LASTING: u64 = 3_000_000;
+
+/// The force that an IMU may feel beside the rotors', m/s^2: wind, drag, and rotors that are not what they should be.
+const UNEXPECTED: f32 = 4.0;
+
+/// The rate at which nothing turns that has been levelled for a while, rad/s; and that while, us.
+const TURNING: f32 = 4.0;
+const TURNING_LASTING: u64 = 800_000;
+
+/// How long an IMU may not fit, us.
+const DOUBT_LASTING: u64 = 300_000;
+
+/// The cosine of the least tilt of a crash, 60 degrees.
+const LYING_COSINE: f32 = 0.5;
+
+/// The least part of theta~ across, of a vehicle that lies beside where the law wants it: tan(30 degrees / 4).
+const LYING_BESIDE: f32 = 0.131_652_5;
+
+/// Since when what holds.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Watch {
+    tracking: Lasting,
+    saturated: Lasting,
+    lying: Lasting,
+    standing: Lasting,
+    resting: Lasting,
+    low: Lasting,
+    critical: Lasting,
+    late: Lasting,
+    doubtful: Lasting,
+    turning: Lasting,
+    calm: Calm,
+    /// When the vehicle was last struck in guided flight, us.
+    struck: Option<u64>,
+    /// When something first stopped a vehicle that goes down, us, and when it last did.
+    jerked: Option<(u64, u64)>,
+    /// The same of a jerk that nothing but the ground gives, without a pose.
+    touched: Option<(u64, u64)>,
+    /// Whether it has hit something.
+    hit: bool,
+    lied: Lasting,
+    /// What poses had added to the vertical speed before something stopped it, m/s.
+    taught: f32,
+    /// Whether a low battery has had its landing: whoever flies on knows.
+    low_is_told: bool,
+}
+
+/// What is so.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Seen {
+    pub tracking_lost: bool,
+    pub saturated: bool,
+    pub landed: bool,
+    /// Whether something has stopped a vehicle that goes down, and whether just now.
+    pub touched: bool,
+    pub touches: bool,
+    /// Whether poses have given a landing, since it has met the ground, a speed that it cannot have.
+    pub lied: bool,
+    pub crashed: bool,
+    pub battery_low: bool,
+    pub battery_critical: bool,
+    pub overrun: bool,
+    pub imu_doubtful: bool,
+}
+
+/// What there is to look at in a tick: the estimate as it is on average, and what the last tick flew.
+struct Look<'a> {
+    mode: Mode,
+    state: Option<&'a EstimatedState>,
+    chain: Option<&'a Chain<'a>>,
+    flown: Option<&'a Flown>,
+}
+
+impl Look<'_> {
+    /// Whether the vehicle is farther than `most`, m, from its reference.
+    fn is_far(&self, most: f32) -> bool {
+        self.mode.is_guided() && self.flown.is_some_and(|flown| !within(&flown.position_error, most))
+    }
+
+    /// Whether it stays where it should be going up; with a rotor lost it may turn on the ground.
+    fn is_held_down(&self) -> bool {
+        let (true, Some(state), Some(flown)) = (self.mode.is_guided(), self.state, self.flown) else { return false };
+        within(&state.state.velocity, STILL.0) && flown.reference.position.z > state.state.position.z + HELD_DOWN
+    }
+
+    /// Whether the rotors do not give what the law asks for.
+    fn is_inexact(&self) -> bool {
+        self.mode.flies() && self.chain.is_some_and(|chain| !chain.is_exact())
+    }
+
+    /// Whether the vehicle lies still on its side or its back, or does not turn to where the law wants it.
+    fn lies(&self) -> bool {
+        let beside = self.flown.is_some_and(|flown| flown.mrp.xy().norm_squared() > LYING_BESIDE * LYING_BESIDE);
+        let lies = |state| is_still(state) && (beside || up(&state.state.attitude) < LYING_COSINE);
+        self.mode.is_armed() && self.state.is_some_and(lies)
+    }
+
+    /// Whether it stands still where it should be going down, by the estimate.
+    fn is_left_behind(&self) -> bool {
+        let (Mode::Landing, Some(state), Some(flown)) = (self.mode, self.state, self.flown) else { return false };
+        let stands = is_still(state) && within(&state.state.velocity, STANDING);
+        stands && flown.reference.position.z + GONE_ON < state.state.position.z
+    }
+
+    /// Whether something strikes a vehicle in guided flight, by this very tick's `state`.
+    fn is_struck(&self, state: Option<&EstimatedState>) -> bool {
+        let (true, Some(state), Some(chain), Some(flown)) = (self.mode.is_guided(), state, self.chain, self.flown)
+        else {
+            return false;
+        };
+        !within(&chain.unexpected(flown, state), STRUCK)
+    }
+
+    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for.
+    fn feels(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        let (Some(state), Some(chain), Some(flown)) = (self.state, self.chain, self.flown) else { return None };
+        Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
+    }
+
+    /// The same, only where nothing but the IMU is left.
+    fn by_imu(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
+        self.feels().filter(|_| self.mode == Mode::Descending)
+    }
+
+    /// Whether a landing moves: down as it should, or as what stands does not, as far as its poses say.
+    fn moves_landing(&self) -> bool {
+        let (Some(state), Some(flown)) = (self.state, self.flown) else { return false };
+        let speed = state.state.velocity.z;
+        speed < flown.reference.velocity.z + FOLLOWING || speed.abs() > LIED
+    }
+
+    /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
+    fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
+        // Also before it goes down, if it still sinks.
+        let sinks =
+            self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
+        let now = Look { state, ..*self };
+        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
+    }
+
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not, or with a
+    /// `hit`.
+    fn is_held_up(&self, jerked: bool, touched: bool, hit: bool) -> bool {
+        let (after_a_jerk, without, measured) = HELD_UP;
+        let falling = if jerked { after_a_jerk } else { without };
+        let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
+        self.feels().filter(|_| may).is_some_and(|(_, asked, state)| {
+            let moves = match self.mode {
+                Mode::Landing => self.moves_landing(),
+                _ => !hit && self.chain.is_some_and(Chain::moves),
+            };
+            !moves
+                && self.chain.is_some_and(Chain::sinks)
+                && asked < falling
+                && state.acceleration.z.abs() <= measured
+                && within(&state.acceleration, if touched { LEANING } else { measured })
+                && within(&state.state.angular_velocity, STILL.1)
+        })
+    }
+
+    /// Whether the IMU feels what the rotors cannot be the reason of.
+    fn is_unexpected(&self) -> bool {
+        self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED))
+    }
+
+    /// Whether a vehicle that is levelled turns, or is not level.
+    fn turns(&self) -> bool {
+        self.by_imu().is_some_and(|(_, _, EstimatedState { state, .. })| {
+            !within(&state.angular_velocity, TURNING) || up(&state.attitude) < LYING_COSINE
+        })
+    }
+}
+
+impl Watch {
+    /// Looks at what the last tick led to.
+    pub fn tick(
+        &mut self,
+        mode: Mode,
+        state: Option<&EstimatedState>,
+        chain: Option<&Chain>,
+        tracking_error_max: f32,
+        inputs: &Inputs,
+    ) -> Seen {
+        let Inputs { now, battery, is_late, .. } = *inputs;
+        let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
+        let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
+        let calm = self.calm.tick(state);
+        let look = Look { mode, state: calm.as_ref(), chain, flown };
+        let is_blind = mode == Mode::Descending;
+        self.note_jerks(&look, state, now);
+        let jerked = self.has_jerked(mode, now);
+        let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
+        let touches = is_blind && self.touched.is_some_and(begins);
+        let touched = if is_blind { self.touched.is_some() } else { jerked };
+        let is_low = matches!(battery, Battery::Low | Battery::Critical);
+        let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
+        let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
+        let is_taught = mode == Mode::Landing && self.is_taught(jerked, &look, state);
+        let lied = self.lied.is_so(is_taught, LIED_LASTING, now);
+        let rests = look.is_held_up(jerked, self.touched.is_some(), self.hit);
+        let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
+        let far = look.is_far(tracking_error_max) || look.is_held_down();
+        let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
+        let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
+        let is_thrown = self.is_thrown(&look, state, jumps, now);
+        Seen {
+            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now) || is_thrown,
+            saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
+            landed: left_behind || held_up || stands,
+            touched,
+            touches,
+            lied,
+            crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
+            battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
+            battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
+            imu_doubtful: doubtful || turning,
+            overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
+        }
+    }
+
+    /// Remembers what stops a vehicle that goes down.
+    fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
+        let descends = look.mode == Mode::Descending;
+        if !descends && look.mode != Mode::Landing {
+            self.jerked = None;
+        } else if look.jerks(state, JERK) {
+            let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
+            self.jerked = Some((first, now));
+        }
+        let fresh = self.jerked.is_some_and(|(first, _)| now.saturating_sub(first) < JERKING);
+        self.touched = match self.touched {
+            _ if !descends && look.mode != Mode::Landing => None,
+            None if look.jerks(state, TOUCH) && fresh => Some((now, now)),
+            Some((first, _)) if look.jerks(state, TOUCH) => Some((first, now)),
+            touched => touched,
+        };
+        self.hit = descends && (self.hit || look.jerks(state, HIT));
+    }
+
+    /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and
+    /// that is none of a vehicle which stands or goes on down.
+    fn is_taught(&mut self, jerked: bool, look: &Look, state: Option<&EstimatedState>) -> bool {
+        let (Some(state), Some(flown)) = (state, look.flown) else { return false };
+        let speed = state.state.velocity.z;
+        let taught = speed - state.gained;
+        if !jerked {
+            self.taught = taught;
+        }
+        let possible = flown.reference.velocity.z - TAUGHT..=TAUGHT;
+        (taught - self.taught).abs() > TAUGHT && !possible.contains(&speed)
+    }
+
+    /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
+    fn has_jerked(&self, mode: Mode, now: u64) -> bool {
+        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_LASTING;
+        self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
+    }
+
+    /// Whether the estimate jumps just after the vehicle was struck.
+    fn is_thrown(&mut self, look: &Look, state: Option<&EstimatedState>, jumps: bool, now: u64) -> bool {
+        if look.is_struck(state) {
+            self.struck = Some(now);
+        }
+        let recently = self.struck.is_some_and(|struck| now.saturating_sub(struck) < STRUCK_LASTING);
+        look.mode.is_guided() && jumps && recently
+    }
+
+    /// A low battery has been acted on.
+    pub fn tell_low(&mut self) {
+        self.low_is_told = true;
+    }
+}
+
+/// Whether it neither moves nor turns, at this moment.
+pub(super) fn is_still(state: &EstimatedState) -> bool {
+    let (speed, rate) = STILL;
+    within(&state.state.velocity, speed) && within(&state.state.angular_velocity, rate)
+}
+
+/// Whether a vector is at most so long. One that is made of no numbers is not.
+fn within(vector: &Vector3<f32>, most: f32) -> bool {
+    vector.norm_squared() <= most * most
+}
+
+#[cfg(test)]
+mod tests;

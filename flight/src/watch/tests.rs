@@ -1,0 +1,234 @@
+//! Each thing that is looked for, just where it begins and just before; each ends where any of its parts is
+//! missing.
+
+extern crate std;
+use super::*;
+use crate::chain::Memory;
+use crate::exchange::PERIOD;
+use crate::hummingbird;
+use controller_core::governor::GovernorLimits;
+use controller_core::heading::Heading;
+use controller_core::state::State;
+use nalgebra::{Quaternion, UnitQuaternion};
+use std::boxed::Box;
+
+/// The greatest distance from the reference that is in order, m.
+const FAR: f32 = 3.0;
+
+/// A chain whose reference rests at the origin.
+fn chain() -> Chain<'static> {
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), 0.01, memory).unwrap();
+    chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
+    chain
+}
+
+/// A level vehicle at rest at a height, m.
+fn at(height: f32) -> EstimatedState {
+    let state = State {
+        position: Vector3::new(0.0, 0.0, height),
+        velocity: Vector3::zeros(),
+        attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0),
+        angular_velocity: Vector3::zeros(),
+    };
+    EstimatedState { state, acceleration: Vector3::zeros(), jumps: 0, gained: 0.0 }
+}
+
+/// The same leaning to its right by so many degrees.
+fn leaning(degrees: f32) -> EstimatedState {
+    let mut estimated = at(0.0);
+    estimated.state.attitude = UnitQuaternion::from_euler_angles(degrees.to_radians(), 0.0, 0.0).into_inner();
+    estimated
+}
+
+/// What is seen in the last of so many ticks, of a vehicle that is in this state however it is flown.
+fn seen(mode: Mode, chain: &mut Chain, estimated: &EstimatedState, ticks: u64) -> Seen {
+    let mut watch = Watch::default();
+    let mut seen = Seen::default();
+    for tick in 1..=ticks {
+        if mode == Mode::Landing {
+            chain.come_down(0.5, true);
+        }
+        let _ = if mode == Mode::Descending { chain.fly_level(estimated, true) } else { chain.fly(&estimated.state) };
+        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
+        seen = watch.tick(mode, Some(estimated), Some(chain), FAR, &inputs);
+    }
+    seen
+}
+
+/// Ticks in which something that takes so long, us, is so.
+fn ticks(duration: u64) -> u64 {
+    duration / PERIOD + 2
+}
+
+#[test]
+fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
+    let lost = |mode, estimated: &EstimatedState| {
+        let seen = seen(mode, &mut chain(), estimated, ticks(TRACKING_LASTING));
+        seen.tracking_lost
+    };
+    let moving = |height: f32| {
+        let mut estimated = at(height);
+        estimated.state.velocity.x = 0.2;
+        estimated
+    };
+    assert!(lost(Mode::Holding, &at(3.01)) && !lost(Mode::Holding, &at(2.99)));
+    assert!(lost(Mode::Holding, &at(-0.51)) && !lost(Mode::Holding, &at(-0.49)));
+    assert!(!lost(Mode::Holding, &moving(-0.51)) && lost(Mode::Holding, &moving(-3.01)));
+    assert!(!lost(Mode::Descending, &at(-3.01)));
+}
+
+#[test]
+fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is() {
+    let thrown = |mode, struck: f32, later: u64| {
+        let (mut chain, mut watch) = (chain(), Watch::default());
+        let hit = EstimatedState { acceleration: Vector3::new(0.0, 0.0, struck), ..at(0.0) };
+        let moved = EstimatedState { jumps: 1, ..at(0.0) };
+        let mut look = |estimated: &EstimatedState, now: u64| {
+            let _ = chain.fly(&estimated.state);
+            watch.tick(mode, Some(estimated), Some(&chain), FAR, &Inputs { now, ..Inputs::default() }).tracking_lost
+        };
+        assert!(!look(&at(0.0), PERIOD) && !look(&hit, 2 * PERIOD));
+        look(&moved, 2 * PERIOD + later)
+    };
+    assert!(thrown(Mode::Holding, 26.0, STRUCK_LASTING - 1) && !thrown(Mode::Holding, 26.0, STRUCK_LASTING));
+    assert!(thrown(Mode::Flying, -70.0, PERIOD) && !thrown(Mode::Holding, 24.0, PERIOD));
+    assert!(!thrown(Mode::Descending, 26.0, PERIOD));
+}
+
+#[test]
+fn a_vehicle_that_lies_still_has_crashed_and_one_that_turns_has_not() {
+    let crashed = |mode, estimated: &EstimatedState| {
+        let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_LASTING));
+        seen.crashed
+    };
+    // Beside where the law wants it, which is level.
+    assert!(crashed(Mode::Holding, &leaning(31.0)) && !crashed(Mode::Holding, &leaning(29.0)));
+    // Idling, nothing is wanted of it.
+    assert!(crashed(Mode::Idling, &leaning(61.0)) && !crashed(Mode::Idling, &leaning(59.0)));
+    assert!(!crashed(Mode::Checks, &leaning(61.0)));
+    let mut turning = leaning(61.0);
+    turning.state.angular_velocity.y = 0.6;
+    assert!(!crashed(Mode::Holding, &turning));
+}
+
+#[test]
+fn what_stays_a_quarter_metre_above_its_reference_has_landed_if_it_stands() {
+    // Brought up first: the reference waits for the rotors.
+    let landed = |mode, speed: f32, duration: u64| {
+        let (mut chain, mut estimated) = (chain(), at(0.1));
+        (0..100).for_each(|_| _ = chain.fly(&estimated.state));
+        estimated.state.velocity.x = speed;
+        seen(mode, &mut chain, &estimated, duration).landed
+    };
+    assert!(landed(Mode::Landing, 0.09, 500));
+    assert!(!landed(Mode::Landing, 0.11, 500), "still, but not standing");
+    assert!(!landed(Mode::Landing, 0.0, 150), "the reference has hardly moved");
+    assert!(!landed(Mode::Holding, 0.0, 500));
+}
+
+#[test]
+fn what_has_not_left_its_place_of_arming_has_landed_as_soon_as_it_flies() {
+    assert!(seen(Mode::TakingOff, &mut chain(), &at(0.04), 1).landed);
+    assert!(!seen(Mode::TakingOff, &mut chain(), &at(0.06), 1).landed);
+    assert!(!seen(Mode::Idling, &mut chain(), &at(0.04), 1).landed);
+}
+
+/// A chain that has been levelled, without a pose, and has gone down for a while.
+fn descending(estimated: &EstimatedState) -> Chain<'static> {
+    let mut chain = chain();
+    (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
+    chain.level(Some(0.0), false);
+    (0..2_000).for_each(|_| _ = chain.fly_level(estimated, true));
+    chain
+}
+
+#[test]
+fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
+    let landed = |change: fn(&mut EstimatedState)| {
+        let mut estimated = at(0.0);
+        let mut chain = descending(&estimated);
+        let asked = chain.asked_acceleration(chain.flown().unwrap());
+        assert!(asked < HELD_UP.1, "{asked} m/s^2");
+        change(&mut estimated);
+        seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_LASTING)).landed
+    };
+    assert!(landed(|_| ()));
+    assert!(landed(|estimated| estimated.acceleration.z = -0.39));
+    assert!(!landed(|estimated| estimated.acceleration.z = -0.41), "it falls");
+    assert!(landed(|estimated| estimated.state.angular_velocity.x = 0.49));
+    assert!(!landed(|estimated| estimated.state.angular_velocity.x = 0.51), "it turns");
+    // 0.3 m/s and what drifts in twenty seconds, either way.
+    assert!(landed(|estimated| estimated.gained = 0.49) && landed(|estimated| estimated.gained = -0.49));
+    assert!(!landed(|estimated| estimated.gained = 0.52) && !landed(|estimated| estimated.gained = -0.52));
+}
+
+#[test]
+fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
+    let landed = |descends: bool, jerk: f32, then: Mode| {
+        let mut estimated = at(0.0);
+        let mut chain = chain();
+        (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
+        chain.level(Some(0.0), false);
+        let (mut watch, mut now) = (Watch::default(), 0);
+        let mut tick = |chain: &mut Chain, estimated: &EstimatedState, mode: Mode, descends: bool| {
+            now += PERIOD;
+            chain.fly_level(estimated, descends).unwrap();
+            watch.tick(mode, Some(estimated), Some(chain), FAR, &Inputs { now, ..Inputs::default() })
+        };
+        estimated.acceleration.z = jerk;
+        tick(&mut chain, &estimated, Mode::Descending, descends);
+        estimated.acceleration.z = 0.0;
+        tick(&mut chain, &estimated, then, descends);
+        // As long as the law asks for something in between of what is on the ground.
+        for _ in 0..3_000 {
+            let seen = tick(&mut chain, &estimated, Mode::Descending, true);
+            let asked = chain.asked_acceleration(chain.flown().unwrap());
+            if asked < HELD_UP.1 {
+                return false;
+            }
+            if seen.landed {
+                return true;
+            }
+        }
+        panic!("the law never asks for less");
+    };
+    assert!(landed(true, 5.5, Mode::Descending) && !landed(true, 4.5, Mode::Descending));
+    assert!(!landed(false, 5.5, Mode::Descending), "it was only levelled");
+    assert!(!landed(true, 5.5, Mode::Holding), "a jerk of an earlier descent");
+}
+
+/// What is seen in the last of so many ticks on the ground, at a speed that is none, after an upward acceleration.
+fn seen_after(jerk: f32, ticks: u64) -> Seen {
+    let mut chain = descending(&at(0.0));
+    let (mut watch, mut last, mut estimated) = (Watch::default(), Seen::default(), at(0.0));
+    for tick in 1..=ticks {
+        estimated.acceleration.z = if tick == 1 { jerk } else { 0.0 };
+        estimated.gained = if tick == 1 { 0.0 } else { -0.55 };
+        chain.fly_level(&estimated, true).unwrap();
+        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
+        last = watch.tick(Mode::Descending, Some(&estimated), Some(&chain), FAR, &inputs);
+    }
+    last
+}
+
+#[test]
+fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
+    let long = ticks(GROUND_LASTING) + 60;
+    assert!(!seen_after(1.0, long).landed && seen_after(15.0, long).landed);
+    assert!(!seen_after(15.0, long).imu_doubtful);
+}
+
+#[test]
+fn a_low_battery_is_told_until_it_is_acted_on() {
+    let mut watch = Watch::default();
+    let look = |watch: &mut Watch, now: u64| {
+        let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
+        watch.tick(Mode::Holding, None, None, FAR, &inputs).battery_low
+    };
+    assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_LASTING));
+    assert!(look(&mut watch, BATTERY_LASTING));
+    watch.tell_low();
+    assert!(!look(&mut watch, BATTERY_LASTING + PERIOD));
+    assert!(!look(&mut watch, 9 * BATTERY_LASTING));
+}

@@ -1,0 +1,11 @@
+//! A pilot flown from outside: every mode, request, refusal and failure, with a vehicle around it.
+
+mod arming;
+mod bench;
+mod lies;
+mod modes;
+mod numbers;
+mod refusals;
+mod requests;
+mod streams;
+mod support;
