@@ -4,12 +4,10 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use controller_core::extended::memory::Estimates;
-use flight::{
-    FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
-};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
+use flight::{FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use host_sim::course::Course;
 use host_sim::flight::Flight;
 use host_sim::tune::trials::hover;

@@ -21,10 +21,10 @@ mod watch;
 
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use flight::rules::{Condition, Row, TABLE};
-use flight::{FlightSettings, Mode, Reason, Transition};
 use controller_core::reference::ReferenceBounds;
 use failure::Failure;
+use flight::rules::{Condition, Row, TABLE};
+use flight::{FlightSettings, Mode, Reason, Transition};
 use phase::Phase;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;

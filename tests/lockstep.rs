@@ -17,7 +17,7 @@ mod refusals;
 mod station;
 mod world;
 
-use flight::Mode;
+use ::flight::Mode;
 use down::check_landed;
 use firmware::hardware::MotorCommand;
 use firmware::parameters::table::Name;

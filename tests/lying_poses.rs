@@ -8,8 +8,8 @@
 mod flight;
 mod lie;
 
+use ::flight::Reason;
 use controller_core::certificate::certified::Certified;
-use flight::Reason;
 use flight::{Begins, Case, Flown, fly};
 use lie::{Lie, drawn};
 use nalgebra::Vector3;

@@ -22,9 +22,9 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
-use estimation::imu::ImuParameters;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::spi::SpiBus;
+use estimation::imu::ImuParameters;
 
 #[cfg(test)]
 mod tests;

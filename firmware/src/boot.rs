@@ -9,17 +9,16 @@
 
 use crate::configuration;
 use crate::outputs::Outputs;
-use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
 use controller_core::error::ParameterError;
-use estimation::estimator::{Estimator, Settings};
-use flight::{FlightSettings, Memory, Pilot};
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use estimation::estimator::{Estimator, Settings};
+use flight::{FlightSettings, Memory, Pilot};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// Where a pilot lies, its estimator, and what its governor and mixer work with.
@@ -87,7 +86,7 @@ pub fn start_with<M: RawMutex>(
     let curve = parameters.get(Name::ThrustCurve);
     let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
-    let (limits, settings) = (flight::limits(parameters), flight::settings(parameters));
+    let (limits, settings) = (parameters.governor_limits(), parameters.flight_settings());
     Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
 }
 

@@ -13,14 +13,13 @@
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
-use crate::parameters::flight;
 use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
-use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
+use flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use heapless::Vec;
 
 /// How long the motors' frame may take to write, us.
@@ -105,7 +104,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let poses: Vec<_, POSES> = waiting(&self.shared.poses);
         increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests.take();
-        self.pilot.choose(&flight::settings(&self.shared.parameters));
+        self.pilot.choose(&self.shared.parameters.flight_settings());
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         let has_armed = outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed);

@@ -7,8 +7,8 @@
 //! burst transfer wants them.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
-use flight::Word;
 use dshot_frame::{Command, NormalFrame};
+use flight::Word;
 
 /// Bits in a second.
 pub const BIT_RATE: u32 = 300_000;

@@ -3,9 +3,9 @@
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
 
-use flight::Word;
-use estimation::imu::ImuParameters;
 use core::future::{Future, ready};
+use estimation::imu::ImuParameters;
+use flight::Word;
 use nalgebra::Vector3;
 
 /// Rotors that a board drives.

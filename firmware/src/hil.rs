@@ -28,12 +28,12 @@ use crate::link::pose::odometry;
 use crate::link::writer::Writer;
 use crate::parameters::table::Name;
 use crate::shared::{Flag, Latest, Shared};
-use flight::{PERIOD, Stamped};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
+use flight::{PERIOD, Stamped};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,

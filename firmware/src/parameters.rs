@@ -8,7 +8,7 @@
 //! configuration.
 
 pub mod calibration;
-pub mod flight;
+mod flight;
 pub mod journal;
 pub mod storage;
 pub mod table;

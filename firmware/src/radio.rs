@@ -22,10 +22,10 @@ pub mod sticks;
 
 use crate::hardware::Clock;
 use crate::shared::{Asked, Event, Severity, Shared};
-use flight::{Mode, Request};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
+use flight::{Mode, Request};
 use sticks::Sticks;
 use uf_crsf::CrsfParser;
 use uf_crsf::packets::{CrsfPacket, RcChannelsPacked};

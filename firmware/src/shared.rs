@@ -68,13 +68,13 @@ use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
-use estimation::estimator::{Increment, PoseMeasurement};
-use flight::{ImuSample, Mode, Refusal, Stamped};
 use controller_core::governor::Setpoint;
-use estimation::imu::ImuFault;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
+use estimation::estimator::{Increment, PoseMeasurement};
+use estimation::imu::ImuFault;
+use flight::{ImuSample, Mode, Refusal, Stamped};
 use mavlink::dialects::common::MavResult;
 
 /// IMU increments that wait for control, which takes all of them: 40 ms.

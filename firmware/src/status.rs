@@ -17,9 +17,9 @@ use crate::hardware::{Battery, Clock, Light};
 use crate::last_words::Teller;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Severity, Shared};
-use flight::Mode;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::Mode;
 
 pub use euler::{Euler, euler};
 

@@ -11,10 +11,10 @@
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;
-use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
-use flight::Stamped;
-use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
+use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
+use flight::Stamped;
 use nalgebra::UnitQuaternion;
 use scenario::Scenario;
 use scenario::body::BodyState;

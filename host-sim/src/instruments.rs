@@ -15,9 +15,9 @@
 
 use crate::sensors::{noise, single};
 use estimation::estimator::EstimatorParameters;
-use flight::{ImuSample, Pose, Stamped, Velocity};
 use estimation::imu::ImuParameters;
 use estimation::imu::low_pass::LowPass;
+use flight::{ImuSample, Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};

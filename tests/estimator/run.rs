@@ -2,12 +2,12 @@
 
 use super::sensors::{Imu, pose};
 use super::truth::{Moment, Truth};
+use controller_core::state::State;
 use estimation::estimator::covariance::Covariance;
 use estimation::estimator::filter::Filter;
 use estimation::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
-use flight::Stamped;
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
-use controller_core::state::State;
+use flight::Stamped;
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
 use rand::Rng;
 use std::collections::VecDeque;

@@ -1,7 +1,7 @@
 //! Where in a flight it fails, and what an operator says to get there.
 
-use flight::{Inputs, Mode, MotorTest, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use flight::{Inputs, Mode, MotorTest, Request};
 use nalgebra::Vector3;
 
 /// A phase of a flight.

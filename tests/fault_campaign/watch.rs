@@ -3,9 +3,9 @@
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::Certified;
 use controller_core::certificate::form::Interval;
+use firmware::hardware::MotorCommand;
 use flight::rules::{MOTOR_TEST_LEVEL_MAX, TABLE};
 use flight::{Flown, Mode, Outcome, Output, Transition};
-use firmware::hardware::MotorCommand;
 
 /// Room for the rounding of a wrench's components against a bound, relative.
 const ROUNDING: f64 = 1e-6;

@@ -2,8 +2,8 @@
 
 use super::down::check_landed;
 use super::flight::Flight;
-use flight::Mode;
 use firmware::parameters::table::Name;
+use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
 /// A battery's voltages, V: full, low and critical.

@@ -3,13 +3,13 @@
 use super::flight::Flight;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::configuration::Configuration;
-use estimation::estimator::{Estimator, EstimatorParameters, Settings};
-use flight::{FlightSettings, Memory, Mode, Pilot};
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
+use estimation::estimator::{Estimator, EstimatorParameters, Settings};
 use firmware::configuration;
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
+use flight::{FlightSettings, Memory, Mode, Pilot};
 use mavlink::dialects::common::MavResult;
 
 /// The embedded vehicle, asked to follow references that its torques are not enough for.

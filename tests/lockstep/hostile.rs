@@ -2,9 +2,9 @@
 
 use super::flight::Flight;
 use super::station::Station;
+use firmware::hardware::MotorCommand;
 use flight::Mode;
 use flight::rules::COASTING_MAX;
-use firmware::hardware::MotorCommand;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
 use rand::rngs::ChaCha8Rng;

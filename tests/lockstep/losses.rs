@@ -2,8 +2,8 @@
 
 use super::down::check_landed;
 use super::flight::Flight;
-use flight::Mode;
 use firmware::hardware::MotorCommand;
+use flight::Mode;
 
 /// A flight on its way to a point 20 m off, with its poses just gone.
 fn lost_on_the_way() -> Flight {

@@ -1,8 +1,8 @@
 //! The motor test: one motor, slowly, not for long, and never against a disarm command.
 
 use super::flight::Flight;
-use flight::Mode;
 use firmware::hardware::{MOTORS, MotorCommand};
+use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
 /// A tick, us.

@@ -2,8 +2,8 @@
 
 use super::flight::Flight;
 use super::world::Health;
-use flight::Mode;
 use firmware::hardware::MotorCommand;
+use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
 /// A tick, us.

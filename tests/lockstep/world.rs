@@ -3,8 +3,8 @@
 use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::certificate::configuration::Configuration;
-use estimation::imu::ImuParameters;
 use controller_core::state::State;
+use estimation::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
 use host_sim::plant::Plant;
 use nalgebra::Vector3;

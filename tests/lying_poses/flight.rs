@@ -2,8 +2,8 @@
 
 use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
-use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
 use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::Vector3;
 use rand::SeedableRng;

@@ -4,7 +4,6 @@
 
 #[cfg(target_os = "none")]
 mod target {
-    use flight::Pilot;
     use defmt_semihosting as _;
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use firmware::boards::mps2::bench::{Lamp, NoBattery, NoMotors};
@@ -20,6 +19,7 @@ mod target {
     use firmware::recorder::ring::Ring;
     use firmware::shared::Shared;
     use firmware::status;
+    use flight::Pilot;
 
     static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();

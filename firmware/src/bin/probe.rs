@@ -7,13 +7,13 @@
 mod target {
     use controller_core::controller::{Command, Controller};
     use controller_core::error::InputError;
-    use estimation::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
-    use flight::Stamped;
-    use estimation::imu::{Conditioned, Conditioner};
     use controller_core::reference::Reference;
     use controller_core::state::State;
     use core::hint::black_box;
     use core::panic::PanicInfo;
+    use estimation::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
+    use estimation::imu::{Conditioned, Conditioner};
+    use flight::Stamped;
     use nalgebra::Vector3;
 
     type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;

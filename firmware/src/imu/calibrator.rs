@@ -20,11 +20,11 @@ use crate::hardware::{Fault, RawImu, Unit};
 use crate::link::acknowledgement::Order;
 use crate::parameters::calibration;
 use crate::shared::{Event, Procedure, Reply, Severity, Shared};
+use core::fmt::Display;
+use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
 use estimation::imu::six_point::{SixPoint, SixPointError};
 use estimation::imu::standstill::{Moved, Rest, Standstill};
-use core::fmt::Display;
-use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::MavResult;
 
 /// How long a sensor may need for a second's samples, us.

@@ -10,8 +10,8 @@
 use crate::hardware::RawImu;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::error::ParameterError;
-use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
 
 /// How long a fault must have been away to be said again, us.
 const QUIET: u64 = 1_000_000;

@@ -1,11 +1,11 @@
 //! From a sensor at rest to what corrects it, for each procedure.
 
 use crate::shared::Procedure;
+use core::fmt::{self, Display};
 use estimation::imu::Calibration;
 use estimation::imu::calibration::NotLevel;
 use estimation::imu::six_point::{SixPoint, SixPointError};
 use estimation::imu::standstill::Rest;
-use core::fmt::{self, Display};
 use nalgebra::Vector3;
 
 /// What a sensor at rest feels, m/s^2.

@@ -25,8 +25,8 @@ use super::telemetry::vehicle;
 use crate::frames;
 use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};
-use flight::{MotorSetting, MotorTest, Request, Setting};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use flight::{MotorSetting, MotorTest, Request, Setting};
 use heapless::Deque;
 use mavlink::dialects::common::{
     ActuatorConfiguration, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult,

@@ -22,11 +22,11 @@ use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
 use super::time_sync::{Offset, TimeSync};
 use crate::frames;
-use estimation::estimator::PoseMeasurement;
-use flight::{Pose, PoseError, Stamped, Velocity};
 use controller_core::math;
 use controller_core::rotation::half_rotation;
 use core::fmt;
+use estimation::estimator::PoseMeasurement;
+use flight::{Pose, PoseError, Stamped, Velocity};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, MavFrame, ODOMETRY_DATA, TIMESYNC_DATA,

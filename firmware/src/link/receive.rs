@@ -16,13 +16,13 @@ use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::radio::SILENCE as RADIO_SILENCE;
 use crate::shared::{Event, Ping, Reply, Severity, Shared, Traffic};
-use flight::{SETPOINT_AGE_MAX, Stamped};
 use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
+use flight::{SETPOINT_AGE_MAX, Stamped};
 use foreign::Foreign;
 use mavlink::MessageData;
 use mavlink::dialects::common::{

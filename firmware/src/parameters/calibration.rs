@@ -6,9 +6,9 @@
 use super::table::{Name, PARAMETERS};
 use super::{NotTaken, Parameters};
 use crate::hardware::Unit;
+use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
 use estimation::imu::standstill::Rest;
-use embassy_sync::blocking_mutex::raw::RawMutex;
 use nalgebra::Vector3;
 
 /// Rows of one sensor: bias, offset and scale on three axes, level on two.

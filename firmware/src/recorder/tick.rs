@@ -4,9 +4,9 @@
 //! NaN.
 
 use crate::hardware::MotorCommand;
-use flight::Mode;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
+use flight::Mode;
 use nalgebra::Vector3;
 
 /// The fields of a record in the order of [`Tick::to_bytes`], in ULog's words. The longest first: ULog knows no gaps.

@@ -5,10 +5,10 @@
 //! other, the force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
 
 use super::{PERIOD_US, RECORD, digest, state};
-use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
-use flight::{Pose, Stamped, Velocity};
-use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use controller_core::state::State;
+use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
+use estimation::imu::{Calibration, Conditioner, ImuParameters};
+use flight::{Pose, Stamped, Velocity};
 use heapless::Deque;
 use nalgebra::{UnitQuaternion, Vector3};
 use sha2::{Digest, Sha256};

@@ -2,9 +2,9 @@
 //! from.
 
 use controller_core::error::InputError;
+use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
 use flight::{Reason, Refusal};
-use core::fmt::{self, Write};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;

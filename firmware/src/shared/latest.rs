@@ -1,9 +1,9 @@
 //! The freshest value of something.
 
-use flight::Stamped;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::Stamped;
 
 /// The freshest value of something, overwritten by each newer one.
 pub struct Latest<M: RawMutex, T: Copy>(Mutex<M, Cell<Option<Stamped<T>>>>);

@@ -2,11 +2,11 @@
 
 use crate::hardware::MotorCommand;
 use crate::recorder::tick::Tick;
-use estimation::estimator::Health;
-use flight::Mode;
-use estimation::imu::ImuFault;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
+use estimation::estimator::Health;
+use estimation::imu::ImuFault;
+use flight::Mode;
 use nalgebra::Vector3;
 
 /// One control tick.

@@ -5,10 +5,10 @@
 //! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
-use flight::Request;
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::Request;
 use heapless::Deque;
 
 /// How many may wait: the five that the radio asks for, landing and disarming by the link, and one of the others.

@@ -1,8 +1,8 @@
 //! The log: a few lines a second and one for each event. On boards only; a desktop has the events themselves.
 
 use crate::shared::{Event, Report, Shared};
-use flight::Stamped;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::Stamped;
 
 /// Logs an event.
 #[cfg(target_os = "none")]

@@ -3,16 +3,16 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
-use estimation::estimator::PoseMeasurement;
-use flight::{Mode, Pose, Request, Stamped, Velocity};
-use estimation::imu::{Calibration, ImuParameters};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use estimation::estimator::PoseMeasurement;
+use estimation::imu::{Calibration, ImuParameters};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::imu::Flow;
 use firmware::parameters::table::Name;
 use firmware::shared::Asked;
+use flight::{Mode, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 
 /// A vehicle at rest: what its accelerometer says at a time, us, what its battery's, and whether its motors' frames go

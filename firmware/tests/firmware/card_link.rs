@@ -6,7 +6,6 @@ use crate::support::card::{Simulation, files, parsed, small};
 use crate::support::line::Outgoing;
 use crate::support::receiver::{Fed, Local, report};
 use crate::support::{Simulated, sent};
-use flight::Mode;
 use core::cell::RefCell;
 use core::ops::Range;
 use core::pin::Pin;
@@ -19,6 +18,7 @@ use firmware::hardware::SECTOR;
 use firmware::link::download::ANSWER_WITHIN;
 use firmware::link::transmit::transmit;
 use firmware::shared::CardState;
+use flight::Mode;
 use mavlink::dialects::common::{
     HEARTBEAT_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA,
     LOG_REQUEST_LIST_DATA, PARAM_REQUEST_LIST_DATA, PARAM_VALUE_DATA, STATUSTEXT_DATA,

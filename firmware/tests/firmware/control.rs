@@ -2,11 +2,11 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::Local;
-use flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
+use flight::PERIOD;
 
 /// Motors before which the processor is busy with something else, for so long, once.
 struct Busy<'a> {

@@ -4,8 +4,8 @@ use crate::support::line::{Delivery, Incoming, Line};
 use crate::support::receiver::{Local, newest};
 use crate::support::simulator::{COMMANDED, Hil, command, commanded, odometry, sensor};
 use crate::support::{Simulated, patched, v2};
-use flight::PERIOD;
 use firmware::hil;
+use flight::PERIOD;
 use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
 use nalgebra::Vector3;
 

@@ -4,7 +4,6 @@ use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::Local;
 use crate::support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
 use crate::support::{Simulated, v2};
-use flight::PERIOD;
 use core::cell::{Cell, RefCell};
 use core::future::pending;
 use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
@@ -12,6 +11,7 @@ use firmware::hardware::{MotorCommand, Motors};
 use firmware::hil::{self, SelectedMotors};
 use firmware::link::frame::Parser;
 use firmware::shared::Flag;
+use flight::PERIOD;
 use mavlink::dialects::common::{HIL_ACTUATOR_CONTROLS_DATA, MavModeFlag};
 
 /// Every command in what was written.

@@ -4,12 +4,12 @@ use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
 use crate::support::simulator::{Hil, command, sensor};
 use crate::support::{Simulated, v2};
-use estimation::estimator::Increment;
-use flight::{ImuSample, PERIOD, Stamped};
-use estimation::imu::ImuParameters;
 use core::cell::Cell;
+use estimation::estimator::Increment;
+use estimation::imu::ImuParameters;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::{frames, hil, imu};
+use flight::{ImuSample, PERIOD, Stamped};
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 

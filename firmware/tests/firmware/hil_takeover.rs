@@ -4,7 +4,6 @@ use crate::support::receiver::{Fed, Local, newest, ordered, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
 use estimation::estimator::{Clipped, Increment};
-use flight::{ImuSample, MotorTest, Request};
 use estimation::imu::ImuParameters;
 use firmware::boot;
 use firmware::control::Control;
@@ -13,6 +12,7 @@ use firmware::hil::SelectedMotors;
 use firmware::imu;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::shared::{Asked, Flag, Reply};
+use flight::{ImuSample, MotorTest, Request};
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
 

@@ -2,8 +2,8 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
-use estimation::imu::ImuParameters;
 use core::future::pending;
+use estimation::imu::ImuParameters;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::imu::{PATIENCE, run};
 use nalgebra::Vector3;

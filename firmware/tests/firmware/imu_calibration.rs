@@ -3,7 +3,6 @@
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, ordered, report, texts};
-use flight::Mode;
 use firmware::hardware::Unit;
 use firmware::imu;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
@@ -12,6 +11,7 @@ use firmware::parameters::storage::Storage;
 use firmware::parameters::table::Name;
 use firmware::redundant::Redundant;
 use firmware::shared::{Procedure, Reply};
+use flight::Mode;
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
 

@@ -6,11 +6,11 @@ use crate::support::receiver::{Local, texts};
 use crate::support::simulator::{Hil, command, sensor};
 use crate::support::{Simulated, v2};
 use estimation::estimator::Increment;
-use flight::PERIOD;
 use firmware::hardware::Imu;
 use firmware::redundant::Redundant;
 use firmware::shared::INCREMENTS;
 use firmware::{hil, imu};
+use flight::PERIOD;
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 

@@ -2,9 +2,9 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
-use flight::Mode;
 use firmware::last_words::{AGAIN, LastWords, SIZE, Teller};
 use firmware::shared::CardState;
+use flight::Mode;
 
 const FAULT: &str = "fault at 0x08012344 from 0x08012001, CFSR 0x00008200, HFSR 0x40000000, BFAR 0x00000004";
 

@@ -3,9 +3,9 @@
 use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, answer, command, disarm, ordered, replies, report, texts};
 use crate::support::{patched, v1, v2, v2_of_payload};
-use flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use firmware::parameters::table::Name;
 use firmware::shared::{Asked, Reply};
+use flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavResult, MavType};
 

@@ -4,13 +4,13 @@ use crate::support::desk::Desk;
 use crate::support::line::{Live, Outgoing};
 use crate::support::receiver::{Fed, Local, command, disarm, ordered, replies, texts};
 use crate::support::{Simulated, from, sent, v2};
-use flight::{Mode, Refusal, Request};
 use core::cell::RefCell;
 use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
 use firmware::shared::{Asked, REQUESTS, Reply};
+use flight::{Mode, Refusal, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavResult, MavType, PositionTargetTypemask,

@@ -2,9 +2,9 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, newest, replies, texts};
 use crate::support::{extended, v2};
-use flight::{Mode, Request};
 use core::f32::consts::FRAC_PI_2;
 use firmware::shared::{MissionList, Reply};
+use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, MANUAL_CONTROL_DATA, MISSION_ITEM_DATA,

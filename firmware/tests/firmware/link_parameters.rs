@@ -1,9 +1,9 @@
 //! Parameters read and set over a link: what is taken, and what is answered.
 
 use crate::support::receiver::{Fed, Local, disarm, replies, report, texts};
-use flight::Mode;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::Reply;
+use flight::Mode;
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };

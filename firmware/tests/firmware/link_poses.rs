@@ -2,10 +2,10 @@
 
 use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::{extended, patched, v1, v2};
-use estimation::estimator::PoseMeasurement;
-use flight::Stamped;
 use core::f32::consts::FRAC_1_SQRT_2;
+use estimation::estimator::PoseMeasurement;
 use firmware::link::pose::SOURCE_SILENCE;
+use flight::Stamped;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
 use nalgebra::{Quaternion, Vector3};
 

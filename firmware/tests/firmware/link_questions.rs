@@ -2,12 +2,12 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, ordered, replies, texts};
 use crate::support::{extended, v2_of_payload};
-use flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::telemetry::kind::Kind;
 use firmware::shared::{MissionList, Ping, REPLIES, Reply};
+use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA,

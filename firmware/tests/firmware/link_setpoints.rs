@@ -2,11 +2,11 @@
 
 use crate::support::receiver::{Fed, Local, texts};
 use crate::support::{patched, v1};
-use flight::Mode;
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use firmware::shared::Report;
+use flight::Mode;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::{UnitQuaternion, Vector3};
 

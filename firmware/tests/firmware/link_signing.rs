@@ -13,7 +13,6 @@ use crate::support::chip::{Chip, Words};
 use crate::support::line::Outgoing;
 use crate::support::receiver::{Fed, Local, command, disarm, replies, report, texts};
 use crate::support::{Simulated, v1, v2};
-use flight::Mode;
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
@@ -22,6 +21,7 @@ use firmware::link::transmit::transmit;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::Name;
 use firmware::shared::{Event, Reply, Severity};
+use flight::Mode;
 use mavlink::dialects::common::{
     HEARTBEAT_DATA, MavCmd, MavModeFlag, MavSeverity, MavState, MavType, RADIO_STATUS_DATA, SETUP_SIGNING_DATA,
     STATUSTEXT_DATA,

@@ -3,7 +3,6 @@
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::{Local, ordered, report};
 use crate::support::{Simulated, sent, v2};
-use flight::{Mode, Refusal, Request};
 use controller_core::state::State;
 use core::cell::RefCell;
 use embassy_futures::join::join;
@@ -16,6 +15,7 @@ use firmware::link::telemetry::kind::Kind;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Asked, Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
+use flight::{Mode, Refusal, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA,

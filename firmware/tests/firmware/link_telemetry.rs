@@ -1,14 +1,14 @@
 //! Telemetry out: what each message says of a vehicle whose state is known.
 
-use estimation::estimator::{Estimator, EstimatorParameters, Health, Settings};
-use flight::Mode;
 use controller_core::heading::Heading;
-use estimation::imu::ImuFault;
 use controller_core::reference::Reference;
 use controller_core::state::State;
+use estimation::estimator::{Estimator, EstimatorParameters, Health, Settings};
+use estimation::imu::ImuFault;
 use firmware::link::origin::Origin;
 use firmware::link::telemetry::{motion, vehicle};
 use firmware::shared::{Report, Traffic};
+use flight::Mode;
 use mavlink::dialects::common::{
     EstimatorStatusFlags, MavLandedState, MavSysStatusSensor as Sensor, PositionTargetTypemask as Mask,
 };

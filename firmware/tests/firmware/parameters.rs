@@ -3,11 +3,11 @@
 use crate::support::Simulated;
 use crate::support::chip::{Chip, RECORDS, Words};
 use crate::support::receiver::{Local, report, texts};
-use flight::Mode;
 use firmware::hardware::{Fault, Flash, Record};
 use firmware::outputs::wiring;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
+use flight::Mode;
 use std::cell::{Cell, RefCell};
 
 /// What a boot finds.

@@ -3,13 +3,13 @@
 use crate::support::line::{Live, Outgoing};
 use crate::support::receiver::{Local, report, texts};
 use crate::support::{Simulated, sent, v2};
-use flight::Mode;
 use core::cell::{Cell, RefCell};
 use embassy_futures::select::select;
 use firmware::hardware::Port;
 use firmware::link::port::{LOOK, Line, watch};
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
+use flight::Mode;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavType, SETUP_SIGNING_DATA};
 
 /// A second, us.

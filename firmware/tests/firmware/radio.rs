@@ -4,12 +4,12 @@ use crate::support::Simulated;
 use crate::support::desk::Desk;
 use crate::support::line::{Delivery, Incoming, Line};
 use crate::support::receiver::{Fed, Local, command, texts};
-use flight::{Mode, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use firmware::radio::{Radio, SILENCE, receive};
 use firmware::shared::Report;
+use flight::{Mode, Request};
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, MavCmd, MavFrame, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };

@@ -2,11 +2,11 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Fed, Local, command, ordered, replies, report, texts};
-use flight::Mode;
 use firmware::hardware::Restart;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::restart::{self, GRACE};
 use firmware::shared::Reply;
+use flight::Mode;
 use mavlink::dialects::common::{MavCmd, MavResult};
 use std::cell::Cell;
 

@@ -3,12 +3,12 @@
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
 use controller_core::error::InputError;
-use flight::{Mode, Reason, Refusal};
 use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;
 use firmware::shared::{Event, Flag, Severity, TEXT_MAX, Text};
 use firmware::status::{STEP, is_lit, run};
+use flight::{Mode, Reason, Refusal};
 use std::cell::RefCell;
 
 struct Lamp<'a>(&'a RefCell<Vec<bool>>);

@@ -5,7 +5,6 @@ use crate::parameters::chip_with;
 use crate::support::Simulated;
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, replies, report, texts};
-use flight::{Grounded, Mode, Request};
 use controller_core::tuning::judged::JudgedLoops;
 use firmware::control::Control;
 use firmware::parameters::storage::Storage;
@@ -13,6 +12,7 @@ use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::parameters::tuned::Built;
 use firmware::shared::{Asked, Flag, Reply};
 use firmware::{boot, configuration};
+use flight::{Grounded, Mode, Request};
 use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
 use std::cell::RefCell;
 

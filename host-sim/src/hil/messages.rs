@@ -1,12 +1,12 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
 use super::answer::{Answer, ToldPose};
-use flight::{ImuSample, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
 use firmware::link::signing::Signing;
 use firmware::link::time_sync;
+use flight::{ImuSample, Stamped};
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
 };

@@ -2,13 +2,13 @@
 
 use crate::count::Cost;
 use crate::counter::Counter;
+use controller_core::math;
+use core::hint::black_box;
 use estimation::estimator::{
     EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
 };
-use flight::{Pose, Stamped, Velocity};
 use estimation::imu::{Calibration, Conditioned, Conditioner, ImuParameters};
-use controller_core::math;
-use core::hint::black_box;
+use flight::{Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 use static_cell::StaticCell;
 

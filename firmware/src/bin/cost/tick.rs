@@ -7,10 +7,6 @@ use crate::body;
 use crate::count::Cost;
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
-use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
-use flight::{
-    FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity,
-};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::math;
 use controller_core::reference::Trajectory;
@@ -18,10 +14,12 @@ use controller_core::state::{State, Wrench};
 use controller_core::vehicle::Vehicle;
 use core::hint::black_box;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use firmware::control::Control;
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
 use firmware::shared::{Asked, Shared};
+use flight::{FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
 

@@ -28,10 +28,10 @@ use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{Event, Severity};
 use crate::{boot, card, imu, link, radio, status};
-use flight::Pilot;
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use flight::Pilot;
 use static_cell::StaticCell;
 
 type Shared = crate::shared::Shared<CriticalSectionRawMutex>;

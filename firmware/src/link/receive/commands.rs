@@ -9,8 +9,8 @@ use crate::link::origin::Origin;
 use crate::link::set_mode::SetMode;
 use crate::link::telemetry::vehicle;
 use crate::shared::{Asked, Calibration, Event, Reply, Severity};
-use flight::Request;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::Request;
 use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
 use nalgebra::Vector3;
 

@@ -5,8 +5,8 @@
 use super::Receiver;
 use crate::link::frame::Frame;
 use crate::shared::{Event, MissionList, Reply, Severity};
-use flight::{SETPOINT_AGE_MAX, Stamped};
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::{SETPOINT_AGE_MAX, Stamped};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     MANUAL_CONTROL_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavMissionResult, RC_CHANNELS_OVERRIDE_DATA,

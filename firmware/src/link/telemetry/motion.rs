@@ -4,10 +4,10 @@ use crate::frames;
 use crate::link::origin::Origin;
 use crate::shared::Report;
 use crate::status::euler;
+use controller_core::math;
 use estimation::estimator::health::NIS_MEAN_MAX;
 use estimation::estimator::{COASTING_AFTER, Fault, Health};
 use flight::Mode;
-use controller_core::math;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, GLOBAL_POSITION_INT_DATA,
     GPS_GLOBAL_ORIGIN_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MavFrame, ODOMETRY_DATA,

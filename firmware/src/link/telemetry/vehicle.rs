@@ -3,8 +3,8 @@
 use crate::parameters::table::{Name, PARAMETERS};
 use crate::shared::{Event, Report, Severity, Text, Traffic};
 use estimation::estimator::{COASTING_AFTER, Fault, Health};
-use flight::{Mode, PERIOD};
 use estimation::imu::ImuFault;
+use flight::{Mode, PERIOD};
 use mavlink::dialects::common::{
     AVAILABLE_MODES_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA,
     MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag, MavModeProperty, MavParamType,

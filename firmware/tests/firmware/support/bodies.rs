@@ -1,8 +1,8 @@
 //! Inertial sensors that feel what the test says, each in its own wrong way.
 
 use super::Simulated;
-use estimation::imu::ImuParameters;
 use core::cell::Cell;
+use estimation::imu::ImuParameters;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use nalgebra::Vector3;
 

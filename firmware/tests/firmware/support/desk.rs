@@ -1,12 +1,12 @@
 //! A vehicle on a desk: it never moves, whatever its motors are told, and its sensors and poses say so.
 
 use super::receiver::Local;
-use estimation::estimator::{Clipped, Increment, PoseMeasurement};
-use flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use estimation::estimator::{Clipped, Increment, PoseMeasurement};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::MotorCommand;
+use flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 
 /// Control with everything that it needs to arm but a ground station.

@@ -1,13 +1,13 @@
 //! A receiver fed with frames, and everything it may change.
 
 use super::{GROUND, v2};
-use estimation::estimator::PoseMeasurement;
-use flight::{Mode, Stamped};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use estimation::estimator::PoseMeasurement;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::frame::Parser;
 use firmware::link::receive::Receiver;
 use firmware::shared::{Reply, Report, Shared, Text};
+use flight::{Mode, Stamped};
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 

@@ -1,7 +1,7 @@
 //! What happens in one mission, and when.
 
-use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use controller_core::governor::{Motion, Setpoint, Turn};
+use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 
