@@ -179,7 +179,8 @@ def tuning(client):
         client.texts = []
         client.line.mav.param_set_send(1, 1, name.encode(), value, m.MAV_PARAM_TYPE_REAL32)
         kept = client.reply("PARAM_VALUE", patience=20.0, param_id=name).param_value
-        client.rest(0.5)
+        # The same words go out once a second at most.
+        client.rest(1.1)
         # An emulated board's sensors come by a line that nobody reads while it certifies.
         return kept, [text for text in client.texts if not text.startswith("Estimator: ")]
 
