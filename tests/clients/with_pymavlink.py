@@ -190,7 +190,7 @@ def tuning(client):
     assert kept > 3.5 and texts[0] == "ROT_THR_MAX: refused, cannot be flown", (kept, texts)
     assert "A1 thrust against force across: needs " in texts[1], texts
     kept, texts = asked("GAIN_ATT_D", 95.0)
-    assert kept == 100.0 and texts == ["GAIN_ATT_D: allowed are 70.00 to 130.00 % by 10"], (kept, texts)
+    assert kept == 100.0 and texts == ["GAIN_ATT_D: allowed are 70 to 130 % by 10"], (kept, texts)
     assert asked("GAIN_ATT_P", 100.0)[0] == 100.0
     assert client.command(m.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 3) == UNSUPPORTED
     if EMULATED:
