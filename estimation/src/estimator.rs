@@ -206,7 +206,7 @@ impl Estimator {
     }
 
     /// The vertical speed, m/s: at once that of the accelerometer, with its bias as it was on the ground, and after
-    /// [`CLIMB_TIME`] that of the poses.
+    /// 8 s that of the poses.
     #[must_use]
     pub fn climb(&self) -> f32 {
         self.climb

@@ -30,9 +30,9 @@ seed = 1
 # Between two commands, s.
 TICK = 0.01
 
-# The hardest touchdown that any way down may end with, m/s; and how hard it may touch the ground again.
+# The hardest touchdown that any way down may end with, m/s; and how hard it may touch the ground again: from 0.02 mm.
 TOUCHDOWN_MAX = 1.2
-GRAZE_MAX = 0.01
+GRAZE_MAX = 0.02
 
 # The longest that motors may turn on the ground after it, s: half a second until the reference is 0.25 m below it, a second for
 # which it must look like the ground, and the contact's last quivering.
