@@ -6,9 +6,9 @@ use crate::support::adversary_search::search::{Objective, worst};
 use crate::support::extended::vehicle;
 use crate::support::random;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::form::Form;
 use controller_core::certificate::paper::PaperCertificate;
+use controller_core::configuration::Configuration;
 
 /// Everything the adversary attacks.
 const OBJECTIVES: [Objective; 8] = [

@@ -28,7 +28,7 @@ fn tests_of(path: &str) -> BTreeSet<String> {
 fn path_of(file: &str) -> String {
     match file.split('/').next() {
         Some("core") => format!("controller-{file}"),
-        Some("tests" | "host-sim" | "scenario" | "firmware") => file.to_owned(),
+        Some("tests" | "estimation" | "flight" | "host-sim" | "scenario" | "firmware") => file.to_owned(),
         _ => format!("controller-core/src/{file}"),
     }
 }

@@ -13,8 +13,8 @@ use crate::support::extended::{bounds, law, paper_vehicle, random_configuration,
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::allocation::{MinimumNorm, Mixer};
 use controller_core::certificate::certified::Certified;
-use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::extended::ExtendedBounds;
+use controller_core::configuration::Configuration;
 use controller_core::extended::controller::Controller;
 use controller_core::extended::parameters::Extended;
 use controller_core::reference::Reference;

@@ -22,7 +22,7 @@ use crate::support::extended::{around_the_formulas, law, random_configuration};
 use crate::support::oracle::lifting;
 use crate::support::oracle::rounding::{ROUNDINGS, vector4};
 use crate::support::random::{self, ChaCha8Rng};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::extended::memory::Memory;
 use controller_core::extended::position::Filters;
 use controller_core::heading::Heading;

@@ -20,7 +20,7 @@ mod run;
 mod watch;
 
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use failure::Failure;
 use flight::rules::{Condition, Row, TABLE};

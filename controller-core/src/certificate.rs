@@ -9,8 +9,8 @@
 //!
 //! They bound everything reachable after a reset (filters at zero, path lifted anew), and nothing else.
 
+pub mod airframe;
 pub mod certified;
-pub mod configuration;
 pub mod extended;
 pub mod form;
 pub mod inequality;
@@ -20,8 +20,8 @@ pub mod reachable;
 pub mod rotors;
 pub mod sharp;
 
+use crate::configuration::{Configuration, LawParameters};
 use crate::error::ParameterError;
-use configuration::{Configuration, LawParameters};
 use extended::ExtendedCertificate;
 use form::Interval;
 use inequality::Inequality;

@@ -40,9 +40,7 @@
 
 use crate::attitude::{AttitudeLaw, TorqueCommand};
 use crate::attitude_reference::DesiredAttitude;
-use crate::certificate::certified::Certified;
-use crate::certificate::configuration::PaperLaw;
-use crate::error::{InputError, ParameterError, Reason};
+use crate::error::{InputError, ParameterError};
 use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
 use crate::position::{CommandRates, FilterState, FilterTransition, PositionLaw};
@@ -130,23 +128,11 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s,
-    /// in (0, 0.1].
-    ///
-    /// # Errors
-    /// Names `control.period` if it is outside, `control.law` if the configuration's is another.
-    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
-        let configuration = certified.configuration();
-        let other = ParameterError { field: "control.law", reason: Reason::OtherLaw };
-        let PaperLaw { gains, thrust_floor } = *configuration.paper().ok_or(other)?;
-        Self::build(*configuration.vehicle(), gains, thrust_floor, period)
-    }
-
     /// A controller for gains that nothing is proven about: for simulation, never for flight. `thrust_floor` in N turns
     /// the [projection](crate::projection) on.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Names `control.period` if it is outside (0, 0.1] s.
     #[cfg(any(test, feature = "uncertified"))]
     pub fn uncertified(
         vehicle: Vehicle,

@@ -1,7 +1,6 @@
 //! The law that flies: the paper's or the extended one, as the configuration says.
 
-use crate::certificate::certified::Certified;
-use crate::certificate::configuration::{Configuration, LawParameters};
+use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Command, Diagnostics};
 use crate::error::{InputError, ParameterError};
 use crate::extended;
@@ -20,14 +19,6 @@ pub enum Law {
 }
 
 impl Law {
-    /// The law of a certified configuration; `period` is the time between steps, s, in (0, 0.1].
-    ///
-    /// # Errors
-    /// The law's own: [`controller::Controller::new`], [`extended::controller::Controller::new`].
-    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
-        Self::build(certified.configuration(), period)
-    }
-
     /// The law of a configuration that nothing is proven about: for simulation, never for flight.
     ///
     /// # Errors
@@ -37,14 +28,15 @@ impl Law {
         Self::build(configuration, period)
     }
 
-    fn build(configuration: &Configuration, period: f32) -> Result<Self, ParameterError> {
+    pub(crate) fn build(configuration: &Configuration, period: f32) -> Result<Self, ParameterError> {
         let vehicle = configuration.vehicle();
         Ok(match configuration.law() {
             LawParameters::Paper(law) => {
                 Self::Paper(controller::Controller::build(*vehicle, law.gains, law.thrust_floor, period)?)
             }
             LawParameters::Extended(law) => {
-                Self::Extended(extended::controller::Controller::of(configuration, law, period)?)
+                let (limits, rotors) = (configuration.limits(), configuration.rotors());
+                Self::Extended(extended::controller::Controller::build(vehicle, limits, law, rotors, period)?)
             }
         })
     }

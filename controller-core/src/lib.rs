@@ -1,54 +1,61 @@
-//! Robust global position and heading tracking on SE(3) by saturated hybrid feedback.
+//! Position and heading control of a quadrotor whose thrust and torque stay inside limits proven before take-off, down
+//! to each rotor, from every initial attitude, upside down included.
 //!
-//! Every decision a quadrotor makes in flight, and no input or output at all: the control law of the paper *Robust
-//! Global Position and Heading Tracking on SE(3) via Saturated Hybrid Feedback* (Martins, Cardeira, Oliveira; below:
-//! the paper), the references it tracks, the certificate that proves its thrust and torque limits before take-off, and
-//! the allocation to rotors. `no_std`, no allocation, no panics; the law runs in single precision.
+//! Two laws. The paper's: *Robust Global Position and Heading Tracking on SE(3) via Saturated Hybrid Feedback*
+//! (Martins, Cardeira, Oliveira). And one that extends it by estimates of disturbances and by budgets for each rotor.
+//! `no_std`, no allocation, no panics; single precision; the same bits on every machine.
 //!
-//! # The way of the data
+//! ```
+//! use controller_core::prelude::*;
 //!
-//! Once per control tick, from left to right:
+//! let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3); // kg m^2
+//! let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 })?;
+//! let rotors = Rotors::quad_x(QuadX {
+//!     arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0,
+//! })?;
+//! let actuators = ActuatorParameters { lag: 0.005, delay: 0.0 }; // s
+//! let airframe = Airframe {
+//!     vehicle: &vehicle, limits: &rotors.limits(&vehicle)?, rotors: Some(&rotors), actuators, period: 0.01, drag: 0.0,
+//! };
+//! let certified = Certified::new(Configuration::of_airframe(&airframe)?).expect("its limits hold");
+//! let (mut law, mixer) = (Law::new(&certified, 0.01)?, Mixer::new(&rotors));
+//! let hover = Hover::new(Vector3::new(0.0, 0.0, 2.0), Heading::FORWARD)?;
 //!
-//! ```text
-//! IMU ─> imu ─┐
-//! poses ──────┴─> estimator ─────── State ─┐
-//! setpoints ─> governor ─┐                 ├─> position ─> attitude_reference ─> path_lifting ─> attitude ─> Wrench
-//! hover, harmonic, … ────┴─> Reference ────┘                                                                   │
-//!                                                                  rotor commands <─ allocation <──────────────┘
+//! let (position, velocity, angular_velocity) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
+//! let upside_down = State { position, velocity, attitude: Quaternion::new(0.0, 1.0, 0.0, 0.0), angular_velocity };
+//! let wrench = law.command(&upside_down, &hover.at(0)).expect("finite numbers").wrench;
+//! let thrusts = mixer.allocate(&wrench).expect("finite numbers"); // N, each rotor's
+//! assert!(thrusts.is_exact());
+//! # Ok::<(), controller_core::error::ParameterError>(())
 //! ```
 //!
-//! and once, before flight:
+//! The constants follow from the vehicle's numbers. [`Certified`](certificate::certified::Certified) proves the limits,
+//! or names the inequality that fails. A [`Law`](law::Law) for flight is made of nothing else.
 //!
-//! ```text
-//! Vehicle, Limits, Gains, ReferenceBounds (, Rotors, thrust floor) ─> Configuration ─> Certificate ─> Certified ─> Controller
-//! ```
-//!
-//! [`flight`] decides which of this reaches the motors: [`flight::Pilot`] takes measurements and requests, and gives
-//! thrusts or a stop, by a table of [rules](flight::rules). [`controller`] composes the four steps of the law, with an
-//! example. A [`Controller`](controller::Controller) for flight is made from a
-//! [`Certified`](certificate::certified::Certified) configuration and from nothing else.
+//! - Law: [`law`]; the paper's in [`controller`], step by step in [`position`], [`attitude_reference`],
+//!   [`path_lifting`], [`attitude`]; the other in [`extended`]. Each module opens with its equations and their numbers.
+//! - Proof: [`certificate`] of a [`configuration`]. Rotors: [`allocation`].
+//! - References: [`mod@reference`] with their own bounds; [`governor`] makes them of any stream of setpoints.
+//! - Parameters on board: [`tuning`].
 //!
 //! # Conventions
 //!
 //! - World frame: z up, gravity is -g e3. Body frame: x forward, y left, z up, thrust along +z.
 //! - Rotations and quaternions are body to world; quaternions are Hamilton's, unit, scalar first (nalgebra stores the
 //!   scalar last, its constructor takes it first). A quaternion's sign carries no meaning, going in.
-//! - SI units; angles in radians. A heading is a point on the circle with two derivatives ([`heading::Heading`]).
-//! - Time is integer microseconds where it grows without limit, seconds as `f32` where it is a period.
+//! - SI units; angles in radians. Time is integer microseconds where it grows, seconds where it is a period.
 //! - Gains keep the paper's symbols. A trailing `~` in comments is the paper's tilde, `'` a derivative in time, e3 =
 //!   (0, 0, 1).
-//! - Configuration is checked once, in constructors whose errors name the field ([`error::ParameterError`]). A tick
-//!   fails only on an input it cannot use ([`error::InputError`]) and leaves the controller's memory as it was.
-//! - Elementary functions come from [`math`] alone and nothing is fused: the same bits on every machine.
+//! - Constructors check configuration once; their errors name the field. A tick fails only on an input it cannot use
+//!   ([`error::InputError`]) and then leaves the law's memory as it was.
+//! - Elementary functions come from [`math`] alone and nothing is fused.
 //!
 //! # Features
 //!
-//! - `defmt`: errors can be written to defmt logs. Such a build checks on a desktop but links only for targets with a
-//!   defmt logger.
-//! - `uncertified`: [`controller::Controller`] can also be made from gains that nothing proves, and started from any
-//!   memory. For simulations; no flight build turns it on.
-//!
-#![doc = include_str!("../../docs/map.md")]
+//! - `defmt`: errors can be written to defmt logs. Such a build links only for targets with a defmt logger.
+//! - `uncertified`: laws can also be made from gains that nothing proves, and started from any memory. For simulations;
+//!   no flight build turns it on.
+
 #![no_std]
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -69,6 +76,7 @@ pub mod allocation;
 pub mod attitude;
 pub mod attitude_reference;
 pub mod certificate;
+pub mod configuration;
 pub mod controller;
 pub mod error;
 pub mod extended;
@@ -89,11 +97,14 @@ pub mod vehicle;
 
 /// What most users need in scope.
 pub mod prelude {
+    pub use crate::allocation::{Mixer, QuadX, Rotors};
     pub use crate::certificate::Certificate;
     pub use crate::certificate::certified::{Certified, Refused};
-    pub use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
+    pub use crate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
     pub use crate::controller::{Controller, Diagnostics, Memory};
     pub use crate::error::{InputError, ParameterError};
+    pub use crate::extended::actuators::ActuatorParameters;
+    pub use crate::extended::defaults::Airframe;
     pub use crate::gains::{GainParameters, Gains};
     pub use crate::heading::Heading;
     pub use crate::law::Law;

@@ -97,6 +97,20 @@ impl ReferenceBounds {
         heading_second_derivative: 0.0,
     };
 
+    /// The greater of each bound.
+    #[must_use]
+    pub fn covering(&self, other: &Self) -> Self {
+        Self {
+            horizontal_speed: self.horizontal_speed.max(other.horizontal_speed),
+            horizontal_acceleration: self.horizontal_acceleration.max(other.horizontal_acceleration),
+            vertical_acceleration: self.vertical_acceleration.max(other.vertical_acceleration),
+            jerk: self.jerk.max(other.jerk),
+            snap: self.snap.max(other.snap),
+            heading_rate: self.heading_rate.max(other.heading_rate),
+            heading_second_derivative: self.heading_second_derivative.max(other.heading_second_derivative),
+        }
+    }
+
     /// Each bound with its name.
     pub(crate) fn named(&self) -> [(f32, &'static str); 7] {
         [

@@ -12,7 +12,7 @@
 pub mod judged;
 
 use crate::allocation::{Rotor, Rotors, collected};
-use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
+use crate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use crate::error::{ParameterError, Reason, require};
 use crate::extended::parameters::{Extended, ExtendedParameters};
 use crate::gains::{GainParameters, Gains};

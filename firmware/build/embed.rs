@@ -7,7 +7,7 @@
 //! carried over: the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
-use controller_core::certificate::configuration::{ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};
 use nalgebra::Vector3;
 use scenario::{Scenario, board};
 
@@ -86,7 +86,7 @@ fn law_source(law: &LawParameters) -> String {
             )
         }
         LawParameters::Extended(ExtendedLaw { parameters, actuators }) => format!(
-            "    use controller_core::certificate::configuration::ExtendedLaw;
+            "    use controller_core::configuration::ExtendedLaw;
     use controller_core::extended::actuators::ActuatorParameters;
     use controller_core::extended::parameters::{{Extended, ExtendedParameters}};
     let parameters = Extended::new({:?}, &vehicle)?;

@@ -13,7 +13,7 @@ use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
 use crate::shared::{Event, Severity, Shared};
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;

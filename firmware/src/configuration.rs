@@ -2,7 +2,7 @@
 
 use crate::hardware::MOTORS;
 use controller_core::allocation::{Rotor, Rotors, Spin};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::reference::ReferenceBounds;
 use controller_core::tuning::judged::JudgedLoops;

@@ -15,7 +15,7 @@ pub mod estimate;
 pub mod recovery;
 
 use controller_core::certificate::certified::Certified;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::controller::Controller;
 use controller_core::error::{InputError, ParameterError};
 use controller_core::gains::{GainParameters, Gains};

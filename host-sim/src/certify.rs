@@ -10,11 +10,11 @@ pub mod shown;
 
 use crate::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::LawParameters;
 use controller_core::certificate::extended::{ExtendedBounds, ExtendedCertificate};
 use controller_core::certificate::form::Form;
 use controller_core::certificate::inequality::Inequality;
 use controller_core::certificate::paper::PaperCertificate;
+use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 use scenario::stability::{LoopMargin, Shortfall};

@@ -15,7 +15,7 @@ use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
 use controller_core::allocation::Thrusts;
 use controller_core::certificate::certified::Certified;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
 use controller_core::error::{InputError, ParameterError};
 use controller_core::extended::memory::Estimates;

@@ -1,6 +1,8 @@
 //! The desktop side: a vehicle to fly, and reports of its flights. Scenario files and the verdict on them are a
 //! crate of their own, [`scenario`], which the firmware's build uses too.
 //!
+//! [`map`] says which equation of the paper is where in all crates, and which test checks it.
+//!
 //! | module | what it holds |
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
@@ -20,6 +22,15 @@
 //! | [`identify`] | a vehicle's numbers from the log of a flight and from a bench |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`compare`], [`hil`], [`sitl`] | the commands |
+
+#[cfg(doc)]
+#[allow(unused_imports)] // what the page's links name
+pub mod map {
+    #![doc = include_str!("../../docs/map.md")]
+    use controller_core::*;
+    use estimation::{estimator, imu, measurement};
+    use flight;
+}
 
 pub mod actuators;
 pub mod batch;

@@ -15,7 +15,7 @@ use crate::instruments::{Felt, Instruments, SAMPLE};
 use crate::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::governor::GovernorLimits;
 use estimation::estimator::{Estimator, Increment, PoseMeasurement, Settings};

@@ -36,7 +36,7 @@ use crate::plant::Diverged;
 use air::{Air, Flow};
 use body::{RigidBody, STAGE_TIMES};
 use controller_core::allocation::{Mixer, Thrusts};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
 use nalgebra::{UnitQuaternion, Vector3};
 use propulsion::Propulsion;

@@ -34,7 +34,7 @@ pub mod world;
 use crate::interrupt::Interrupt;
 use crate::recording::session::Moment;
 use clock::SimClock;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;

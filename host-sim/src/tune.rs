@@ -26,7 +26,7 @@ use crate::progress::Progress;
 use crate::table::{aligned, short};
 use candidate::{Judge, Verdict};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use effort::Effort;

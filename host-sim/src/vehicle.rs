@@ -7,7 +7,7 @@ use crate::actuators::{ActuationError, Actuators};
 use crate::plant::Plant;
 use crate::reality::{RealVehicle, Surroundings};
 use controller_core::allocation::{Mixer, Thrusts};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
 use scenario::Scenario;
 use scenario::body::BodyState;

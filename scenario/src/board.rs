@@ -14,7 +14,7 @@ use crate::reality::estimator::rates_delay;
 use crate::sampled_loop::{Axis, LoopModel, Timing};
 use crate::stability::LoopMargin;
 use crate::verdict::Verdict;
-use controller_core::certificate::configuration::LawParameters;
+use controller_core::configuration::LawParameters;
 use controller_core::tuning::Factors;
 use controller_core::tuning::judged::JudgedLoops;
 

@@ -19,7 +19,7 @@ use crate::section::{FieldError, Section};
 use controller_core::reference::ReferenceBounds;
 
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
-const DEFAULT_SPEED: f32 = 5.0;
+pub const DEFAULT_SPEED: f32 = 5.0;
 
 /// Reads `[reference_bounds]`; `own` are the bounds of the scenario's reference, `default` gives the bounds if the
 /// section is left out.
@@ -74,20 +74,6 @@ pub fn read_bounds(
         heading_second_derivative,
     };
     bounds.validated().map_err(|error| root.refused(&error))
-}
-
-/// The greater of each bound; the speed at least what the governor allows.
-#[must_use]
-pub fn covering(own: &ReferenceBounds, other: &ReferenceBounds) -> ReferenceBounds {
-    ReferenceBounds {
-        horizontal_speed: own.horizontal_speed.max(DEFAULT_SPEED),
-        horizontal_acceleration: own.horizontal_acceleration.max(other.horizontal_acceleration),
-        vertical_acceleration: own.vertical_acceleration.max(other.vertical_acceleration),
-        jerk: own.jerk.max(other.jerk),
-        snap: own.snap.max(other.snap),
-        heading_rate: own.heading_rate.max(other.heading_rate),
-        heading_second_derivative: own.heading_second_derivative.max(other.heading_second_derivative),
-    }
 }
 
 /// `bounds` as the section of a scenario file.

@@ -34,7 +34,7 @@ use crate::body::GREATEST_TURN_PER_STEP;
 use crate::reality::numbers::{Allowed, seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use controller_core::certificate::configuration::{Configuration, LawParameters};
+use controller_core::configuration::{Configuration, LawParameters};
 
 /// A campaign as the file describes it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,7 @@
 //! all.
 
 use crate::section::{FieldError, Section};
-use controller_core::certificate::configuration::ExtendedLaw;
+use controller_core::configuration::ExtendedLaw;
 use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};

@@ -10,7 +10,7 @@ use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use crate::{actuation, initial, vehicle};
-use controller_core::certificate::configuration::{Configuration, LawParameters};
+use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;

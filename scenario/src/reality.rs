@@ -29,7 +29,7 @@ pub mod wind;
 use crate::body::BodyState;
 use crate::section::{FieldError, Section};
 use battery::Battery;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use disturbance::Disturbance;
 use drag::Drag;
 use estimator::Estimator;

@@ -30,7 +30,7 @@ mod slopes;
 mod spectral_radius;
 
 use chain::SampledLoop;
-use controller_core::certificate::configuration::LawParameters;
+use controller_core::configuration::LawParameters;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
 use law::{Law, Tracker};

@@ -7,17 +7,16 @@
 //! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]), the paper's where it is left out and there are
 //! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
 
-use crate::bounds::{covering, read_bounds};
+use crate::bounds::{DEFAULT_SPEED, read_bounds};
 use crate::extended::read_extended;
 use crate::inertia;
 use crate::reality::drag::{self, Drag};
 use crate::section::{FieldError, Section};
 use controller_core::allocation::{Rotors, greatest_torques};
-use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::Configuration;
-use controller_core::error::ParameterError;
+use controller_core::certificate::airframe::flyable;
+use controller_core::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
-use controller_core::extended::defaults::{self, Airframe};
+use controller_core::extended::defaults::Airframe;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
@@ -54,13 +53,7 @@ pub fn read_configuration(
             let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
             let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
             let law = read_extended(root, &airframe)?;
-            let bounds = read_bounds(root, own, || {
-                let most = defaults::reference_bounds(&airframe, &law.parameters);
-                flyable(own, most, |bounds| {
-                    let configuration = Configuration::extended(*vehicle, *limits, law, bounds)?;
-                    rotors.map_or(Ok(configuration.clone()), |rotors| configuration.with_rotors(rotors.clone()))
-                })
-            })?;
+            let bounds = read_bounds(root, own, || flyable(&airframe, law, own))?;
             (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
         }
         LawName::Paper if root.has("estimates") => {
@@ -69,7 +62,9 @@ pub fn read_configuration(
         }
         LawName::Paper => {
             let gains = read_gains(root, &vehicle)?;
-            let bounds = read_bounds(root, own, || covering(own, &ReferenceBounds::REST))?;
+            let bounds = read_bounds(root, own, || {
+                own.covering(&ReferenceBounds { horizontal_speed: DEFAULT_SPEED, ..ReferenceBounds::REST })
+            })?;
             (Configuration::new(vehicle, limits, gains, bounds), bounds)
         }
     };
@@ -123,36 +118,6 @@ fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
             Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}")))
         }
     }
-}
-
-/// The reference bounds if the file gives none: the file's own reference, within `own`, and the largest share of `most`
-/// beside it that certifies, in steps of a tenth. If not even a hundredth certifies, all of `most`, so that the
-/// certificate says why.
-fn flyable(
-    own: &ReferenceBounds,
-    most: ReferenceBounds,
-    configuration: impl Fn(ReferenceBounds) -> Result<Configuration, ParameterError>,
-) -> ReferenceBounds {
-    let mut share = 1.0;
-    for _ in 0..44 {
-        let scaled = |bound: f32| share * bound;
-        let some = ReferenceBounds {
-            horizontal_acceleration: scaled(most.horizontal_acceleration),
-            vertical_acceleration: scaled(most.vertical_acceleration),
-            jerk: scaled(most.jerk),
-            snap: scaled(most.snap),
-            heading_rate: scaled(most.heading_rate),
-            heading_second_derivative: scaled(most.heading_second_derivative),
-            ..most
-        };
-        let bounds = covering(own, &some);
-        let certificate = configuration(bounds).and_then(|configuration| Certificate::new(&configuration));
-        if certificate.is_ok_and(|certificate| certificate.holds()) {
-            return bounds;
-        }
-        share *= 0.9;
-    }
-    covering(own, &most)
 }
 
 /// The drag across from the file's `[drag]`, per velocity and mass at hover, 1/s.

@@ -16,7 +16,7 @@ from station import HOLDING
 START = (1.0, 0.0, 0.0)
 HOVER = (1.0, 0.0, 1.5)
 
-# What the flight rules promise, s; controller-core/src/flight/rules.rs, and the parameter GCS_WAIT.
+# What the flight rules promise, s; flight/src/rules.rs, and the parameter GCS_WAIT.
 COASTING_MAX = 1.0
 LEVELLING_MAX = 1.0
 SILENCE_MAX = 2.5

@@ -2,7 +2,7 @@
 
 use super::flight::Flight;
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
 use estimation::estimator::{Estimator, EstimatorParameters, Settings};

@@ -2,7 +2,7 @@
 
 use super::clock::SimClock;
 use controller_core::allocation::Rotors;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::state::State;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};

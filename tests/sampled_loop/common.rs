@@ -1,6 +1,6 @@
 //! Table I, and how to put other numbers in its place.
 
-use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use controller_core::configuration::{LawParameters, PaperLaw};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::vehicle::Vehicle;
 use scenario::Scenario;

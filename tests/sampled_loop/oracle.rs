@@ -4,7 +4,7 @@
 
 use super::common::{IDEAL, body_axis, model, vehicle};
 use crate::support::extended::{law as extended, paper_vehicle, without_estimates};
-use controller_core::certificate::configuration::ExtendedLaw;
+use controller_core::configuration::ExtendedLaw;
 use controller_core::controller::{Controller, Memory};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::heading::Heading;

@@ -1,7 +1,7 @@
 //! What the analysis says about the paper's own gains at 100 Hz.
 
 use super::common::{IDEAL, boundary, model, vehicle};
-use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use controller_core::configuration::{LawParameters, PaperLaw};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::gains::{GainParameters, Gains};
 use scenario::sampled_loop::{Axis, LoopModel, Timing};

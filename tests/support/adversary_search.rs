@@ -11,7 +11,7 @@ pub mod search;
 
 use controller_core::attitude::{self, AttitudeLaw};
 use controller_core::attitude_reference::{AttitudeReference, attitude_reference};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::controller::Memory;
 use controller_core::heading::Heading;
 use controller_core::path_lifting::Lift;

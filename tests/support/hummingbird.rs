@@ -5,7 +5,7 @@
 
 use controller_core::allocation::{QuadX, Rotors};
 use controller_core::certificate::certified::Certified;
-use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
+use controller_core::configuration::{Configuration, ExtendedLaw};
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};

@@ -33,7 +33,9 @@
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotors, normal};
+use crate::error::ParameterError;
 use crate::math;
+use crate::vehicle::{LimitParameters, Limits, Vehicle};
 use core::cell::Cell;
 use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -179,6 +181,19 @@ pub fn greatest_torques(rotors: &Rotors) -> Vector3<f32> {
         greatest.min(-least)
     };
     Vector3::new(about(Vector4::y()), about(Vector4::z()), about(Vector4::w()))
+}
+
+impl Rotors {
+    /// The limits that the rotors themselves are: all their greatest thrusts together, and [`greatest_torques`].
+    ///
+    /// # Errors
+    /// If `vehicle` cannot hover by that, or the rotors cannot push without turning it.
+    pub fn limits(&self, vehicle: &Vehicle) -> Result<Limits, ParameterError> {
+        Limits::new(
+            LimitParameters { thrust_max: self.thrust_together().1, torque_max: greatest_torques(self) },
+            vehicle,
+        )
+    }
 }
 
 /// An edge of a convex polygon.

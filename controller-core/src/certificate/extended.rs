@@ -15,13 +15,13 @@
 //! Everything else about commands holds by construction ([`crate::extended`]): a tick uses only the available thrust
 //! and torque.
 
-use super::configuration::{Configuration, ExtendedLaw};
 use super::form::{ARITHMETIC_ALLOWANCE, Interval};
 use super::inequality::Inequality;
 use super::reachable::Reachable;
 use super::sharp;
 use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::configuration::{Configuration, ExtendedLaw};
 use crate::error::ParameterError;
 use crate::extended::budget::{RATE_BEYOND, ROWS, THRUST_LEFT, TorqueBudget};
 use crate::extended::parameters::Extended;

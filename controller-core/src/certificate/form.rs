@@ -10,11 +10,11 @@
 //! The proofs are worked out in double precision, once, before flight. The law flies in single precision, so each
 //! bound is raised by [`ARITHMETIC_ALLOWANCE`] before it is compared.
 
-use super::configuration::{Configuration, PaperLaw};
 use super::inequality::{self, Inequality};
 use super::printed;
 use super::reachable::Reachable;
 use super::sharp::{self, DesiredRates};
+use crate::configuration::{Configuration, PaperLaw};
 use crate::gains::Gains;
 use crate::math;
 use nalgebra::Vector3;

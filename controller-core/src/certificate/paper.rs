@@ -1,11 +1,11 @@
 //! The certificate of the paper's law: the wrench in two forms, as printed and sharp, and the rotors under the sharp
 //! one.
 
-use super::configuration::{Configuration, PaperLaw};
 use super::form::{self, Derivation, Form};
 use super::inequality::Inequality;
 use super::rotors::{self, RotorReport};
 use crate::allocation::geometry::ROTORS_MAX;
+use crate::configuration::{Configuration, PaperLaw};
 use crate::error::ParameterError;
 use heapless::Vec;
 

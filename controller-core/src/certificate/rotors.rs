@@ -15,11 +15,11 @@
 //! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may ask for
 //! beyond hovering is required of it.
 
-use super::configuration::Configuration;
 use super::form::{ARITHMETIC_ALLOWANCE, Form};
 use super::inequality::Inequality;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
+use crate::configuration::Configuration;
 use crate::error::ParameterError;
 use heapless::Vec;
 

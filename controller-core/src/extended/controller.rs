@@ -23,7 +23,7 @@ use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
 use crate::attitude::rotate_back;
 use crate::attitude_reference::DesiredAttitude;
-use crate::certificate::configuration::ExtendedLaw;
+use crate::configuration::ExtendedLaw;
 use crate::controller::{Command, Diagnostics};
 use crate::error::InputError;
 use crate::math;

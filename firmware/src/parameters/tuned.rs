@@ -13,8 +13,8 @@
 
 use super::table::Name;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::inequality::Inequality;
+use controller_core::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::tuning::judged::JudgedLoops;
 use controller_core::tuning::{Factors, Figures, Percent, Tuning};

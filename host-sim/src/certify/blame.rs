@@ -9,10 +9,10 @@
 
 use controller_core::allocation::TorqueTerm;
 use controller_core::allocation::support::torque_part;
-use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::form::Form;
 use controller_core::certificate::paper::PaperCertificate;
 use controller_core::certificate::rotors;
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use nalgebra::{Vector3, Vector4};
 

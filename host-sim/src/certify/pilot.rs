@@ -1,7 +1,7 @@
 //! The abilities of a vehicle under the extended law, in a pilot's terms.
 
 use crate::table::{aligned, percent, short};
-use controller_core::certificate::configuration::{Configuration, ExtendedLaw};
+use controller_core::configuration::{Configuration, ExtendedLaw};
 use controller_core::extended::budget::{Row, THRUST_LEFT, TorqueBudget};
 use controller_core::extended::parameters::ExtendedParameters;
 

@@ -1,6 +1,6 @@
 //! `certify --show`: every constant that is used, as sections of a scenario file.
 
-use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use controller_core::configuration::{LawParameters, PaperLaw};
 use scenario::vehicle::named;
 use scenario::{Scenario, bounds, extended};
 

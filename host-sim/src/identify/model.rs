@@ -24,7 +24,7 @@ use super::flight_log::{FlightLog, Moment};
 use super::hubs::{Hubs, Layout};
 use super::impulses::{Commands, Impulse};
 use super::low_passes::LowPasses;
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
 
 /// How many unknowns there are.

@@ -25,7 +25,7 @@ use super::body::STAGE_TIMES;
 use super::wind::first_step;
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::allocation::{Rotor, Rotors};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
 use nalgebra::{Vector3, Vector4};
 use scenario::reality::Reality;

@@ -8,7 +8,7 @@
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};
 use controller_core::allocation::Mixer;
-use controller_core::certificate::configuration::LawParameters;
+use controller_core::configuration::LawParameters;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::reference::Reference;

@@ -4,7 +4,7 @@
 use super::Tuned;
 use super::chosen::chosen;
 use crate::table::short;
-use controller_core::certificate::configuration::{LawParameters, PaperLaw};
+use controller_core::configuration::{LawParameters, PaperLaw};
 use controller_core::extended::parameters::ExtendedParameters;
 use scenario::vehicle::named;
 use scenario::{Scenario, bounds};

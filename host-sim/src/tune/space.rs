@@ -9,7 +9,7 @@
 //! well: the start is the file's law to the bit.
 
 use super::chosen::chosen;
-use controller_core::certificate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::extended::defaults::{self, Given, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 use controller_core::gains::{GainParameters, Gains};

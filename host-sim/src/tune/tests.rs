@@ -4,7 +4,7 @@ use super::candidate::Judging;
 use super::chosen::chosen;
 use super::space::Space;
 use super::*;
-use controller_core::certificate::configuration::LawParameters;
+use controller_core::configuration::LawParameters;
 use controller_core::extended::defaults;
 use controller_core::extended::parameters::ExtendedParameters;
 use rand::rngs::ChaCha8Rng;

@@ -3,7 +3,7 @@
 use super::*;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::Certified;
-use controller_core::certificate::configuration::LawParameters;
+use controller_core::configuration::LawParameters;
 use controller_core::law::Law;
 use nalgebra::Vector3;
 

@@ -2,7 +2,7 @@
 
 use super::gains::{EstimateGains, ForceGains, LateGains, PositionGains, TorqueGains};
 use super::lag::Arrival;
-use controller_core::certificate::configuration::{ExtendedLaw, LawParameters};
+use controller_core::configuration::{ExtendedLaw, LawParameters};
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::gains::Gains;
 

@@ -1,7 +1,7 @@
 //! Configurations to attack: the paper's, and random ones around it.
 
 use crate::support::random::{self, ChaCha8Rng};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};

@@ -2,8 +2,8 @@
 
 use super::{COORDINATES, Code, Domain, Situation};
 use crate::support::random::ChaCha8Rng;
-use controller_core::certificate::configuration::Configuration;
 use controller_core::certificate::sharp::feedforward_torque;
+use controller_core::configuration::Configuration;
 use nalgebra::Vector3;
 use rand::RngExt;
 

@@ -3,9 +3,8 @@
 
 use super::Controller;
 use crate::allocation::Rotors;
-use crate::certificate::certified::Certified;
-use crate::certificate::configuration::{Configuration, ExtendedLaw, LawParameters};
-use crate::error::{ParameterError, Reason};
+use crate::configuration::ExtendedLaw;
+use crate::error::ParameterError;
 use crate::extended::actuators::ActuatorModel;
 use crate::extended::attitude::AttitudeLaw;
 use crate::extended::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
@@ -21,25 +20,11 @@ use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
 impl Controller {
-    /// A controller for a certified configuration of this law, as after a reset. `period` is the time between steps, s,
-    /// in (0, 0.1].
+    /// The law for a vehicle with these rotors, as after a reset.
     ///
     /// # Errors
-    /// Names `control.period` if it is outside, `gains.c_1`, `gains.c_2` or `sampling.delay` if the period does not
-    /// allow them, `control.law` if the configuration is for another law.
-    pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
-        let configuration = certified.configuration();
-        let LawParameters::Extended(law) = configuration.law() else {
-            return Err(ParameterError { field: "control.law", reason: Reason::OtherLaw });
-        };
-        Self::of(configuration, law, period)
-    }
-
-    pub(crate) fn of(configuration: &Configuration, law: &ExtendedLaw, period: f32) -> Result<Self, ParameterError> {
-        Self::build(configuration.vehicle(), configuration.limits(), law, configuration.rotors(), period)
-    }
-
-    fn build(
+    /// Names `control.period`, `gains.c_1`, `gains.c_2` or `sampling.delay` if the period does not allow them.
+    pub(crate) fn build(
         vehicle: &Vehicle,
         limits: &Limits,
         law: &ExtendedLaw,

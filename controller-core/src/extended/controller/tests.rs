@@ -20,8 +20,8 @@ use crate::vehicle::LimitParameters;
 use nalgebra::Vector2;
 
 fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
-    let configuration = craft.configuration(parameters, ReferenceBounds::REST);
-    Controller::of(&configuration, &craft.law(parameters), craft.period).unwrap()
+    let (law, rotors) = (craft.law(parameters), Some(&craft.rotors));
+    Controller::build(&craft.vehicle, &craft.limits, &law, rotors, craft.period).unwrap()
 }
 
 /// The Hummingbird on rotors that follow at once.

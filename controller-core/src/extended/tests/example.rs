@@ -2,7 +2,7 @@
 
 use super::Random;
 use crate::allocation::{Rotor, Rotors, Spin, greatest_torques};
-use crate::certificate::configuration::{Configuration, ExtendedLaw};
+use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
 use crate::extended::defaults::{self, Airframe, Given, NOTHING_GIVEN};

@@ -70,6 +70,6 @@ fn ticks_too_long_for_the_generator_are_refused_by_name() {
     }
     let craft = Craft::example();
     let law = craft.law(&ExtendedParameters { c_1: 30.0, c_2: 0.15, ..example::parameters() });
-    let configuration = craft.configuration(&law.parameters, example::REFERENCES);
-    assert_eq!(Controller::of(&configuration, &law, 0.01).unwrap_err().field, "gains.c_1");
+    let refused = Controller::build(&craft.vehicle, &craft.limits, &law, Some(&craft.rotors), 0.01).unwrap_err();
+    assert_eq!(refused.field, "gains.c_1");
 }
