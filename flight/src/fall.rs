@@ -9,18 +9,21 @@ use estimation::estimator::EstimatedState;
 /// Since it was stopped.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Fall {
-    may_last: bool,
+    may_fall: bool,
     still: Lasting,
 }
 
 impl Fall {
-    /// Whether it may fall, once a tick; `is_stopped` in the one that stops it in the air. Without
-    /// a state the last answer stands.
-    pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) -> bool {
+    /// Once a tick; `is_stopped` in the one that stops it in the air. Without a state the last answer stands.
+    pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) {
         let lies = self.still.is_so(state.is_some_and(is_still), GROUND_LASTING, now);
         // What has hovered until now was still as well.
         self.still = if is_stopped { Lasting::default() } else { self.still };
-        self.may_last = is_stopped || self.may_last && !lies;
-        self.may_last
+        self.may_fall = is_stopped || self.may_fall && !lies;
+    }
+
+    /// Whether it may fall.
+    pub fn may_fall(&self) -> bool {
+        self.may_fall
     }
 }
