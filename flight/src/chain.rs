@@ -13,12 +13,12 @@
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady
 //! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
-use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
 use super::refusal::Grounded;
 use super::rules::{Mode, REFUSALS_MAX};
 use super::sinking::Sinking;
 use super::spool::Spool;
+use super::tilt::{heading, up};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;

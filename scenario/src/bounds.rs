@@ -15,7 +15,9 @@
 //!
 //! The other six are needed, and none may be less than the scenario's own reference takes.
 
+use crate::constants;
 use crate::section::{FieldError, Section};
+use controller_core::constants::Constant;
 use controller_core::reference::ReferenceBounds;
 
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
@@ -34,18 +36,9 @@ pub fn read_bounds(
     let Some(section) = root.optional_section("reference_bounds")? else {
         return Ok(default());
     };
-    let fields = [
-        ("horizontal_speed", own.horizontal_speed),
-        ("horizontal_acceleration", own.horizontal_acceleration),
-        ("vertical_acceleration", own.vertical_acceleration),
-        ("jerk", own.jerk),
-        ("snap", own.snap),
-        ("heading_rate", own.heading_rate),
-        ("heading_second_derivative", own.heading_second_derivative),
-    ];
-    section.allow(&fields.map(|(key, _)| key))?;
-    let mut values = [0.0_f32; 7];
-    for (value, (key, taken)) in values.iter_mut().zip(fields) {
+    section.allow(&constants::keys(&ReferenceBounds::TABLE, "reference_bounds"))?;
+    let mut values = [0.0_f32; ReferenceBounds::COUNT];
+    for (value, (Constant { key, .. }, taken)) in values.iter_mut().zip(own.entries()) {
         *value = match key {
             "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
             _ => section.number(key)?,
@@ -55,41 +48,7 @@ pub fn read_bounds(
             return Err(FieldError::new(section.path_of(key), problem));
         }
     }
-    let [
-        horizontal_speed,
-        horizontal_acceleration,
-        vertical_acceleration,
-        jerk,
-        snap,
-        heading_rate,
-        heading_second_derivative,
-    ] = values;
-    let bounds = ReferenceBounds {
-        horizontal_speed,
-        horizontal_acceleration,
-        vertical_acceleration,
-        jerk,
-        snap,
-        heading_rate,
-        heading_second_derivative,
-    };
-    bounds.validated().map_err(|error| root.refused(&error))
-}
-
-/// `bounds` as the section of a scenario file.
-#[must_use]
-pub fn written(bounds: &ReferenceBounds) -> String {
-    format!(
-        "[reference_bounds]\nhorizontal_speed = {:?}\nhorizontal_acceleration = {:?}\nvertical_acceleration = {:?}\njerk = {:?}\nsnap = {:?}\n\
-         heading_rate = {:?}\nheading_second_derivative = {:?}\n",
-        bounds.horizontal_speed,
-        bounds.horizontal_acceleration,
-        bounds.vertical_acceleration,
-        bounds.jerk,
-        bounds.snap,
-        bounds.heading_rate,
-        bounds.heading_second_derivative
-    )
+    ReferenceBounds::from_values(values).validated().map_err(|error| root.refused(&error))
 }
 
 #[cfg(test)]
