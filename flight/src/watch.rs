@@ -128,7 +128,7 @@ pub(super) struct Watch {
     lied: Debounce,
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
-    /// Whether a low battery has had its landing: whoever flies on knows.
+    /// Whether a low battery has caused its landing: a flight that goes on after it is the pilot's choice.
     low_is_told: bool,
 }
 
