@@ -12,7 +12,7 @@ use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
 use host_sim::tune::{Tuned, output, tune, widest_bounds};
 use host_sim::whole_file::WholeFile;
-use scenario::{Scenario, constants, check_name};
+use scenario::{Scenario, check_name, constants};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
