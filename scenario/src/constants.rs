@@ -34,7 +34,7 @@ pub fn read<const N: usize>(
 
 /// Constants with their values as sections of a scenario file, each with its meaning.
 #[must_use]
-pub fn written(entries: &[(Constant, f32)]) -> String {
+pub fn written(entries: impl Iterator<Item = (Constant, f32)>) -> String {
     let mut text = String::new();
     let mut before = "";
     for (constant, value) in entries {
