@@ -111,7 +111,7 @@ fn five_minutes_of_flight_miss_no_tick_and_stay_in_place() {
     let timing = flight.report().timing;
     assert_eq!((timing.missed, timing.worst_jitter), (0, 0));
     // Control got every increment of the IMU, each beginning where the one before it ended.
-    assert_eq!((timing.gaps, flight.shared.lost_increments()), (0, 0));
+    assert_eq!((timing.gaps, flight.shared.lost_increments.get()), (0, 0));
     assert_eq!(flight.report().mode, Mode::Flying);
 }
 

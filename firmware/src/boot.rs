@@ -11,7 +11,7 @@ use crate::configuration;
 use crate::outputs::Outputs;
 use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{BootView, Event, Severity};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
@@ -52,7 +52,7 @@ impl Place {
 #[inline(never)]
 pub fn start<M: RawMutex>(
     place: &'static Place,
-    shared: &Shared<M>,
+    shared: BootView<'_, M>,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
     let configuration = configuration::embedded()?;
     start_with(place, shared, Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY })
@@ -65,10 +65,10 @@ pub fn start<M: RawMutex>(
 #[inline]
 pub fn start_with<M: RawMutex>(
     place: &'static Place,
-    shared: &Shared<M>,
+    shared: BootView<'_, M>,
     built: Built,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
-    let parameters = &shared.parameters;
+    let parameters = shared.parameters();
     let built: &'static Built = place.built.init_with(|| built);
     if parameters.boot(built) {
         shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));

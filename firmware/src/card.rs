@@ -33,7 +33,7 @@ pub mod volume;
 
 use crate::hardware::{Card, Clock};
 use crate::recorder::follow::{Followed, Follower};
-use crate::shared::{CardState, Event, Severity, Shared};
+use crate::shared::{CardState, CardView, Event, Severity};
 use core::convert::Infallible;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Deque;
@@ -58,12 +58,12 @@ const KEPT: usize = 16;
 
 /// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED`], if there is nothing
 /// against it.
-pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: CardView<'_, M>) -> ! {
     let mut logger = Logger {
         prepared,
         clock,
         shared,
-        follower: shared.recorder.follower(),
+        follower: shared.recorder().follower(),
         events: Deque::new(),
         is_copied: false,
         missed: 0,
@@ -71,7 +71,7 @@ pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl 
     };
     loop {
         let Err(trouble) = logger.use_card(&mut card).await;
-        shared.card.set(if trouble == Trouble::Absent { CardState::Absent } else { CardState::Failed }, clock.now());
+        shared.card().set(if trouble == Trouble::Absent { CardState::Absent } else { CardState::Failed }, clock.now());
         logger.tell(trouble);
         clock.until(clock.now().saturating_add(RETRY)).await;
     }
@@ -91,7 +91,7 @@ enum Flight {
 struct Logger<'a, K, M: RawMutex> {
     prepared: u32,
     clock: &'a K,
-    shared: &'a Shared<M>,
+    shared: CardView<'a, M>,
     follower: Follower,
     /// What people were told, and when, us; the newest.
     events: Deque<(u64, Event), KEPT>,
@@ -111,7 +111,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         let volume = Volume::open(card)?;
         if !core::mem::replace(&mut self.is_copied, true) {
             // Tried once: a card that has no room for it would get an empty file at each attempt.
-            if let Some(number) = copy::copy(&volume, &shared.recorder)? {
+            if let Some(number) = copy::copy(&volume, shared.recorder())? {
                 shared.announce(Event::new(Severity::Information, format_args!("Last recording: REC{number:05}.ULG")));
             }
         }
@@ -119,7 +119,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         loop {
             let mut log = Log::prepare(&volume)?;
             let number = log.number();
-            shared.card.set(CardState::Ready, self.clock.now());
+            shared.card().set(CardState::Ready, self.clock.now());
             if self.told.take().is_some() || !log.has_begun() {
                 shared.announce(Event::new(Severity::Information, format_args!("Card: next log {number:05}")));
             }
@@ -146,7 +146,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     ) -> Result<(), Trouble> {
         let mut may_grow = true;
         loop {
-            self.shared.card.set(CardState::Ready, self.clock.now());
+            self.shared.card().set(CardState::Ready, self.clock.now());
             match self.write(volume, log)? {
                 Flight::Ended => return Ok(()),
                 Flight::Recording if log.is_full() => return Ok(()),
@@ -169,10 +169,10 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     /// Answers what the link asks of the files; whether somebody is reading.
     fn serve<C: Card>(&self, volume: &Volume<'_, C>, log: &Log, library: &mut Library) -> bool {
         let (shared, now) = (self.shared, self.clock.now());
-        if let Some(question) = shared.library.asked() {
-            let answer = library.answer(question, now, volume, log.number(), &shared.recorder);
-            shared.library.answer(question, answer);
-            shared.outgoing.signal(());
+        if let Some(question) = shared.library().asked() {
+            let answer = library.answer(question, now, volume, log.number(), shared.recorder());
+            shared.library().answer(question, answer);
+            shared.outgoing().signal(());
         } else if !library.is_busy(now) {
             library.close(volume);
         }
@@ -183,7 +183,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     fn write<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<Flight, Trouble> {
         self.keep_events();
         for _ in 0..AT_ONCE {
-            match self.shared.recorder.follow(&mut self.follower) {
+            match self.shared.recorder().follow(&mut self.follower) {
                 Followed::Record { is_first: true, .. } if log.has_begun() => {
                     // The next flight, whose first record is for the next file.
                     self.follower.go_back(1);
@@ -218,7 +218,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
 
     /// Takes what people were told; the oldest makes room.
     fn keep_events(&mut self) {
-        while let Some(event) = self.shared.card.events.take() {
+        while let Some(event) = self.shared.card_events().take() {
             if self.events.is_full() {
                 let _ = self.events.pop_front();
             }

@@ -1,8 +1,8 @@
 //! The control task: 100 times a second, the pilot's decision to the motors, on time.
 //!
 //! ```text
-//! due -> inputs from Shared -> Pilot::tick -> motor command -> written -> report
-//!                                                          '-> watchdog fed, if all of it was in time
+//! due -> inputs from its view -> Pilot::tick -> motor command -> written -> report
+//!                                                            '-> watchdog fed, if all of it was in time
 //! ```
 //!
 //! The task decides nothing about flight: [`flight`] does. It keeps time: ticks are due a period
@@ -14,7 +14,7 @@ use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
+use crate::shared::{Asked, ControlView, Event, INCREMENTS, POSES, Queue, Report, Take, Timing};
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -36,7 +36,7 @@ const TEXT_INTERVAL: u64 = 1_000_000;
 
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
-    shared: &'a Shared<M>,
+    shared: ControlView<'a, M>,
     pilot: &'a mut Pilot<'static>,
     outputs: Outputs,
     timing: Timing,
@@ -64,7 +64,7 @@ struct Complaint {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
-    pub fn new(shared: &'a Shared<M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
+    pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
         Self {
             shared,
             pilot,
@@ -100,31 +100,31 @@ impl<'a, M: RawMutex> Control<'a, M> {
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
         self.shared.pass(now);
-        let increments: Vec<Increment, INCREMENTS> = waiting(&self.shared.increments);
-        let poses: Vec<_, POSES> = waiting(&self.shared.poses);
+        let increments: Vec<Increment, INCREMENTS> = waiting(self.shared.increments());
+        let poses: Vec<_, POSES> = waiting(self.shared.poses());
         increments.iter().for_each(|increment| self.integrate(increment));
-        let asked = self.shared.requests.take();
-        self.pilot.choose(&self.shared.parameters.flight_settings());
+        let asked = self.shared.requests().take();
+        self.pilot.choose(&self.shared.parameters().flight_settings());
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         let has_armed = outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed);
         if has_armed {
             let order = asked.and_then(|asked| asked.order);
-            self.shared.commander.put(order.map(|order| order.sender), now);
+            self.shared.commander().put(order.map(|order| order.sender), now);
         }
         self.tell(&outcome, asked);
-        if has_armed && self.shared.pose_delay_unknown.is_raised() {
+        if has_armed && self.shared.pose_delay_unknown().is_raised() {
             self.shared.announce(Event::PoseDelayUnknown);
         }
         self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
         self.tell_of_the_estimate(&outcome, now);
         let report = self.report(&inputs, &outcome);
-        self.shared.report.put(report, now);
-        let (parameters, voltage) = (&self.shared.parameters, self.shared.voltage.get());
+        self.shared.report().put(report, now);
+        let (parameters, voltage) = (self.shared.parameters(), self.shared.voltage().get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
-        let voltage = self.shared.voltage.recent(VOLTAGE_AGE_MAX, now);
-        self.shared.recorder.record(report.mode.is_armed(), || report.tick(now, command, voltage));
+        let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX, now);
+        self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, voltage));
         command
     }
 
@@ -140,21 +140,21 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs<'static> {
         // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once
         // more.
-        let handed_over = self.shared.hil.is_raised() && !mem::replace(&mut self.simulated, true);
+        let handed_over = self.shared.hil().is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
-            body_rate: self.shared.imu.get().map(|newest| newest.map(|sample| sample.angular_velocity)),
-            imu_fault: self.shared.imu_fault.recent(IMU_FAULT_LASTING, now),
-            ground_station: self.shared.ground_station.get().map(|heard| heard.time),
+            body_rate: self.shared.imu().get().map(|newest| newest.map(|sample| sample.angular_velocity)),
+            imu_fault: self.shared.imu_fault().recent(IMU_FAULT_LASTING, now),
+            ground_station: self.shared.ground_station().get().map(|heard| heard.time),
             request: asked.map(|asked| asked.request),
-            disarm: self.shared.disarm.take() || handed_over,
-            killed: self.shared.killed.get().is_some_and(|killed| killed.value),
+            disarm: self.shared.disarm().take() || handed_over,
+            killed: self.shared.killed().get().is_some_and(|killed| killed.value),
             is_busy: self.shared.is_busy(),
-            is_clock_doubtful: self.shared.clock_doubtful.is_raised(),
+            is_clock_doubtful: self.shared.clock_doubtful().is_raised(),
             motors_fail: self.complaint.writing.is_some(),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
-            setpoint: self.shared.setpoint.take().map(|setpoint| setpoint.value),
+            setpoint: self.shared.setpoint().take().map(|setpoint| setpoint.value),
             ..Inputs::default()
         }
     }
@@ -162,9 +162,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// What the battery has left, by its voltage. Without a recent reading it is unknown, which matters where a voltage
     /// to act on is set.
     fn battery(&self, now: u64) -> Battery {
-        let parameters = &self.shared.parameters;
+        let parameters = self.shared.parameters();
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
-        match self.shared.voltage.recent(VOLTAGE_AGE_MAX, now) {
+        match self.shared.voltage().recent(VOLTAGE_AGE_MAX, now) {
             None if low > 0.0 || critical > 0.0 => Battery::Missing,
             None => Battery::Unknown,
             Some(voltage) if voltage < critical => Battery::Critical,
@@ -262,7 +262,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
 }
 
 /// Everything that waits in a queue.
-fn waiting<M: RawMutex, T, const ROOM: usize>(queue: &Queue<M, T, ROOM>) -> Vec<T, ROOM> {
+fn waiting<M: RawMutex, T, const ROOM: usize>(queue: Take<'_, Queue<M, T, ROOM>>) -> Vec<T, ROOM> {
     // No more than there is room for: what comes meanwhile waits for the next tick.
     core::iter::from_fn(|| queue.take()).take(ROOM).collect()
 }

@@ -27,7 +27,7 @@ use crate::link::frame::{Frame, Parser};
 use crate::link::pose::odometry;
 use crate::link::writer::Writer;
 use crate::parameters::table::Name;
-use crate::shared::{Flag, Latest, Shared};
+use crate::shared::{self, Flag, Latest, SimulatorView};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -132,7 +132,7 @@ pub struct SelectedMotors<'a, M: RawMutex, P, C> {
     /// The simulator's.
     pub hil: &'a Hil<M>,
     /// Raised when the simulator is wanted.
-    pub wanted: &'a Flag,
+    pub wanted: shared::Read<'a, Flag>,
     /// The board's time.
     pub clock: C,
 }
@@ -148,23 +148,33 @@ impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
 }
 
 /// Sends the simulator each command that [`SelectedMotors`] was given, for ever.
-pub async fn transmit<M: RawMutex>(hil: &Hil<M>, mut line: impl Write, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn transmit<M: RawMutex>(
+    hil: &Hil<M>,
+    mut line: impl Write,
+    clock: &impl Clock,
+    shared: SimulatorView<'_, M>,
+) -> ! {
     let mut writer = Writer::new();
     loop {
         // The time limit only makes the wait a bounded one.
         let _ = within(clock, SILENCE, hil.outgoing.wait()).await;
         let Some(command) = hil.command.take() else { continue };
-        writer.write(shared.parameters.get(Name::SystemId) as u8, &controls(&command));
+        writer.write(shared.parameters().get(Name::SystemId) as u8, &controls(&command));
         // What does not go out is not answered, and shows as sensors that grow old.
         send(&mut line, clock, SENDING_MAX, writer.bytes()).await;
     }
 }
 
 /// Takes the simulator's answers for IMU and pose, for ever.
-pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &impl Clock, shared: &Shared<M>) -> ! {
-    let mut flow = match Flow::simulated(shared) {
+pub async fn receive<M: RawMutex>(
+    hil: &Hil<M>,
+    mut line: impl Read,
+    clock: &impl Clock,
+    shared: SimulatorView<'_, M>,
+) -> ! {
+    let mut flow = match Flow::simulated(shared.samples()) {
         Ok(flow) => flow,
-        Err(error) => imu::refuse(shared, clock, &error).await,
+        Err(error) => imu::refuse(shared.samples(), clock, &error).await,
     };
     let mut parser = Parser::new();
     let mut chunk = [0; CHUNK];
@@ -179,7 +189,7 @@ pub async fn receive<M: RawMutex>(hil: &Hil<M>, mut line: impl Read, clock: &imp
 }
 
 /// Acts on one frame, if it is one of the two and a command can have led to it.
-fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, shared: &Shared<M>) {
+fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, shared: SimulatorView<'_, M>) {
     match frame.message {
         HIL_SENSOR_DATA::ID => {
             let Some(message) = frame.decode::<HIL_SENSOR_DATA>() else { return };
@@ -192,7 +202,7 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
         ODOMETRY_DATA::ID => {
             let Some(message) = frame.decode::<ODOMETRY_DATA>() else { return };
             if let (Some(time), Ok(pose)) = (hil.stamp(message.time_usec), odometry(frame, &message)) {
-                let _ = shared.poses.put(Stamped { value: pose, time });
+                let _ = shared.poses().put(Stamped { value: pose, time });
             }
         }
         _ => {}

@@ -2,8 +2,8 @@
 //! stands.
 //!
 //! ```text
-//! sensor -> RawImu -> Conditioner -> Shared::increments (each of them)
-//!                  |             '-> Shared::imu        (the newest sample, low-passed)
+//! sensor -> RawImu -> Conditioner -> shared increments (each of them)
+//!                  |             '-> shared imu        (the newest sample, low-passed)
 //!                  '-> Calibrator -> parameters, Conditioner
 //! ```
 //!
@@ -20,7 +20,7 @@ pub use flow::Flow;
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Imu, RawImu};
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{Event, ImuView, SamplesView, Severity};
 use calibrator::Calibrator;
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -36,11 +36,11 @@ const RETRY: u64 = 1_000;
 const IDLE: u64 = 1_000_000;
 
 /// Runs for ever.
-pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut impl Imu) -> ! {
+pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &mut impl Imu) -> ! {
     let mut calibrator = Calibrator::new(shared, clock.now());
-    let mut flow = match Flow::new(shared, &imu.parameters(), calibrator.calibration(imu.unit())) {
+    let mut flow = match Flow::new(shared.samples(), &imu.parameters(), calibrator.calibration(imu.unit())) {
         Ok(flow) => flow,
-        Err(error) => refuse(shared, clock, &error).await,
+        Err(error) => refuse(shared.samples(), clock, &error).await,
     };
     if ask_standby(clock, imu).await == Some(Err(Fault)) {
         shared.announce(Event::new(Severity::Warning, "Second IMU does not answer"));
@@ -54,7 +54,7 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
             unit = imu.unit();
             shared.announce(Event::new(Severity::Critical, "IMU: the second takes over"));
             if let Err(error) = flow.take_over(&imu.parameters(), calibrator.calibration(unit)) {
-                refuse(shared, clock, &error).await;
+                refuse(shared.samples(), clock, &error).await;
             }
         }
         match &sample {
@@ -62,7 +62,7 @@ pub async fn run<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, imu: &mut 
                 if calibrator.take(unit, sample, standby) {
                     flow.calibrate(calibrator.calibration(unit));
                 }
-                if !shared.hil.is_raised() {
+                if !shared.hil().is_raised() {
                     flow.take(sample);
                 }
                 if imu.is_polled() != is_polled {
@@ -99,7 +99,7 @@ fn finite(sample: RawImu) -> Result<RawImu, Fault> {
 
 /// What a task does whose sensor's parameters make no sense: it says so, and delivers nothing. Nothing arms without
 /// samples.
-pub async fn refuse<M: RawMutex>(shared: &Shared<M>, clock: &impl Clock, error: &ParameterError) -> ! {
+pub async fn refuse<M: RawMutex>(shared: SamplesView<'_, M>, clock: &impl Clock, error: &ParameterError) -> ! {
     shared.announce(Event::new(Severity::Critical, error));
     loop {
         clock.until(clock.now() + IDLE).await;

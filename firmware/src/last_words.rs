@@ -1,13 +1,13 @@
 //! Why the vehicle restarted by itself, in words that outlive the reset.
 //!
 //! ```text
-//! panic, fault -> memory that no start clears -> reset -> Shared::last_words -> STATUSTEXT, card, log
+//! panic, fault -> memory that no start clears -> reset -> shared last_words -> STATUSTEXT, card, log
 //! ```
 //!
 //! A board's last acts put them there ([`crate::ending`]), and its next start takes them away. They are told to the first
 //! ground station that is heard, to the card once it is ready, and every [`AGAIN`] until somebody arms.
 
-use crate::shared::{CardState, Event, Severity, Shared, TEXT_MAX};
+use crate::shared::{CardState, Event, Severity, StatusView, TEXT_MAX};
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -106,10 +106,10 @@ pub struct Teller {
 
 impl Teller {
     /// Looks at `now`, us, whether it is time to tell them.
-    pub fn look<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64) {
+    pub fn look<M: RawMutex>(&mut self, shared: StatusView<'_, M>, now: u64) {
         self.is_over |= shared.is_armed();
-        let Some(words) = shared.last_words.get().filter(|_| !self.is_over) else { return };
-        let listening = [shared.ground_station.get().is_some(), shared.card.state() == CardState::Ready];
+        let Some(words) = shared.last_words().get().filter(|_| !self.is_over) else { return };
+        let listening = [shared.ground_station().get().is_some(), shared.card().state() == CardState::Ready];
         let is_new = listening.iter().zip(&self.listened).any(|(now, before)| *now && !before);
         if !is_new && now < self.due {
             return;

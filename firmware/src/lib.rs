@@ -27,7 +27,7 @@
 //! | [`repeat`] | motor commands sent again while they are young |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`restart`] | the restart that a command asked for |
-//! | [`shared`] | what the tasks tell each other, every value with its time |
+//! | [`shared`] | what the tasks tell each other, every value with its time, and which task may write and read it |
 //! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`

@@ -21,7 +21,7 @@
 pub mod sticks;
 
 use crate::hardware::Clock;
-use crate::shared::{Asked, Event, Severity, Shared};
+use crate::shared::{Asked, Event, RadioView, Severity};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
@@ -89,7 +89,7 @@ fn scaled(value: u16) -> f32 {
 }
 
 /// Receives for ever.
-pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: RadioView<'_, M>) -> ! {
     let mut radio = Radio::new(shared);
     let mut chunk = [0; CHUNK];
     loop {
@@ -108,14 +108,14 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
 /// What the transmitter said last.
 pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
-    shared: &'a Shared<M>,
+    shared: RadioView<'a, M>,
     last: Option<(Frame, u64)>,
 }
 
 impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing heard yet.
     #[must_use]
-    pub fn new(shared: &'a Shared<M>) -> Self {
+    pub fn new(shared: RadioView<'a, M>) -> Self {
         Self { parser: CrsfParser::new(), shared, last: None }
     }
 
@@ -135,9 +135,9 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     /// Acts on channels that came at `now`, us.
     pub fn take(&mut self, channels: &[u16; 16], now: u64) {
         let frame = Frame::of(channels);
-        self.shared.ground_station.put((), now);
-        self.shared.killed.put(frame.killed, now);
-        self.shared.sticks.put(frame.flies == Switch::High, now);
+        self.shared.ground_station().put((), now);
+        self.shared.killed().put(frame.killed, now);
+        self.shared.sticks().put(frame.flies == Switch::High, now);
         // Switches act when they are moved while somebody is heard.
         if let Some((before, _)) = self.last.replace((frame, now)) {
             self.moved(&before, &frame);
@@ -154,7 +154,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         if self.last.is_some_and(|(_, heard)| now.saturating_sub(heard) > SILENCE) {
             self.last = None;
             self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
-            if self.is_flown() && self.shared.sticks.get().is_some_and(|sticks| sticks.value) {
+            if self.is_flown() && self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
                 self.ask(Request::Hold);
             }
         }
@@ -162,7 +162,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
 
     /// Whether setpoints are flown, or may be next. What holds, lands or stands is left to do so.
     fn is_flown(&self) -> bool {
-        let report = self.shared.report.get();
+        let report = self.shared.report().get();
         report.is_some_and(|report| matches!(report.value.mode, Mode::Flying | Mode::TakingOff))
     }
 
@@ -184,13 +184,13 @@ impl<'a, M: RawMutex> Radio<'a, M> {
 
     /// Puts down what the sticks ask for. On the ground only a stick that is pushed up does.
     fn steer(&self, sticks: &Sticks, now: u64) {
-        let Some(report) = self.shared.report.get().map(|report| report.value) else { return };
+        let Some(report) = self.shared.report().get().map(|report| report.value) else { return };
         let begins = report.mode == Mode::Idling && sticks.begin();
         if !(report.is_airborne || begins || report.mode == Mode::Flying) {
             return;
         }
         if let Some(setpoint) = report.state.as_ref().and_then(|state| sticks.setpoint(state)) {
-            self.shared.setpoint.put(setpoint, now);
+            self.shared.setpoint().put(setpoint, now);
         }
         if begins || matches!(report.mode, Mode::Holding | Mode::TakingOff) && !sticks.rest() {
             self.ask(Request::FlySetpoints);

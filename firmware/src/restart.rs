@@ -4,7 +4,7 @@
 //! waits for the answer to go out, and for what was set just before to be saved.
 
 use crate::hardware::{Clock, Restart};
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{Event, RestartView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// How often somebody looks whether a restart is wanted, us.
@@ -14,23 +14,23 @@ const LOOK: u64 = 100_000;
 pub const GRACE: u64 = 500_000;
 
 /// Restarts when that was asked for, for ever where it does not end the program.
-pub async fn run<M: RawMutex, R: Restart>(shared: &Shared<M>, clock: &impl Clock, machine: &mut R) -> ! {
-    shared.can_restart.raise();
+pub async fn run<M: RawMutex, R: Restart>(shared: RestartView<'_, M>, clock: &impl Clock, machine: &mut R) -> ! {
+    shared.can_restart().raise();
     if R::HAS_BOOTLOADER {
-        shared.has_bootloader.raise();
+        shared.has_bootloader().raise();
     }
     loop {
         clock.until(clock.now().saturating_add(LOOK)).await;
-        if !shared.restarting.is_raised() {
+        if !shared.restarting().is_raised() {
             continue;
         }
         clock.until(clock.now().saturating_add(GRACE)).await;
         // Neither can be, since arming is refused meanwhile and saving does not give way; but what would follow is too
         // bad to rely on it.
-        if shared.is_turning() || shared.saving.is_raised() {
-            shared.restarting.lower();
+        if shared.is_turning() || shared.saving().is_raised() {
+            shared.restarting().lower();
             shared.announce(Event::new(Severity::Warning, "Restart: not now"));
-        } else if shared.into_bootloader.is_raised() {
+        } else if shared.into_bootloader().is_raised() {
             machine.start_bootloader();
         } else {
             machine.restart();

@@ -1,47 +1,28 @@
-//! What the tasks tell each other. Every value comes with the time it was taken, and every reader says how old is too
-//! old.
+//! What the tasks tell each other, and which task may read and write what.
 //!
-//! | from | what | to | at most this old |
-//! |---|---|---|---|
-//! | IMU | [`Shared::imu`] | control | [`flight`] decides |
-//! | IMU | [`Shared::imu_fault`] | control | 1 s |
-//! | IMU | [`Shared::increments`] | control | a tick: each taken once |
-//! | link | [`Shared::poses`] | control | a tick: each taken once; [`estimation::estimator`] decides |
-//! | link | [`Shared::pose_delay_unknown`] | control | as of the last pose |
-//! | link | [`Shared::ground_station`]: when it was last heard | control | as above |
-//! | link | [`Shared::setpoint`] | control | a tick: taken once |
-//! | link | [`Shared::requests`], [`Shared::disarm`] | control | a tick: taken once |
-//! | radio | [`Shared::killed`]; [`Shared::sticks`] | control; link | as last heard |
-//! | radio | [`Shared::ground_station`], [`Shared::setpoint`], [`Shared::requests`] | control | as the link's |
-//! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
-//! | control | [`Shared::commander`]: who armed | link | while it is armed |
-//! | link | [`Shared::origin`] | link, its other half | until another comes |
-//! | status | [`Shared::voltage`] | control, link | 1 s |
-//! | control | [`Shared::report`] | link, status | one report a tick |
-//! | control, link, status | [`Shared::announce`] | link (STATUSTEXT), status (log) | until sent |
-//! | link | [`Shared::calibrations`] | IMU | until taken |
-//! | link | [`Shared::hil`] | motors, sensors | until reboot |
-//! | link | [`Shared::traffic`] | link, status | a count |
-//! | link | [`Shared::replies`] | link, its other half | until sent |
-//! | board | [`Shared::last_words`] | status | until reboot |
-//! | board | [`Shared::clock_doubtful`] | control | until reboot |
-//! | port | [`Shared::on_port`] | link, both halves | until it moves |
-//! | parameters | [`Shared::saving`] | control | while it lasts |
-//! | link | [`Shared::judging`] | control | while it lasts |
-//! | link | [`Shared::restarting`], [`Shared::into_bootloader`] | control, restart | until the restart |
-//! | restart | [`Shared::can_restart`], [`Shared::has_bootloader`] | link | for ever |
-//! | control | [`Shared::recorder`] | link | until the next flight |
-//! | control | [`Shared::recorder`] | card | as long as the ring holds it |
-//! | any | [`Shared::announce`] | card, while it is ready | until logged |
-//! | card | [`Shared::card`] | link, status | [`CARD_SILENCE`] |
-//! | link, and back | [`Shared::library`]: what is on the card | card, and back | until the next question |
-//! | parameters | [`Shared::parameters`] | every task | the present values |
-//! | link, and back | [`Shared::signing`]: the key, and what was signed with it | link, parameters | the present state |
+//! Every value comes with the time it was taken, and every reader says how old is too old. A task has no reference to
+//! the [values](Values) but a view of them: [`ControlView`] is the control task's. A view has a method for each value
+//! that its task has to do with, and what comes from that method can be [read](Read), [written](Write) or
+//! [taken](Take), and no more than that. Every view can [announce](Values::announce) something to people.
 //!
-//! A board keeps one [`Shared`] in a `StaticCell` and hands out references; its mutex is one that also holds against
-//! the control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
+//! The tables in this file say which task may do what, and the views are made of them: [`Values`] shows for each value
+//! who writes and who reads it, and each view what its task can do.
+//!
+//! ```compile_fail,E0599
+//! # use embassy_sync::blocking_mutex::raw::RawMutex;
+//! fn fly<M: RawMutex>(shared: firmware::shared::RadioView<'_, M>) {
+//!     shared.killed().put(true, 0);
+//!     let report = shared.report().get().unwrap();
+//!     shared.report().put(report.value, 0); // the radio does not say what control did
+//! }
+//! ```
+//!
+//! A board keeps one [`Shared`] in a `StaticCell` and hands out views; its mutex is one that also holds against the
+//! control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
 
+mod access;
 mod card;
+mod count;
 mod event;
 mod flag;
 mod lately;
@@ -51,8 +32,11 @@ mod queue;
 mod reply;
 mod report;
 mod requests;
+mod table;
 
+pub use access::{All, Read, Take, Write};
 pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
+pub use count::Count;
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
@@ -69,13 +53,13 @@ use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
 use controller_core::governor::Setpoint;
-use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use estimation::estimator::{Increment, PoseMeasurement};
 use estimation::imu::ImuFault;
 use flight::{ImuSample, Mode, Refusal, Stamped};
 use mavlink::dialects::common::MavResult;
+use table::{offers, values, views};
 
 /// IMU increments that wait for control, which takes all of them: 40 ms.
 pub const INCREMENTS: usize = 8;
@@ -92,151 +76,165 @@ pub const EVENTS: usize = 8;
 /// Replies that wait to be sent, and as many answers of control: more than there can be requests on their way.
 pub const REPLIES: usize = 8;
 
-/// Everything that passes between tasks.
-pub struct Shared<M: RawMutex> {
-    /// The newest inertial sample, calibrated and low-passed, with its data-ready time.
-    pub imu: Latest<M, ImuSample>,
-    /// The newest fault of gyro or accelerometer.
-    pub imu_fault: Latest<M, ImuFault>,
-    /// What the inertial samples add up to, in order. Put them in with [`Self::increment`].
-    pub increments: Queue<M, Increment, INCREMENTS>,
-    /// Calibrations that somebody asked for.
-    pub calibrations: Queue<M, Calibration, CALIBRATIONS>,
-    /// Poses in the order in which they came, with the times at which they were true. Without room a pose is dropped:
-    /// the next will do.
-    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES>,
-    /// Its time says when a ground station was last heard.
-    pub ground_station: Latest<M, ()>,
-    /// The newest setpoint. An unread one is replaced: only the last counts.
-    pub setpoint: Latest<M, Setpoint>,
-    /// Requests for control, in the order they came. Put them in with [`Self::request`].
-    pub requests: Requests<M>,
-    /// Raised while parameters are written to flash: nothing begins to turn.
-    pub saving: Flag,
-    /// Raised while a changed configuration is certified: nothing begins to turn.
-    pub judging: Flag,
-    /// Raised by a command to restart: nothing begins to turn any more.
-    pub restarting: Flag,
-    /// Raised with it where a bootloader is to start and not the firmware.
-    pub into_bootloader: Flag,
-    /// Raised where somebody can restart the vehicle.
-    pub can_restart: Flag,
-    /// Raised where there is a bootloader to start.
-    pub has_bootloader: Flag,
-    /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
-    pub on_port: Flag,
-    /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` knows.
-    pub pose_delay_unknown: Flag,
-    /// Raised at boot where the clock's crystal does not run: nobody arms.
-    pub clock_doubtful: Flag,
-    /// Why the vehicle restarted by itself, where it did.
-    pub last_words: Latest<M, LastWords>,
-    /// Whether the kill switch of a radio was on when it was heard last; so it stays.
-    pub killed: Latest<M, bool>,
-    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link
-    /// asks to fly setpoints.
-    pub sticks: Latest<M, bool>,
-    /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with
-    /// [`Self::request_disarm`].
-    pub disarm: Flag,
-    /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
-    pub commander: Latest<M, Option<(u8, u8)>>,
-    /// Answers to requests. Put them in with [`Self::answer`].
-    pub answers: Queue<M, Reply, REPLIES>,
-    /// Where the local frame is on the globe, if a ground station has said so.
-    pub origin: Latest<M, Origin>,
-    /// The battery, V.
-    pub voltage: Latest<M, f32>,
-    /// What the last control tick did.
-    pub report: Latest<M, Report>,
-    /// What the link received.
-    pub traffic: Latest<M, Traffic>,
-    /// Events on their way to the ground station.
-    pub events: Queue<M, Event, EVENTS>,
-    /// The same events on their way to the log.
-    pub log: Queue<M, Event, EVENTS>,
-    /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
-    pub hil: Flag,
-    /// What the receiving half of the link gives the sending half to say. Put it in with [`Self::reply`].
-    pub replies: Queue<M, Reply, REPLIES>,
-    /// There is something new among answers, events and replies.
-    pub outgoing: Signal<M, ()>,
-    /// What may be set from the ground.
-    pub parameters: Parameters<M>,
-    /// Who may speak on the link. Set its key with [`Self::set_signing`].
-    pub signing: Signing<M>,
-    /// The last seconds of the last flight: control writes, the link reads.
-    pub recorder: Recorder<M>,
-    /// The memory card, where the board has one.
-    pub card: CardStatus<M>,
-    /// What the link wants to know of the card's files.
-    pub library: Library<M>,
-    lately: Lately<M>,
-    /// Events that found one of the queues full.
-    lost: AtomicU32,
-    lost_increments: AtomicU32,
+/// Everything that passes between tasks, for whoever starts them.
+pub struct Shared<M: RawMutex>(Values<M>);
+
+// Who there is.
+views! {
+    /// What a board may do before its tasks begin.
+    BootView = for_boot;
+    /// What [control](crate::control) may do.
+    ControlView = for_control;
+    /// What the [IMU](crate::imu)'s task may do besides passing samples on.
+    ImuView = for_imu;
+    /// What may be done by whoever has inertial samples: the IMU's task or a simulator's.
+    SamplesView = for_samples;
+    /// What a [simulator](crate::hil)'s tasks may do besides that.
+    SimulatorView = for_simulator;
+    /// What the [link](crate::link)'s receiving half may do.
+    ReceiveView = for_receive;
+    /// What the link's sending half may do.
+    TransmitView = for_transmit;
+    /// What may be done by the task that watches the computer's [port](crate::link::port).
+    PortView = for_port;
+    /// What the [radio](crate::radio)'s task may do.
+    RadioView = for_radio;
+    /// What the memory [card](crate::card)'s task may do.
+    CardView = for_card;
+    /// What the [status](crate::status) task may do.
+    StatusView = for_status;
+    /// What may be done by the task that [stores](crate::parameters::storage) parameters.
+    StorageView = for_storage;
+    /// What the [restart](crate::restart)'s task may do.
+    RestartView = for_restart;
 }
 
-impl<M: RawMutex> Shared<M> {
-    /// Nothing told yet, parameters at their defaults.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            imu: Latest::new(),
-            imu_fault: Latest::new(),
-            increments: Queue::new(),
-            calibrations: Queue::new(),
-            poses: Queue::new(),
-            ground_station: Latest::new(),
-            setpoint: Latest::new(),
-            requests: Requests::new(),
-            saving: Flag::new(),
-            judging: Flag::new(),
-            restarting: Flag::new(),
-            into_bootloader: Flag::new(),
-            can_restart: Flag::new(),
-            has_bootloader: Flag::new(),
-            on_port: Flag::new(),
-            pose_delay_unknown: Flag::new(),
-            clock_doubtful: Flag::new(),
-            last_words: Latest::new(),
-            killed: Latest::new(),
-            sticks: Latest::new(),
-            disarm: Flag::new(),
-            commander: Latest::new(),
-            answers: Queue::new(),
-            origin: Latest::new(),
-            voltage: Latest::new(),
-            report: Latest::new(),
-            traffic: Latest::new(),
-            events: Queue::new(),
-            log: Queue::new(),
-            hil: Flag::new(),
-            replies: Queue::new(),
-            outgoing: Signal::new(),
-            parameters: Parameters::new(),
-            signing: Signing::new(),
-            recorder: Recorder::new(),
-            card: CardStatus::new(),
-            library: Library::new(),
-            lately: Lately::new(),
-            lost: AtomicU32::new(0),
-            lost_increments: AtomicU32::new(0),
-        }
+// What there is, and which views may do what with it.
+values! {
+    /// The newest inertial sample, calibrated and low-passed, with its data-ready time. [`flight`] decides how old it
+    /// may be.
+    pub imu: Latest<M, ImuSample> { Write: SamplesView; Read: ControlView, StatusView }
+    /// The newest fault of gyro or accelerometer. It counts for 1 s.
+    pub imu_fault: Latest<M, ImuFault> { Write: SamplesView; Read: ControlView }
+    /// What the inertial samples add up to, in order. Put in with [`Values::increment`].
+    pub increments: Queue<M, Increment, INCREMENTS> { Take: ControlView }
+    /// Increments that were dropped for want of room.
+    pub lost_increments: Count { Read: StatusView }
+    /// Calibrations that somebody asked for.
+    pub calibrations: Queue<M, Calibration, CALIBRATIONS> { Write: ReceiveView; Take: ImuView }
+    /// Poses in the order in which they came, with the times at which they were true;
+    /// [`estimator`](estimation::estimator) decides how old they may be. Without room a pose is dropped: the next will
+    /// do.
+    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES> { Write: ReceiveView, SimulatorView; Take: ControlView }
+    /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` knows.
+    pub pose_delay_unknown: Flag { Write: ReceiveView; Read: ControlView }
+    /// Its time says when a ground station was last heard.
+    pub ground_station: Latest<M, ()> { Write: ReceiveView, RadioView; Read: ControlView, StatusView }
+    /// The newest setpoint. An unread one is replaced: only the last counts.
+    pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView; Take: ControlView }
+    /// Requests for control, in the order they came. Put in with [`Values::request`].
+    pub requests: Requests<M> { Take: ControlView }
+    /// Raised by a disarm command with force; no full queue can lose it. Raised with [`Values::request_disarm`].
+    pub disarm: Flag { Take: ControlView }
+    /// Whether the kill switch of a radio was on when it was heard last; so it stays.
+    pub killed: Latest<M, bool> { Write: RadioView; Read: ControlView }
+    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link
+    /// asks to fly setpoints.
+    pub sticks: Latest<M, bool> { Write: RadioView, ReceiveView }
+    /// What the last control tick did. More views tell from it whether the vehicle [is armed](Values::is_armed) or a
+    /// motor [turns](Values::is_turning).
+    pub report: Latest<M, Report> { Write: ControlView; Read: RadioView, ReceiveView, TransmitView, StatusView }
+    /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
+    pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView }
+    /// Answers to requests. Put in with [`Values::answer`].
+    pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
+    /// What the receiving half of the link gives the sending half to say. Put in with [`Values::reply`].
+    pub replies: Queue<M, Reply, REPLIES> { Take: TransmitView }
+    /// Events on their way to the ground station. Put in with [`Values::announce`], as the next two are.
+    pub events: Queue<M, Event, EVENTS> { Take: TransmitView }
+    /// The same events on their way to the log.
+    pub log: Queue<M, Event, EVENTS> { Take: StatusView }
+    /// The same events on their way to the card, while that is ready.
+    pub card_events: Queue<M, Event, CARD_EVENTS> { Take: CardView }
+    /// Events that found one of the queues full.
+    pub lost_events: Count { Read: TransmitView, StatusView }
+    /// There is something new for the link's sending half.
+    pub outgoing: Signal<M, ()> { Write: CardView; Take: TransmitView }
+    /// What the link received.
+    pub traffic: Latest<M, Traffic> { Write: ReceiveView; Read: TransmitView, StatusView }
+    /// Where the local frame is on the globe, if a ground station has said so.
+    pub origin: Latest<M, Origin> { Write: ReceiveView; Read: TransmitView }
+    /// The battery, V. It counts for 1 s.
+    pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView }
+    /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
+    pub hil: Flag { Write: ReceiveView, BootView; Read: ControlView, ImuView, TransmitView }
+    /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
+    pub on_port: Flag { Write: PortView; Read: ReceiveView, TransmitView }
+    /// Raised while parameters are written to flash: nothing begins to turn. Control reads this and the next two with
+    /// [`Values::is_busy`].
+    pub saving: Flag { Write: StorageView; Read: ReceiveView, RestartView }
+    /// Raised while a changed configuration is certified: nothing begins to turn.
+    pub judging: Flag { Write: ReceiveView }
+    /// Raised by a command to restart: nothing begins to turn any more.
+    pub restarting: Flag { Write: ReceiveView, RestartView }
+    /// Raised with it where a bootloader is to start and not the firmware.
+    pub into_bootloader: Flag { Write: ReceiveView; Read: RestartView }
+    /// Raised where somebody can restart the vehicle.
+    pub can_restart: Flag { Write: RestartView; Read: ReceiveView }
+    /// Raised where there is a bootloader to start.
+    pub has_bootloader: Flag { Write: RestartView; Read: ReceiveView }
+    /// Raised at boot where the clock's crystal does not run: nobody arms.
+    pub clock_doubtful: Flag { Write: BootView; Read: ControlView }
+    /// Why the vehicle restarted by itself, where it did.
+    pub last_words: Latest<M, LastWords> { Write: BootView; Read: StatusView }
+    /// What may be set from the ground.
+    pub parameters: Parameters<M> {
+        All: BootView, StorageView; Write: ImuView, ReceiveView;
+        Read: ControlView, SimulatorView, TransmitView, StatusView
     }
+    /// Who may speak on the link. Its key is set with [`Values::set_signing`].
+    pub signing: Signing<M> { All: StorageView; Read: ReceiveView, TransmitView }
+    /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
+    pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
+    /// The memory card, where the board has one. Its task may be silent for [`CARD_SILENCE`].
+    pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
+    /// What the link wants to know of the card's files.
+    pub library: Library<M> { Write: CardView; Read: TransmitView }
+    lately: Lately<M> {}
+}
 
+// What concerns several values at once, and which views can do it.
+offers! {
+    [M: RawMutex] SamplesView<'_, M> { fn increment(increment: Increment); }
+    [M: RawMutex] ControlView<'_, M> {
+        fn pass(now: u64);
+        fn answer(asked: &Asked, result: Result<(), Refusal>);
+        fn is_busy() -> bool;
+    }
+    [M: RawMutex] ReceiveView<'_, M> {
+        fn request(asked: Asked);
+        fn request_disarm();
+        fn reply(reply: Reply);
+        fn set_signing(key: Option<Key>, stamp: Stamp, now: u64);
+        fn is_armed() -> bool;
+        fn is_turning() -> bool;
+    }
+    [M: RawMutex] TransmitView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
+    [M: RawMutex] RadioView<'_, M> { fn request(asked: Asked); }
+    [M: RawMutex] ImuView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
+    [M: RawMutex] StatusView<'_, M> { fn is_armed() -> bool; }
+    [M: RawMutex] PortView<'_, M> { fn is_turning() -> bool; }
+    [M: RawMutex] StorageView<'_, M> { fn is_turning() -> bool; }
+    [M: RawMutex] RestartView<'_, M> { fn is_turning() -> bool; }
+}
+
+impl<M: RawMutex> Values<M> {
     /// Hands control what the IMU did. Without room it is dropped and counted: the next one does not begin where the
     /// last one in the queue ended, which is how control knows.
     pub fn increment(&self, increment: Increment) {
         if self.increments.put(increment).is_err() {
-            self.lost_increments.fetch_add(1, Ordering::Relaxed);
+            self.lost_increments.add();
         }
-    }
-
-    /// Increments that were dropped for want of room.
-    #[must_use]
-    pub fn lost_increments(&self) -> u32 {
-        self.lost_increments.load(Ordering::Relaxed)
     }
 
     /// Asks control for something, in place of what the link, or the radio, asked for of that kind: that is answered.
@@ -294,17 +292,11 @@ impl<M: RawMutex> Shared<M> {
         if self.lately.has_said(&event) {
             return;
         }
-        let is_logged = self.card.state() != CardState::Ready || self.card.events.put(event.clone()).is_ok();
+        let is_logged = self.card.state() != CardState::Ready || self.card_events.put(event.clone()).is_ok();
         if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged {
-            self.lost.fetch_add(1, Ordering::Relaxed);
+            self.lost_events.add();
         }
         self.outgoing.signal(());
-    }
-
-    /// Events that were dropped for want of room.
-    #[must_use]
-    pub fn lost_events(&self) -> u32 {
-        self.lost.load(Ordering::Relaxed)
     }
 
     /// Has frames signed with a key from `now`, us, on, or not any more, and keeps that: see [`Signing::set`].
@@ -329,6 +321,40 @@ impl<M: RawMutex> Shared<M> {
     #[must_use]
     pub fn is_turning(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed() || report.value.mode == Mode::MotorTest)
+    }
+}
+
+impl<M: RawMutex> Shared<M> {
+    /// Nothing told yet, parameters at their defaults.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Values::new())
+    }
+}
+
+impl<'a, M: RawMutex> ImuView<'a, M> {
+    /// To pass samples on.
+    #[must_use]
+    pub const fn samples(self) -> SamplesView<'a, M> {
+        SamplesView(self.0)
+    }
+}
+
+impl<'a, M: RawMutex> SimulatorView<'a, M> {
+    /// To pass samples on.
+    #[must_use]
+    pub const fn samples(self) -> SamplesView<'a, M> {
+        SamplesView(self.0)
+    }
+}
+
+/// A desktop's tests put down and look at any value. A board's program cannot.
+#[cfg(not(target_os = "none"))]
+impl<M: RawMutex> core::ops::Deref for Shared<M> {
+    type Target = Values<M>;
+
+    fn deref(&self) -> &Values<M> {
+        &self.0
     }
 }
 

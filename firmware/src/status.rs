@@ -16,7 +16,7 @@ mod log;
 use crate::hardware::{Battery, Clock, Light};
 use crate::last_words::Teller;
 use crate::parameters::table::Name;
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{Event, Severity, StatusView};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Mode;
@@ -62,26 +62,26 @@ pub async fn run<M: RawMutex>(
     mut light: impl Light,
     mut battery: impl Battery,
     clock: &impl Clock,
-    shared: &Shared<M>,
+    shared: StatusView<'_, M>,
 ) -> ! {
     let (mut reading, mut summary, mut warning) = (0, 0, 0);
     let mut is_card_silent = false;
     let mut teller = Teller::default();
     loop {
         let now = clock.now();
-        let report = shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
+        let report = shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
         light.set(is_lit(report.map(|report| report.value.mode), now));
         if now >= reading {
             reading = now.saturating_add(BATTERY_INTERVAL);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
         teller.look(shared, now);
-        let is_silent = shared.card.is_silent(now);
+        let is_silent = shared.card().is_silent(now);
         if is_silent && !is_card_silent {
             shared.announce(Event::new(Severity::Warning, "Card does not answer: flights are not logged"));
         }
         is_card_silent = is_silent;
-        while let Some(event) = shared.log.take() {
+        while let Some(event) = shared.log().take() {
             log::event(&event);
         }
         if now >= summary {
@@ -95,15 +95,20 @@ pub async fn run<M: RawMutex>(
 }
 
 /// Reads the battery and warns when it is low, no more often than `warning` allows.
-async fn measure<M: RawMutex>(battery: &mut impl Battery, clock: &impl Clock, shared: &Shared<M>, warning: &mut u64) {
+async fn measure<M: RawMutex>(
+    battery: &mut impl Battery,
+    clock: &impl Clock,
+    shared: StatusView<'_, M>,
+    warning: &mut u64,
+) {
     let end = clock.now().saturating_add(BATTERY_TIME_MAX);
     let Either::First(Some(voltage)) = select(battery.voltage(), clock.until(end)).await else { return };
     if !voltage.is_finite() {
         return;
     }
     let now = clock.now();
-    shared.voltage.put(voltage, now);
-    if voltage < shared.parameters.get(Name::BatteryLow) && now >= *warning {
+    shared.voltage().put(voltage, now);
+    if voltage < shared.parameters().get(Name::BatteryLow) && now >= *warning {
         *warning = now.saturating_add(WARNING_INTERVAL);
         shared.announce(Event::new(Severity::Warning, format_args!("Battery low: {voltage:.1} V")));
     }

@@ -40,7 +40,7 @@ fuzz_target!(|events: Vec<Event>| {
     let built = built();
     shared.parameters.boot(built);
     shared.can_restart.raise();
-    let (mut parser, mut receiver) = (Parser::new(), Receiver::new(&shared));
+    let (mut parser, mut receiver) = (Parser::new(), Receiver::new(shared.for_receive()));
     let mut now = 1_000_000_u64;
     let mut last = Vec::new();
     let mut times = Vec::new();

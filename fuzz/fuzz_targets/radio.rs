@@ -32,7 +32,7 @@ enum Event {
 
 fuzz_target!(|events: Vec<Event>| {
     let shared: Shared<NoopRawMutex> = Shared::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     let mut now = 1_000_000_u64;
     // Whether bytes that are no frame may have been the beginning of one.
     let mut whole = true;

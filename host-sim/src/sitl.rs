@@ -218,11 +218,11 @@ impl Sitl {
     fn start(&mut self) -> Result<(), ParameterError> {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
-        let mut parameters = Storage::load(self.flash.clone(), shared);
+        let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
         shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice())));
         let place = Box::leak(Box::new(boot::Place::new()));
         let built = Built { configuration: self.configuration.clone(), loops: self.loops, identity: self.identity };
-        let (pilot, outputs) = boot::start_with(place, shared, built)?;
+        let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;
 
         let pool = LocalPool::new();
         let spawner = pool.spawner();
@@ -236,22 +236,21 @@ impl Sitl {
             parser: Parser::new(),
         };
         let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
-        spawn(
-            &spawner,
-            async move { Control::new(shared, pilot, outputs).run(&time, &mut motors, &mut watchdog).await },
-        );
+        spawn(&spawner, async move {
+            Control::new(shared.for_control(), pilot, outputs).run(&time, &mut motors, &mut watchdog).await
+        });
         let (mut sensor, time) = (world.clone(), clock.clone());
-        spawn(&spawner, async move { imu::run(shared, &time, &mut sensor).await });
+        spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor).await });
         let (ear, time) = (self.up.clone(), clock.clone());
-        spawn(&spawner, async move { link::receive::receive(ear, &time, shared).await });
+        spawn(&spawner, async move { link::receive::receive(ear, &time, shared.for_receive()).await });
         let time = clock.clone();
-        spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared).await });
+        spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared.for_transmit()).await });
         let (light, battery, time) = (world.clone(), world.clone(), clock.clone());
-        spawn(&spawner, async move { status::run(light, battery, &time, shared).await });
+        spawn(&spawner, async move { status::run(light, battery, &time, shared.for_status()).await });
         let time = clock.clone();
-        spawn(&spawner, async move { parameters.keep(&time, shared).await });
+        spawn(&spawner, async move { parameters.keep(&time, shared.for_storage()).await });
         let (mut desk, time) = (Desk(Rc::clone(&self.restart)), clock.clone());
-        spawn(&spawner, async move { restart::run(shared, &time, &mut desk).await });
+        spawn(&spawner, async move { restart::run(shared.for_restart(), &time, &mut desk).await });
         spawn(&spawner, world.clone().run());
         (self.pool, self.shared) = (pool, shared);
         Ok(())

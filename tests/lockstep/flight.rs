@@ -41,7 +41,7 @@ impl Flight {
     pub fn boot_with(parameters: &[(Name, f32)]) -> Self {
         Self::with(|shared| {
             parameters.iter().for_each(|&(name, value)| shared.parameters.set(name, value).unwrap());
-            boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap()
+            boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap()
         })
     }
 
@@ -59,19 +59,21 @@ impl Flight {
         let (pilot, outputs) = boot(shared);
         let (vehicle, time) = (world.clone(), clock.clone());
         let control = async move {
-            let mut control = Control::new(shared, pilot, outputs);
+            let mut control = Control::new(shared.for_control(), pilot, outputs);
             control.run(&time, &mut SimMotors(vehicle.clone()), &mut SimWatchdog(vehicle)).await;
         };
         spawner.spawn_local(control).unwrap();
         let (vehicle, time) = (world.clone(), clock.clone());
-        spawner.spawn_local(async move { imu::run(shared, &time, &mut SimImu(vehicle)).await }).unwrap();
+        spawner.spawn_local(async move { imu::run(shared.for_imu(), &time, &mut SimImu(vehicle)).await }).unwrap();
         let time = clock.clone();
-        spawner.spawn_local(async move { link::receive::receive(up, &time, shared).await }).unwrap();
+        spawner.spawn_local(async move { link::receive::receive(up, &time, shared.for_receive()).await }).unwrap();
         let time = clock.clone();
-        spawner.spawn_local(async move { link::transmit::transmit(down, &time, shared).await }).unwrap();
+        spawner.spawn_local(async move { link::transmit::transmit(down, &time, shared.for_transmit()).await }).unwrap();
 
         let (vehicle, time) = (world.clone(), clock.clone());
-        spawner.spawn_local(async move { status::run(Dark, SimBattery(vehicle), &time, shared).await }).unwrap();
+        spawner
+            .spawn_local(async move { status::run(Dark, SimBattery(vehicle), &time, shared.for_status()).await })
+            .unwrap();
 
         let poses = Rc::new(Cell::new(true));
         spawner.spawn_local(world.clone().run()).unwrap();

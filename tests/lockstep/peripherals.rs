@@ -83,7 +83,7 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
         flight.world.sensor(Health::Works);
         flight.pass(0.5);
         assert_eq!(count(&flight, "IMU answers again"), 1);
-        assert_eq!((flight.report().timing.gaps, flight.shared.lost_increments()), (1, 0));
+        assert_eq!((flight.report().timing.gaps, flight.shared.lost_increments.get()), (1, 0));
         assert_eq!((flight.report().mode, flight.world.command()), (Mode::Checks, MotorCommand::Stop));
         // The estimate begins anew, and must have been good for a second.
         flight.pass(2.0);

@@ -32,12 +32,12 @@ mod target {
         mps2::init(mps2::begin());
         defmt::info!("{} emulated", firmware::configuration::NAME);
         static PLACE: boot::Place = boot::Place::new();
-        let Ok((pilot, outputs)) = boot::start(&PLACE, &SHARED) else {
+        let Ok((pilot, outputs)) = boot::start(&PLACE, SHARED.for_boot()) else {
             exit::fail("the embedded scenario has not four rotors")
         };
-        SHARED.hil.raise();
+        SHARED.for_boot().hil().raise();
         if let Some(memory) = recorder::take(false) {
-            SHARED.recorder.attach(Ring::recover(memory));
+            SHARED.for_boot().recorder().attach(Ring::recover(memory));
         }
 
         let spawner = executors::start_flight();
@@ -53,34 +53,35 @@ mod target {
 
     #[embassy_executor::task]
     async fn control(pilot: &'static mut Pilot<'static>, outputs: Outputs) {
-        let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: &SHARED.hil, clock: BoardClock };
+        let shared = SHARED.for_control();
+        let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock };
         let mut watchdog = BoardWatchdog::start(WATCHDOG);
-        Control::new(&SHARED, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
+        Control::new(shared, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]
     async fn to_simulator() {
-        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, &SHARED).await;
+        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, SHARED.for_simulator()).await;
     }
 
     #[embassy_executor::task]
     async fn from_simulator() {
-        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, &SHARED).await;
+        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, SHARED.for_simulator()).await;
     }
 
     #[embassy_executor::task]
     async fn from_ground() {
-        receive::receive(uart::GROUND.split().0, &BoardClock, &SHARED).await;
+        receive::receive(uart::GROUND.split().0, &BoardClock, SHARED.for_receive()).await;
     }
 
     #[embassy_executor::task]
     async fn to_ground() {
-        transmit::transmit(uart::GROUND.split().1, &BoardClock, &SHARED).await;
+        transmit::transmit(uart::GROUND.split().1, &BoardClock, SHARED.for_transmit()).await;
     }
 
     #[embassy_executor::task]
     async fn show_status() {
-        status::run(Lamp, NoBattery, &BoardClock, &SHARED).await;
+        status::run(Lamp, NoBattery, &BoardClock, SHARED.for_status()).await;
     }
 }
 

@@ -4,6 +4,7 @@
 use super::volume::{Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR};
 use crate::recorder::Recorder;
+use crate::shared::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Copies the recording that the start found, unless the newest copy is the same; the number of the file that holds it.
@@ -13,7 +14,10 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 ///
 /// # Errors
 /// If there is no room for it, or the card fails.
-pub fn copy<C: Card, M: RawMutex>(volume: &Volume<'_, C>, recorder: &Recorder<M>) -> Result<Option<u32>, Trouble> {
+pub fn copy<C: Card, M: RawMutex>(
+    volume: &Volume<'_, C>,
+    recorder: Read<'_, Recorder<M>>,
+) -> Result<Option<u32>, Trouble> {
     let Some(size) = recorder.size() else { return Ok(None) };
     let newest = volume.newest(&[Kind::Recording])?;
     if let Some(newest) = newest.filter(|newest| newest.size == size)
@@ -40,7 +44,7 @@ fn is_copy<C: Card, M: RawMutex>(
     volume: &Volume<'_, C>,
     number: u32,
     size: u32,
-    recorder: &Recorder<M>,
+    recorder: Read<'_, Recorder<M>>,
 ) -> Result<bool, Trouble> {
     let file = volume.open_file(Kind::Recording, number)?;
     let (mut there, mut here) = ([0; SECTOR], [0; SECTOR]);

@@ -10,7 +10,7 @@ use super::log;
 use super::volume::{Entry, File, Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR};
 use crate::recorder::Recorder;
-use crate::shared::{Answer, Bytes, CHUNK, Question};
+use crate::shared::{Answer, Bytes, CHUNK, Question, Read};
 use core::ops::ControlFlow;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
@@ -53,7 +53,7 @@ impl Library {
         now: u64,
         volume: &Volume<'_, C>,
         next: u32,
-        recorder: &Recorder<M>,
+        recorder: Read<'_, Recorder<M>>,
     ) -> Answer {
         self.busy_until = now.saturating_add(ATTENTION);
         let answer = self.find(question, volume, next, recorder);
@@ -76,7 +76,7 @@ impl Library {
         question: Question,
         volume: &Volume<'_, C>,
         next: u32,
-        recorder: &Recorder<M>,
+        recorder: Read<'_, Recorder<M>>,
     ) -> Result<Answer, Trouble> {
         if question == Question::Count || self.files.is_none() {
             self.close(volume);
@@ -96,7 +96,7 @@ impl Library {
                 (Some(0), Some(offset)) => Question::Bytes { id: 0, offset },
                 _ => return Ok(Answer::Unknown),
             };
-            return Ok(Answer::of_recorder(recorder, question));
+            return Ok(recorder.answer(question));
         };
         let open = self.opened(id, &entry, volume)?;
         let Some(offset) = offset else { return Ok(Answer::Size(open.size)) };

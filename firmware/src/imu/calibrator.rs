@@ -19,7 +19,7 @@ use super::solution::{GRAVITY, solve};
 use crate::hardware::{Fault, RawImu, Unit};
 use crate::link::acknowledgement::Order;
 use crate::parameters::calibration;
-use crate::shared::{Event, Procedure, Reply, Severity, Shared};
+use crate::shared::{Event, ImuView, Procedure, Reply, Severity};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
@@ -81,7 +81,7 @@ impl Job {
 
 /// What corrects both sensors, and what is being done about it.
 pub struct Calibrator<'a, M: RawMutex> {
-    shared: &'a Shared<M>,
+    shared: ImuView<'a, M>,
     /// Of the first and of the second sensor.
     calibrations: [Calibration; 2],
     job: Option<Job>,
@@ -97,8 +97,8 @@ fn place(unit: Unit) -> usize {
 
 impl<'a, M: RawMutex> Calibrator<'a, M> {
     /// Begins with what was kept, and with the gyro's bias of today.
-    pub fn new(shared: &'a Shared<M>, now: u64) -> Self {
-        let calibrations = [Unit::First, Unit::Second].map(|unit| calibration::load(&shared.parameters, unit));
+    pub fn new(shared: ImuView<'a, M>, now: u64) -> Self {
+        let calibrations = [Unit::First, Unit::Second].map(|unit| calibration::load(shared.parameters(), unit));
         Self { shared, calibrations, job: Some(Job::new(Procedure::Gyro, None, now)) }
     }
 
@@ -119,7 +119,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Takes up what was asked for, and gives up what may not go on.
     pub fn listen(&mut self, now: u64) {
-        while let Some((asked, order)) = self.shared.calibrations.take() {
+        while let Some((asked, order)) = self.shared.calibrations().take() {
             let result = match asked {
                 None => {
                     self.fail("Calibration: ended by command");
@@ -138,7 +138,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         let Some(job) = &self.job else { return };
         if self.shared.is_armed() {
             self.fail("Calibration: ended by arming");
-        } else if self.shared.hil.is_raised() {
+        } else if self.shared.hil().is_raised() {
             self.fail("Calibration: a simulator has the sensors");
         } else if job.order.is_some() && now >= job.until {
             self.fail("Calibration: took too long");
@@ -206,7 +206,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 continue;
             };
             *kept = *found;
-            if let Err(refused) = calibration::store(&self.shared.parameters, unit, found) {
+            if let Err(refused) = calibration::store(self.shared.parameters(), unit, found) {
                 self.shared.announce(Event::new(Severity::Warning, refused));
             }
         }
@@ -228,7 +228,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
     }
 
     /// Adds a side, and says how far that is; whether all six are there.
-    fn add_sides(shared: &Shared<M>, job: &mut Job, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
+    fn add_sides(shared: ImuView<'_, M>, job: &mut Job, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
         for (index, (findings, rest)) in job.findings.iter_mut().zip(rests).enumerate() {
             let Some(rest) = rest else { continue };
             let added = findings.sides.add(rest, GRAVITY);

@@ -8,7 +8,7 @@
 //! of noise, so that equal samples are no fault of theirs.
 
 use crate::hardware::RawImu;
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
@@ -18,7 +18,7 @@ const QUIET: u64 = 1_000_000;
 
 /// A sensor's samples, as far as they have come.
 pub struct Flow<'a, M: RawMutex> {
-    shared: &'a Shared<M>,
+    shared: SamplesView<'a, M>,
     conditioner: Conditioner,
     is_simulated: bool,
     /// When each fault was last seen, us.
@@ -31,7 +31,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     /// # Errors
     /// Names the parameter that makes no sense.
     pub fn new(
-        shared: &'a Shared<M>,
+        shared: SamplesView<'a, M>,
         parameters: &ImuParameters,
         calibration: &Calibration,
     ) -> Result<Self, ParameterError> {
@@ -43,7 +43,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     ///
     /// # Errors
     /// None: the parameters are good.
-    pub fn simulated(shared: &'a Shared<M>) -> Result<Self, ParameterError> {
+    pub fn simulated(shared: SamplesView<'a, M>) -> Result<Self, ParameterError> {
         Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::PROMPT, &Calibration::NONE)? })
     }
 
@@ -78,7 +78,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         if self.is_simulated && is_slow {
             sample.angular_velocity = raw.angular_velocity;
         }
-        self.shared.imu.put(sample, newest.time);
+        self.shared.imu().put(sample, newest.time);
         if let Some(increment) = increment {
             self.shared.increment(increment);
         }
@@ -89,7 +89,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
             return;
         }
         if fault.is_of_the_gyro() || fault.is_of_the_accelerometer() {
-            self.shared.imu_fault.put(fault, time);
+            self.shared.imu_fault().put(fault, time);
         }
         let Some(seen) = self.seen.get_mut(fault as usize) else { return };
         let is_new = seen.is_none_or(|seen| time.saturating_sub(seen) >= QUIET);

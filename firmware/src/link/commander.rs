@@ -19,7 +19,7 @@ const STATIONS: usize = 4;
 /// Who sent something: system and component.
 type Sender = (u8, u8);
 
-/// Who armed the vehicle, if it was a station, and when, us; as [`crate::shared::Shared::commander`] has it.
+/// Who armed the vehicle, if it was a station, and when, us; as [`crate::shared::Values::commander`] has it.
 type Armed = Option<Stamped<Option<Sender>>>;
 
 /// When the station that commands was last heard, us, and who is a ground station.

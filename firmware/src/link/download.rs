@@ -5,7 +5,7 @@
 //! the download. Elsewhere there is the flight recorder's recording, which is at hand. Nothing goes out while the
 //! vehicle is armed.
 
-use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, Shared};
+use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, TransmitView};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA};
@@ -64,12 +64,12 @@ impl Download {
     }
 
     /// Entries of the list, by their numbers, at `now`, us.
-    pub fn list<M: RawMutex>(&mut self, first: u16, last: u16, now: u64, shared: &Shared<M>) {
+    pub fn list<M: RawMutex>(&mut self, first: u16, last: u16, now: u64, shared: TransmitView<'_, M>) {
         self.begin(Job::Entries { next: first, last, count: None }, now, shared);
     }
 
     /// So many bytes of a log, from `offset` on, at `now`, us.
-    pub fn read<M: RawMutex>(&mut self, id: u16, offset: u32, count: u32, now: u64, shared: &Shared<M>) {
+    pub fn read<M: RawMutex>(&mut self, id: u16, offset: u32, count: u32, now: u64, shared: TransmitView<'_, M>) {
         self.begin(Job::Data { id, next: offset, end: offset.saturating_add(count) }, now, shared);
     }
 
@@ -78,8 +78,8 @@ impl Download {
         *self = Self::new();
     }
 
-    fn begin<M: RawMutex>(&mut self, job: Job, now: u64, shared: &Shared<M>) {
-        let from_card = shared.card.state() == CardState::Ready;
+    fn begin<M: RawMutex>(&mut self, job: Job, now: u64, shared: TransmitView<'_, M>) {
+        let from_card = shared.card().state() == CardState::Ready;
         *self = Self { job: Some(job), from_card, due: now, ..Self::new() };
     }
 
@@ -94,7 +94,7 @@ impl Download {
     }
 
     /// The next message at `now`, us, if there is one.
-    pub fn next<M: RawMutex>(&mut self, now: u64, shared: &Shared<M>) -> Option<Message> {
+    pub fn next<M: RawMutex>(&mut self, now: u64, shared: TransmitView<'_, M>) -> Option<Message> {
         let job = self.job.filter(|_| now >= self.due)?;
         if shared.is_armed() {
             self.give_up(shared, "Log: not while armed");
@@ -143,7 +143,7 @@ impl Download {
         wanted: usize,
         end: u32,
         now: u64,
-        shared: &Shared<M>,
+        shared: TransmitView<'_, M>,
     ) -> Option<([u8; PART], usize)> {
         let begin = next.checked_sub(self.offset).unwrap_or(u32::MAX) as usize;
         // A chunk that is not full ends where the log does.
@@ -176,21 +176,21 @@ impl Download {
     }
 
     /// What the recorder says, or the card; asks the card, and gives up where it says nothing.
-    fn answer<M: RawMutex>(&mut self, question: Question, now: u64, shared: &Shared<M>) -> Option<Answer> {
-        if self.from_card != (shared.card.state() == CardState::Ready) {
+    fn answer<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) -> Option<Answer> {
+        if self.from_card != (shared.card().state() == CardState::Ready) {
             // What the numbers stand for has changed.
             self.give_up(shared, "Log: the card has come or gone, list again");
             return None;
         }
         if !self.from_card {
-            return Some(Answer::of_recorder(&shared.recorder, question));
+            return Some(shared.recorder().answer(question));
         }
         let Some((_, until)) = self.asked.filter(|(asked, _)| *asked == question) else {
             self.ask(question, now, shared);
             self.is_waiting = true;
             return None;
         };
-        let answer = shared.library.fetch(question);
+        let answer = shared.library().fetch(question);
         self.is_waiting = answer.is_none();
         if answer.is_some() {
             self.asked = None;
@@ -200,14 +200,14 @@ impl Download {
         answer
     }
 
-    fn ask<M: RawMutex>(&mut self, question: Question, now: u64, shared: &Shared<M>) {
+    fn ask<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) {
         if self.from_card {
-            shared.library.ask(question, now);
+            shared.library().ask(question, now);
             self.asked = Some((question, now.saturating_add(ANSWER_WITHIN)));
         }
     }
 
-    fn give_up<M: RawMutex>(&mut self, shared: &Shared<M>, words: impl Display) {
+    fn give_up<M: RawMutex>(&mut self, shared: TransmitView<'_, M>, words: impl Display) {
         self.end();
         shared.announce(Event::new(Severity::Warning, words));
     }

@@ -6,7 +6,7 @@
 //! silent. Every move is reported, on the line that it leads to.
 
 use crate::hardware::{Clock, Port};
-use crate::shared::{Event, Flag, Severity, Shared};
+use crate::shared::{self, Event, Flag, PortView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::{Error, ErrorKind, ErrorType, Read, Write};
 
@@ -19,8 +19,8 @@ pub struct Line<'a, S, P> {
     pub serial: S,
     /// The port, where there is one.
     pub port: Option<P>,
-    /// Whether the link is on the port: [`Shared::on_port`].
-    pub on_port: &'a Flag,
+    /// Whether the link is on the port: [`shared::Values::on_port`].
+    pub on_port: shared::Read<'a, Flag>,
 }
 
 impl<S, P> ErrorType for Line<'_, S, P> {
@@ -60,15 +60,15 @@ impl<S: Write, P: Write> Write for Line<'_, S, P> {
 }
 
 /// Moves the link to the port while that is open, and back, for ever.
-pub async fn watch<M: RawMutex>(port: &impl Port, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn watch<M: RawMutex>(port: &impl Port, clock: &impl Clock, shared: PortView<'_, M>) -> ! {
     loop {
         let is_open = port.is_open();
-        if is_open != shared.on_port.is_raised() && !shared.is_turning() {
+        if is_open != shared.on_port().is_raised() && !shared.is_turning() {
             let words = if is_open {
-                shared.on_port.raise();
+                shared.on_port().raise();
                 "Link: on USB, the serial line is not heard"
             } else {
-                shared.on_port.lower();
+                shared.on_port().lower();
                 "Link: on the serial line"
             };
             shared.announce(Event::new(Severity::Information, words));

@@ -15,7 +15,7 @@ use super::setpoint::{Here, setpoint};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::radio::SILENCE as RADIO_SILENCE;
-use crate::shared::{Event, Ping, Reply, Severity, Shared, Traffic};
+use crate::shared::{Event, Ping, ReceiveView, Reply, Severity, Traffic};
 use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
@@ -55,17 +55,17 @@ const TIME_INTERVAL: u64 = 20_000;
 const CHUNK: usize = 64;
 
 /// Receives for ever.
-pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: ReceiveView<'_, M>) -> ! {
     let mut parser = Parser::new();
     let mut receiver = Receiver::new(shared);
     let mut chunk = [0; CHUNK];
-    let mut on_port = shared.on_port.is_raised();
+    let mut on_port = shared.on_port().is_raised();
     loop {
         let wake = clock.now().saturating_add(SILENCE);
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
                 let now = clock.now();
-                if on_port != shared.on_port.is_raised() {
+                if on_port != shared.on_port().is_raised() {
                     on_port = !on_port;
                     parser.forget();
                 }
@@ -88,7 +88,7 @@ struct Occasionally {
 }
 
 impl Occasionally {
-    fn warn<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64, words: impl Display) {
+    fn warn<M: RawMutex>(&mut self, shared: ReceiveView<'_, M>, now: u64, words: impl Display) {
         if now >= self.not_before {
             self.not_before = now.saturating_add(TEXT_INTERVAL);
             shared.announce(Event::new(Severity::Warning, words));
@@ -98,7 +98,7 @@ impl Occasionally {
 
 /// Acts on frames.
 pub struct Receiver<'a, M: RawMutex> {
-    shared: &'a Shared<M>,
+    shared: ReceiveView<'a, M>,
     poses: Poses,
     repetitions: Repetitions,
     commander: Commander,
@@ -121,7 +121,7 @@ pub struct Receiver<'a, M: RawMutex> {
 impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Nothing received yet.
     #[must_use]
-    pub fn new(shared: &'a Shared<M>) -> Self {
+    pub fn new(shared: ReceiveView<'a, M>) -> Self {
         Self {
             shared,
             poses: Poses::default(),
@@ -158,7 +158,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     #[inline(never)]
     fn obey(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
-        self.commander.hear(sender, self.shared.commander.get(), frame.time);
+        self.commander.hear(sender, self.shared.commander().get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             message if is_pose(message) => self.pose(frame),
@@ -201,12 +201,12 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Shares the counts, with the parser's.
     fn count(&mut self, discarded: u32, now: u64) {
         self.traffic.discarded = discarded;
-        self.shared.traffic.put(self.traffic, now);
+        self.shared.traffic().put(self.traffic, now);
     }
 
     fn own_system(&self) -> u8 {
         // Whole and within 1 to 255, as the table has it.
-        self.shared.parameters.get(Name::SystemId) as u8
+        self.shared.parameters().get(Name::SystemId) as u8
     }
 
     fn refused(&mut self) {
@@ -216,27 +216,27 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Any ground station's will do. A companion computer's does not: it goes on when nobody watches any more.
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
         if message.mavtype == MavType::MAV_TYPE_GCS {
-            self.shared.ground_station.put((), frame.time);
+            self.shared.ground_station().put((), frame.time);
             self.commander.meet((frame.header.system, frame.header.component));
         }
     }
 
     fn pose(&mut self, frame: &Frame<'_>) {
         // In a simulation the simulator says where the vehicle is.
-        if self.shared.hil.is_raised() {
+        if self.shared.hil().is_raised() {
             return;
         }
         // Milliseconds, within 0 and 150, as the table has it.
-        let delay = (self.shared.parameters.get(Name::PoseDelay) * 1e3) as u64;
+        let delay = (self.shared.parameters().get(Name::PoseDelay) * 1e3) as u64;
         match self.poses.take(frame, delay) {
             Ok(Some(pose)) => {
                 if delay == 0 && !self.poses.is_synchronised() {
-                    self.shared.pose_delay_unknown.raise();
+                    self.shared.pose_delay_unknown().raise();
                 } else {
-                    self.shared.pose_delay_unknown.lower();
+                    self.shared.pose_delay_unknown().lower();
                 }
                 // Where control does not take them, one more or less makes no difference.
-                let _ = self.shared.poses.put(pose);
+                let _ = self.shared.poses().put(pose);
             }
             Ok(None) => {}
             Err(refusal) => {
@@ -250,10 +250,10 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        let state = self.shared.report.get().and_then(|report| report.value.state);
+        let state = self.shared.report().get().and_then(|report| report.value.state);
         match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
             // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
-            Ok(value) if self.shared.sticks.get().is_some_and(|sticks| sticks.value) => {
+            Ok(value) if self.shared.sticks().get().is_some_and(|sticks| sticks.value) => {
                 self.kept = Some(Stamped { value, time: frame.time });
                 self.refused();
                 self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
@@ -266,7 +266,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                     return self.setpoint_refused.warn(self.shared, frame.time, words);
                 }
                 self.owner = Some(Stamped { value, time: frame.time });
-                self.shared.setpoint.put(setpoint, frame.time);
+                self.shared.setpoint().put(setpoint, frame.time);
             }
             Err(refusal) => {
                 self.refused();
@@ -278,13 +278,13 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Somebody asks to fly setpoints at `now`, us: sticks that have fallen silent stand back, and what was sent
     /// meanwhile counts.
     fn take_over(&mut self, now: u64) {
-        let sticks = self.shared.sticks.get();
+        let sticks = self.shared.sticks().get();
         if sticks.is_none_or(|sticks| !sticks.value || sticks.age(now) <= RADIO_SILENCE) {
             return;
         }
-        self.shared.sticks.put(false, now);
+        self.shared.sticks().put(false, now);
         if let Some(kept) = self.kept.take().filter(|kept| kept.age(now) <= SETPOINT_AGE_MAX) {
-            self.shared.setpoint.put(kept.value, kept.time);
+            self.shared.setpoint().put(kept.value, kept.time);
         }
     }
 

@@ -15,7 +15,7 @@ use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, MissionList, Reply, Severity, Shared};
+use crate::shared::{Event, MissionList, Reply, Severity, TransmitView};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
@@ -39,27 +39,27 @@ const ANSWERED: usize = 4;
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.
-pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: &Shared<M>) -> ! {
+pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: TransmitView<'_, M>) -> ! {
     let mut speaker = Speaker::new(shared, clock.now());
     loop {
         let mut silent = true;
         for turn in [Speaker::scheduled, Speaker::queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
-                speaker.writer.sign(&shared.signing, clock.now());
+                speaker.writer.sign(shared.signing(), clock.now());
                 send(&mut line, clock, WRITE_TIME_MAX, speaker.writer.bytes()).await;
             }
         }
         if silent {
             let due = clock.until(speaker.next());
-            select(due, shared.outgoing.wait()).await;
+            select(due, shared.outgoing().wait()).await;
         }
     }
 }
 
 /// Finds what to say next and writes it. Nothing here waits, so there is one future for all messages.
 struct Speaker<'a, M: RawMutex> {
-    shared: &'a Shared<M>,
+    shared: TransmitView<'a, M>,
     schedule: Schedule,
     /// The next of a list of parameters, and when it is due, us.
     list: Option<(usize, u64)>,
@@ -73,7 +73,7 @@ struct Speaker<'a, M: RawMutex> {
 }
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
-    fn new(shared: &'a Shared<M>, now: u64) -> Self {
+    fn new(shared: TransmitView<'a, M>, now: u64) -> Self {
         Self {
             shared,
             schedule: Schedule::new(now),
@@ -86,7 +86,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     fn system(&self) -> u8 {
-        self.shared.parameters.get(Name::SystemId) as u8
+        self.shared.parameters().get(Name::SystemId) as u8
     }
 
     fn say(&mut self, message: &impl MessageData) {
@@ -95,7 +95,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
 
     /// How often telemetry goes out, us.
     fn telemetry(&self) -> u64 {
-        interval_of_rate(self.shared.parameters.get(Name::TelemetryRate))
+        interval_of_rate(self.shared.parameters().get(Name::TelemetryRate))
     }
 
     /// When something is due, us.
@@ -138,15 +138,15 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes a message of what is known now; whether there was anything to say.
     fn message(&mut self, kind: Kind, now: u64) -> bool {
         let shared = self.shared;
-        let voltage = shared.voltage.get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
+        let voltage = shared.voltage().get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
         let view = View {
             now,
-            report: shared.report.get().filter(|report| report.age(now) <= REPORT_AGE_MAX),
+            report: shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX),
             voltage: voltage.map(|voltage| voltage.value),
-            traffic: shared.traffic.get().map_or_else(Default::default, |traffic| traffic.value),
-            simulated: shared.hil.is_raised(),
-            is_logged: shared.card.health(now),
-            origin: shared.origin.get().map_or_else(Origin::default, |origin| origin.value),
+            traffic: shared.traffic().get().map_or_else(Default::default, |traffic| traffic.value),
+            simulated: shared.hil().is_raised(),
+            is_logged: shared.card().health(now),
+            origin: shared.origin().get().map_or_else(Origin::default, |origin| origin.value),
         };
         let system = self.system();
         view.write(kind, system, &mut self.writer)
@@ -155,20 +155,20 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
-        if let Some(answer) = shared.answers.take() {
+        if let Some(answer) = shared.answers().take() {
             return self.reply(answer, now);
         }
-        if let Some(event) = shared.events.take() {
+        if let Some(event) = shared.events().take() {
             self.say(&vehicle::text(&event));
             return true;
         }
-        let lost = shared.lost_events().wrapping_sub(self.told);
+        let lost = shared.lost_events().get().wrapping_sub(self.told);
         if lost > 0 {
             self.told = self.told.wrapping_add(lost);
             self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
-        shared.replies.take().is_some_and(|reply| self.reply(reply, now))
+        shared.replies().take().is_some_and(|reply| self.reply(reply, now))
     }
 
     /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
@@ -242,6 +242,6 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     fn parameter(&mut self, name: Name) {
-        self.say(&vehicle::parameter(name, self.shared.parameters.get(name)));
+        self.say(&vehicle::parameter(name, self.shared.parameters().get(name)));
     }
 }

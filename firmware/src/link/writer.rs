@@ -2,6 +2,7 @@
 
 use super::COMPONENT;
 use super::signing::Signing;
+use crate::shared::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
@@ -36,7 +37,7 @@ impl Writer {
     }
 
     /// Signs the frame last written, if there is a key: once.
-    pub fn sign<M: RawMutex>(&mut self, signing: &Signing<M>, now: u64) {
+    pub fn sign<M: RawMutex>(&mut self, signing: Read<'_, Signing<M>>, now: u64) {
         signing.sign(&mut self.frame, now);
     }
 

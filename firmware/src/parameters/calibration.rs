@@ -6,6 +6,7 @@
 use super::table::{Name, PARAMETERS};
 use super::{NotTaken, Parameters};
 use crate::hardware::Unit;
+use crate::shared::Write;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
 use estimation::imu::standstill::Rest;
@@ -25,7 +26,7 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
 
 /// What corrects the samples of `unit`. A level that is tilted by more than 5 degrees levels nothing.
 #[must_use]
-pub fn load<M: RawMutex>(parameters: &Parameters<M>, unit: Unit) -> Calibration {
+pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Calibration {
     let mut values = [0.0; ROWS];
     for (value, name) in values.iter_mut().zip(rows(unit)) {
         *value = parameters.get(name);
@@ -42,7 +43,11 @@ pub fn load<M: RawMutex>(parameters: &Parameters<M>, unit: Unit) -> Calibration 
 ///
 /// # Errors
 /// [`NotTaken`] names the first row that the table does not allow; those before it are changed.
-pub fn store<M: RawMutex>(parameters: &Parameters<M>, unit: Unit, calibration: &Calibration) -> Result<(), NotTaken> {
+pub fn store<M: RawMutex>(
+    parameters: Write<'_, Parameters<M>>,
+    unit: Unit,
+    calibration: &Calibration,
+) -> Result<(), NotTaken> {
     let Calibration { gyro_bias, offset, scale, level } = calibration;
     // L takes up to e3, so its last row is up.
     let (x, y, z) = (level.m31, level.m32, level.m33);

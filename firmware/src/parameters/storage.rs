@@ -12,7 +12,7 @@ use super::{DEFAULTS, Values};
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Flash};
 use crate::link::signing::WORDS;
-use crate::shared::{Event, Severity, Shared};
+use crate::shared::{Event, Severity, StorageView};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 const _: () = assert!(PARAMETERS.len() <= VALUES_MAX);
@@ -33,49 +33,49 @@ pub struct Storage<F> {
 impl<F: Flash> Storage<F> {
     /// Reads every parameter, once, before the first tick. What is missing, damaged or out of range stays at its
     /// default; all but the first is announced.
-    pub fn load<M: RawMutex>(flash: F, shared: &Shared<M>) -> Self {
+    pub fn load<M: RawMutex>(flash: F, shared: StorageView<'_, M>) -> Self {
         let (mut journal, found) = Journal::open(flash);
         let mut values = DEFAULTS.map(f32::to_bits);
         let _ = journal.read(Kind::Parameters, &mut values);
         let mut signing = [0; WORDS];
         if journal.read(Kind::Signing, &mut signing).is_ok() {
-            shared.signing.restore(&signing);
+            shared.signing().restore(&signing);
             // Its stamps are to be kept ahead before anything flies.
-            shared.parameters.save_soon();
+            shared.parameters().save_soon();
         }
         if found.is_err() {
             shared.announce(Event::new(Severity::Warning, "Parameters: stored values unusable, defaults taken"));
         }
         for (row, value) in PARAMETERS.iter().zip(values) {
-            if shared.parameters.restore(row.parameter, f32::from_bits(value)).is_err() {
+            if shared.parameters().restore(row.parameter, f32::from_bits(value)).is_err() {
                 let words = format_args!("{}: stored value unusable, default taken", row.name);
                 shared.announce(Event::new(Severity::Warning, words));
             }
         }
-        Self { journal, saved: shared.parameters.all() }
+        Self { journal, saved: shared.parameters().all() }
     }
 
     /// Saves what changes, for ever.
-    pub async fn keep<M: RawMutex>(&mut self, clock: &impl Clock, shared: &Shared<M>) -> ! {
+    pub async fn keep<M: RawMutex>(&mut self, clock: &impl Clock, shared: StorageView<'_, M>) -> ! {
         loop {
             // A change is announced by the signal; the time limit only makes the wait a bounded one.
-            let _ = within(clock, LOOK, shared.parameters.changed.wait()).await;
+            let _ = within(clock, LOOK, shared.parameters().changed.wait()).await;
             // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
-            shared.saving.raise();
+            shared.saving().raise();
             while shared.is_turning() {
-                shared.saving.lower();
+                shared.saving().lower();
                 clock.until(clock.now().saturating_add(RETRY)).await;
-                shared.saving.raise();
+                shared.saving().raise();
             }
             self.save(shared);
             self.save_signing(shared, clock.now());
-            shared.saving.lower();
+            shared.saving().lower();
         }
     }
 
     /// Writes the values if one differs from what was saved.
-    fn save<M: RawMutex>(&mut self, shared: &Shared<M>) {
-        let values = shared.parameters.all();
+    fn save<M: RawMutex>(&mut self, shared: StorageView<'_, M>) {
+        let values = shared.parameters().all();
         // By their bits: what is as built is no number, and no number is equal to itself.
         let differ = |value: &f32, saved: &f32| value.to_bits() != saved.to_bits();
         if !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved)) {
@@ -92,8 +92,8 @@ impl<F: Flash> Storage<F> {
     }
 
     /// Writes the key and how far its stamps have come, if what was written does not do any more.
-    fn save_signing<M: RawMutex>(&mut self, shared: &Shared<M>, now: u64) {
-        let unkept = shared.signing.unkept(now);
+    fn save_signing<M: RawMutex>(&mut self, shared: StorageView<'_, M>, now: u64) {
+        let unkept = shared.signing().unkept(now);
         if unkept.is_some_and(|words| self.append(Kind::Signing, &words).is_err()) {
             shared.announce(Event::new(Severity::Warning, "Signing: key or stamps could not be saved"));
         }

@@ -1,9 +1,6 @@
-//! What the other tasks know of the card, and what they tell its task.
+//! What the other tasks know of the card.
 
-use super::event::Event;
-use super::queue::Queue;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
-use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Events that wait to be logged.
 pub const CARD_EVENTS: usize = 16;
@@ -24,20 +21,18 @@ pub enum CardState {
     Ready,
 }
 
-/// The card's state and its events.
-pub struct CardStatus<M: RawMutex> {
-    /// What people are told while the card is ready.
-    pub events: Queue<M, Event, CARD_EVENTS>,
+/// The card's state.
+pub struct CardStatus {
     state: AtomicU8,
     /// When its task said something last, ms.
     said: AtomicU32,
 }
 
-impl<M: RawMutex> CardStatus<M> {
+impl CardStatus {
     /// No slot.
     #[must_use]
     pub const fn new() -> Self {
-        Self { events: Queue::new(), state: AtomicU8::new(CardState::NoSlot as u8), said: AtomicU32::new(0) }
+        Self { state: AtomicU8::new(CardState::NoSlot as u8), said: AtomicU32::new(0) }
     }
 
     /// The card's task says how the card is, at `now`, us.
@@ -74,7 +69,7 @@ impl<M: RawMutex> CardStatus<M> {
     }
 }
 
-impl<M: RawMutex> Default for CardStatus<M> {
+impl Default for CardStatus {
     fn default() -> Self {
         Self::new()
     }

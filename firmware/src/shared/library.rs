@@ -48,20 +48,20 @@ pub enum Answer {
     Unreadable,
 }
 
-impl Answer {
-    /// What the flight recorder has to say as if it were the only log.
+impl<M: RawMutex> Recorder<M> {
+    /// What it has to say as if its recording were the only log.
     #[must_use]
-    pub fn of_recorder<M: RawMutex>(recorder: &Recorder<M>, question: Question) -> Self {
-        let size = recorder.size();
+    pub fn answer(&self, question: Question) -> Answer {
+        let size = self.size();
         match (question, size) {
-            (Question::Count, _) => Self::Count(size.is_some().into()),
-            (Question::Size(0), Some(size)) => Self::Size(size),
+            (Question::Count, _) => Answer::Count(size.is_some().into()),
+            (Question::Size(0), Some(size)) => Answer::Size(size),
             (Question::Bytes { id: 0, offset }, Some(_)) => {
                 let mut bytes = [0; CHUNK];
-                let count = recorder.read(offset, &mut bytes);
-                Self::Bytes(bytes.get(..count).and_then(|bytes| Vec::from_slice(bytes).ok()).unwrap_or_default())
+                let count = self.read(offset, &mut bytes);
+                Answer::Bytes(bytes.get(..count).and_then(|bytes| Vec::from_slice(bytes).ok()).unwrap_or_default())
             }
-            (Question::Size(_) | Question::Bytes { .. }, _) => Self::Unknown,
+            (Question::Size(_) | Question::Bytes { .. }, _) => Answer::Unknown,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The log: a few lines a second and one for each event. On boards only; a desktop has the events themselves.
 
-use crate::shared::{Event, Report, Shared};
+use crate::shared::{Event, Report, StatusView};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Stamped;
 
@@ -18,7 +18,7 @@ pub fn event(event: &Event) {
 
 /// Logs how the vehicle does.
 #[cfg(target_os = "none")]
-pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>) {
+pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: StatusView<'_, M>) {
     let Some(Stamped { value: report, time }) = report else {
         defmt::warn!("no report from control");
         return;
@@ -38,7 +38,7 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
         let angles = super::euler(&state.attitude);
         defmt::info!("at {=f32} {=f32} {=f32} m, {} degrees", p.x, p.y, p.z, angles);
     }
-    if let Some(sample) = shared.imu.get() {
+    if let Some(sample) = shared.imu().get() {
         let (rate, force) = (sample.value.angular_velocity, sample.value.specific_force);
         defmt::info!(
             "imu {=f32} {=f32} {=f32} rad/s, {=f32} {=f32} {=f32} m/s^2, {=u64} ms old",
@@ -51,10 +51,10 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
             time.saturating_sub(sample.time) / 1000
         );
     }
-    if let Some(voltage) = shared.voltage.get() {
+    if let Some(voltage) = shared.voltage().get() {
         defmt::info!("battery {=f32} V", voltage.value);
     }
-    if let Some(traffic) = shared.traffic.get() {
+    if let Some(traffic) = shared.traffic().get() {
         let traffic = traffic.value;
         defmt::info!(
             "link: {=u32} frames, {=u32} bytes of noise, {=u32} refused",
@@ -63,11 +63,11 @@ pub fn summary<M: RawMutex>(report: Option<&Stamped<Report>>, shared: &Shared<M>
             traffic.refused
         );
     }
-    let lost = shared.lost_increments();
+    let lost = shared.lost_increments().get();
     if lost > 0 {
         defmt::warn!("{=u32} IMU increments lost", lost);
     }
-    let lost = shared.lost_events();
+    let lost = shared.lost_events().get();
     if lost > 0 {
         defmt::warn!("{=u32} events lost", lost);
     }
@@ -79,4 +79,4 @@ pub fn event(_: &Event) {}
 
 /// There is no log on a desktop.
 #[cfg(not(target_os = "none"))]
-pub fn summary<M: RawMutex>(_: Option<&Stamped<Report>>, _: &Shared<M>) {}
+pub fn summary<M: RawMutex>(_: Option<&Stamped<Report>>, _: StatusView<'_, M>) {}

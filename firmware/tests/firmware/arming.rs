@@ -64,9 +64,9 @@ fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, n
 /// them.
 fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mode, Vec<String>) {
     let clock = Simulated::default();
-    let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
-    let mut control = Control::new(shared, pilot, outputs);
-    let mut flow = Flow::new(shared, &ImuParameters::BMI088, &Calibration::NONE).unwrap();
+    let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
+    let mut control = Control::new(shared.for_control(), pilot, outputs);
+    let mut flow = Flow::new(shared.for_samples(), &ImuParameters::BMI088, &Calibration::NONE).unwrap();
     let mut frames = Frames(&clock, vehicle.frames);
     let mut said = Vec::new();
     clock.run(4_000_000, control.run(&clock, &mut frames, &mut Patient), |now| {

@@ -64,7 +64,7 @@ pub fn times(from: u64, to: u64) -> Vec<u64> {
 fn fly(card: &Simulation, clock: &Simulated, shared: &Local, duration: u64, armed: &[Range<u64>]) {
     let mut ticks = Ticks::new(shared);
     ticks.due = clock.0.get();
-    clock.run(duration, run(card.clone(), CHUNK, clock, shared), |now| ticks.until(now, armed));
+    clock.run(duration, run(card.clone(), CHUNK, clock, shared.for_card()), |now| ticks.until(now, armed));
 }
 
 /// The files of a card that are not empty, read.
@@ -89,7 +89,7 @@ fn every_flight_is_a_file_with_each_tick_and_all_that_was_said() {
         let card = Simulation::new(image, sectors, &clock);
         let mut ticks = Ticks::new(&shared);
         let flights = [SECOND..3 * SECOND, 6 * SECOND..7 * SECOND];
-        clock.run(10 * SECOND, run(card.clone(), CHUNK, &clock, &shared), |now| {
+        clock.run(10 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
             ticks.until(now, &flights);
             if now == 900_000 || now == 2_000_000 {
                 shared.announce(Event::new(Severity::Critical, format_args!("said at {now}")));
@@ -203,7 +203,7 @@ fn a_card_that_fails_in_flight_is_told_and_the_rest_goes_to_the_next_file_if_it_
     let mut ticks = Ticks::new(&shared);
     let medium = card.medium.clone();
     let mut seen = vec![];
-    clock.run(12 * SECOND, run(card.clone(), CHUNK, &clock, &shared), |now| {
+    clock.run(12 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
         ticks.until(now, &[SECOND..8 * SECOND]);
         medium.borrow_mut().fails = (3 * SECOND..5 * SECOND).contains(&now);
         if now == 4 * SECOND {
@@ -232,7 +232,7 @@ fn a_missing_or_removed_card_is_told_once_and_one_that_is_put_in_is_used() {
     let mut ticks = Ticks::new(&shared);
     let begin = clock.0.get();
     ticks.due = begin;
-    clock.run(4 * RETRY, run(card.clone(), CHUNK, &clock, &shared), |now| {
+    clock.run(4 * RETRY, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
         medium.borrow_mut().is_absent = now < begin + 2 * RETRY || now > begin + 3 * RETRY;
         ticks.until(now, &[begin + 3 * RETRY - SECOND..u64::MAX]);
     });

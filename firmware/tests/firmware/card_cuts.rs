@@ -28,7 +28,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 /// write began.
 fn flown(card: &Simulation, clock: &Simulated, shared: &Local) {
     let mut ticks = Ticks::new(shared);
-    clock.run(12 * SECOND, run(card.clone(), CHUNK, clock, shared), |now| {
+    clock.run(12 * SECOND, run(card.clone(), CHUNK, clock, shared.for_card()), |now| {
         ticks.until(now, &[SECOND..2 * SECOND, 5 * SECOND..9 * SECOND]);
     });
 }
@@ -102,8 +102,9 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     let before = files(&mut image.clone(), sectors);
     let card = Simulation::new(image, sectors, &clock);
     let mut ticks = Ticks::new(&shared);
-    clock
-        .run(4 * SECOND, run(card.clone(), CHUNK, &clock, &shared), |now| ticks.until(now, &[SECOND..SECOND + 50_000]));
+    clock.run(4 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
+        ticks.until(now, &[SECOND..SECOND + 50_000])
+    });
     let after = files(&mut card.medium.borrow_mut().image, sectors);
     for (name, bytes) in known {
         assert!(after.get(name) == Some(bytes), "{what}: {name} has changed");

@@ -47,8 +47,8 @@ impl Bench {
         let written: &RefCell<Vec<u8>> = Box::leak(Box::default());
         let (image, sectors) = small();
         let card = Simulation::new(image, sectors, clock);
-        let logging = run(card.clone(), CHUNK, clock, shared);
-        let link = transmit(Outgoing { written, at_once: 64 }, clock, shared);
+        let logging = run(card.clone(), CHUNK, clock, shared.for_card());
+        let link = transmit(Outgoing { written, at_once: 64 }, clock, shared.for_transmit());
         let tasks = Box::pin(async {
             select(logging, link).await;
         });
@@ -238,7 +238,7 @@ fn a_card_that_falls_silent_or_goes_ends_the_download_in_words() {
     let (clock, shared) = (Simulated::default(), shared());
     shared.card.set(CardState::Ready, 0);
     let written = RefCell::default();
-    let link = transmit(Outgoing { written: &written, at_once: 64 }, &clock, &shared);
+    let link = transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared.for_transmit());
     Fed::new(&shared).message(&part(0, 0, 90), 0);
     let mut patient = true;
     clock.run(ANSWER_WITHIN + 2 * SECOND, link, |now| {

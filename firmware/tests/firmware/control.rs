@@ -39,12 +39,12 @@ impl Watchdog for Fed<'_> {
 fn ticks(delay: u64) -> (Vec<u64>, Vec<u64>, u32) {
     let (clock, shared) = (Simulated::default(), Local::new());
     let place = Box::leak(Box::new(boot::Place::new()));
-    let (pilot, outputs) = boot::start(place, &shared).unwrap();
+    let (pilot, outputs) = boot::start(place, shared.for_boot()).unwrap();
     let (written, fed) = (RefCell::default(), RefCell::default());
     let mut motors = Busy { clock: &clock, delay: (3, delay), written: &written };
     let mut watchdog = Fed(&clock, &fed);
     let missed = Cell::new(0);
-    let mut control = Control::new(&shared, pilot, outputs);
+    let mut control = Control::new(shared.for_control(), pilot, outputs);
     clock.run(80_000, control.run(&clock, &mut motors, &mut watchdog), |_| {
         missed.set(shared.report.get().map_or(0, |report| report.value.timing.missed));
     });

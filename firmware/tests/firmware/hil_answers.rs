@@ -17,7 +17,7 @@ fn said(hil: &Hil, bytes: Vec<u8>) -> Local {
     let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
     clock.0.set(COMMANDED + 5_000);
     line.borrow_mut().push_back(Delivery::Bytes(bytes));
-    clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, &shared), |_| ());
+    clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, shared.for_simulator()), |_| ());
     shared
 }
 

@@ -55,7 +55,7 @@ fn drain(shared: &Local, increments: &mut Vec<Increment>) {
 fn simulated(answer: impl Fn(u64) -> Vec<u8>) -> Got {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
     let mut increments = Vec::new();
-    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, &shared), |now| {
+    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, shared.for_simulator()), |now| {
         drain(&shared, &mut increments);
         if now % PERIOD == 0 && (PERIOD..=TICKS * PERIOD).contains(&now) {
             // The answer to the command before was whole.
@@ -97,7 +97,7 @@ fn real() -> Got {
     let (clock, shared, last) = (Simulated::default(), Local::new(), Cell::new(PERIOD));
     let mut increments = Vec::new();
     let end = (TICKS + 1) * PERIOD + SAMPLE / 2;
-    clock.run(end, imu::run(&shared, &clock, &mut Real { clock: &clock, last: &last }), |_| {
+    clock.run(end, imu::run(shared.for_imu(), &clock, &mut Real { clock: &clock, last: &last }), |_| {
         drain(&shared, &mut increments);
     });
     drain(&shared, &mut increments);

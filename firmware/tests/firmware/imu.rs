@@ -56,7 +56,7 @@ fn sampled(trouble: Says) -> (Vec<u64>, Vec<String>) {
     let (clock, shared) = (Simulated::default(), Local::new());
     let mut sensor = Sensor { clock: &clock, trouble, from: 50_000, to: 350_000 };
     let mut times = Vec::new();
-    clock.run(1_000_000, run(&shared, &clock, &mut sensor), |_| {
+    clock.run(1_000_000, run(shared.for_imu(), &clock, &mut sensor), |_| {
         if let Some(sample) = shared.imu.get() {
             let numbers = sample.value.angular_velocity.iter().chain(&sample.value.specific_force);
             assert!(numbers.into_iter().all(|number| number.is_finite()));

@@ -49,18 +49,22 @@ fn results(shared: &Local) -> Vec<MavResult> {
 /// Runs the task on a body's sensors for some seconds, with `each` in between.
 fn run(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
     let mut first = Sensor { body, wrong: FIRST, is_second: false };
-    body.clock.run(seconds * 1_000_000, imu::run(shared, &body.clock, &mut first), each);
+    body.clock.run(seconds * 1_000_000, imu::run(shared.for_imu(), &body.clock, &mut first), each);
 }
 
 /// The same with a second sensor that stands by.
 fn run_both(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
     let (first, second) =
         (Sensor { body, wrong: FIRST, is_second: false }, Sensor { body, wrong: SECOND, is_second: true });
-    body.clock.run(seconds * 1_000_000, imu::run(shared, &body.clock, &mut Redundant::new(first, second)), each);
+    body.clock.run(
+        seconds * 1_000_000,
+        imu::run(shared.for_imu(), &body.clock, &mut Redundant::new(first, second)),
+        each,
+    );
 }
 
 fn bias(shared: &Local, unit: Unit) -> Vector3<f32> {
-    calibration::load(&shared.parameters, unit).gyro_bias
+    calibration::load((&shared.parameters).into(), unit).gyro_bias
 }
 
 #[test]
@@ -166,7 +170,7 @@ fn what_goes_wrong_is_answered_in_words_and_changes_nothing() {
         assert_eq!(results(&shared), expected, "{words}");
         let said = texts(&shared);
         assert!(said.iter().any(|text| text == words), "{said:?}");
-        let kept = calibration::load(&shared.parameters, Unit::First);
+        let kept = calibration::load((&shared.parameters).into(), Unit::First);
         assert!((kept.gyro_bias - FIRST.bias).norm() < 1e-4, "as found at boot");
         assert_eq!((kept.offset, kept.scale), (Vector3::zeros(), Vector3::repeat(1.0)));
     }
@@ -211,7 +215,7 @@ fn six_sides_and_a_level_calibrate_both_accelerometers() {
     let twice = [MAV_RESULT_IN_PROGRESS, MAV_RESULT_ACCEPTED];
     assert_eq!(results(&shared), [twice, twice].concat());
     for (unit, wrong) in [(Unit::First, FIRST), (Unit::Second, SECOND)] {
-        let found = calibration::load(&shared.parameters, unit);
+        let found = calibration::load((&shared.parameters).into(), unit);
         assert!((found.gyro_bias - wrong.bias).norm() < 1e-4, "{unit:?}: {}", found.gyro_bias);
         assert!((found.offset - wrong.offset).norm() < 2e-3, "{unit:?}: {}", found.offset);
         assert!((found.scale.component_mul(&wrong.factor) - Vector3::repeat(1.0)).norm() < 1e-3, "{unit:?}");
@@ -248,7 +252,7 @@ fn a_second_sensor_that_fails_meanwhile_is_said_and_the_first_calibrated() {
         }
     });
     assert_eq!(texts(&shared), ["Calibration: not of the IMU that stands by", "Accelerometer calibrated: now level"]);
-    assert_eq!(calibration::load(&shared.parameters, Unit::Second).offset, Vector3::zeros());
+    assert_eq!(calibration::load((&shared.parameters).into(), Unit::Second).offset, Vector3::zeros());
     assert!((bias(&shared, Unit::Second) - SECOND.bias).norm() < 1e-4, "found at boot");
 }
 
@@ -256,20 +260,21 @@ fn a_second_sensor_that_fails_meanwhile_is_said_and_the_first_calibrated() {
 fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
     let chip = Chip::erased();
     let (body, shared) = (Body::new(), Local::new());
-    let (clock, mut storage) = (crate::support::Simulated::default(), Storage::load(Words::<32>(&chip), &shared));
+    let (clock, mut storage) =
+        (crate::support::Simulated::default(), Storage::load(Words::<32>(&chip), shared.for_storage()));
     run(&body, &shared, 4, |now| {
         if now == 1_500_000 {
             shared.calibrations.put((Some(Procedure::OneSide), ASKER)).unwrap();
         }
     });
-    clock.run(50_000, storage.keep(&clock, &shared), |_| ());
-    let found = calibration::load(&shared.parameters, Unit::First);
+    clock.run(50_000, storage.keep(&clock, shared.for_storage()), |_| ());
+    let found = calibration::load((&shared.parameters).into(), Unit::First);
 
     let (body, shared) = (Body::new(), Local::new());
-    Storage::load(Words::<32>(&chip), &shared);
-    assert_eq!(calibration::load(&shared.parameters, Unit::First), found);
+    Storage::load(Words::<32>(&chip), shared.for_storage());
+    assert_eq!(calibration::load((&shared.parameters).into(), Unit::First), found);
     let mut sensor = Sensor { body: &body, wrong: FIRST, is_second: false };
-    body.clock.run(3_000, imu::run(&shared, &body.clock, &mut sensor), |_| ());
+    body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |_| ());
     let sample = shared.imu.get().unwrap().value;
     assert!(sample.angular_velocity.norm() < 1e-3 && (sample.specific_force.z - GRAVITY).abs() < 1e-3, "{sample:?}");
 }
@@ -277,27 +282,27 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
 #[test]
 fn stored_rows_and_calibration_are_the_same_thing() {
     let shared = Local::new();
-    assert_eq!(calibration::load(&shared.parameters, Unit::First), estimation::imu::Calibration::NONE);
+    assert_eq!(calibration::load((&shared.parameters).into(), Unit::First), estimation::imu::Calibration::NONE);
     for (name, value) in [(Name::Imu2ScaleX, 1.02), (Name::Imu2OffsetZ, -0.5), (Name::Imu2GyroX, 0.01)] {
         shared.parameters.set(name, value).unwrap();
     }
     for (x, y) in [(0.0, 0.0), (0.05, -0.03), (-0.087, 0.0)] {
         shared.parameters.set(Name::Imu2LevelX, x).unwrap();
         shared.parameters.set(Name::Imu2LevelY, y).unwrap();
-        let loaded = calibration::load(&shared.parameters, Unit::Second);
+        let loaded = calibration::load((&shared.parameters).into(), Unit::Second);
         // What the level vehicle feels comes out as straight up.
         let up = Vector3::new(x, y, 1.0).normalize() * GRAVITY;
         let felt = up.component_div(&Vector3::new(1.02, 1.0, 1.0)) + Vector3::new(0.0, 0.0, -0.5);
         assert!((loaded.force(&felt) - Vector3::z() * GRAVITY).norm() < 1e-4, "{x} {y}");
-        calibration::store(&shared.parameters, Unit::Second, &loaded).unwrap();
-        let again = calibration::load(&shared.parameters, Unit::Second);
+        calibration::store((&shared.parameters).into(), Unit::Second, &loaded).unwrap();
+        let again = calibration::load((&shared.parameters).into(), Unit::Second);
         assert!((again.level - loaded.level).norm() < 1e-6);
         assert_eq!((again.offset, again.scale, again.gyro_bias), (loaded.offset, loaded.scale, loaded.gyro_bias));
     }
     // Rows that nobody found that way: no level at all beats a wrong one.
     shared.parameters.set(Name::Imu2LevelX, 0.09).unwrap();
     shared.parameters.set(Name::Imu2LevelY, 0.09).unwrap();
-    let loaded = calibration::load(&shared.parameters, Unit::Second);
+    let loaded = calibration::load((&shared.parameters).into(), Unit::Second);
     assert_eq!((loaded.level, loaded.offset.z), (estimation::imu::Calibration::NONE.level, -0.5));
 }
 
@@ -351,6 +356,6 @@ fn it_is_refused_while_armed_and_with_a_simulator_in_words() {
 fn a_right_sensor_needs_no_correction() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = Sensor { body: &body, wrong: RIGHT, is_second: false };
-    body.clock.run(2_000_000, imu::run(&shared, &body.clock, &mut sensor), |_| ());
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |_| ());
     assert!(bias(&shared, Unit::First).norm() < 1e-5);
 }

@@ -31,7 +31,7 @@ fn drain(shared: &Local) -> Vec<Increment> {
 fn flown(body: &Body, mut sensor: impl Imu, each: impl Fn(u64)) -> (Vec<Increment>, Vec<String>) {
     let shared = Local::new();
     let mut increments = Vec::new();
-    body.clock.run(2_000_000, imu::run(&shared, &body.clock, &mut sensor), |now| {
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
         each(now);
         if now % 10_000 == 0 {
             increments.extend(drain(&shared));
@@ -40,7 +40,7 @@ fn flown(body: &Body, mut sensor: impl Imu, each: impl Fn(u64)) -> (Vec<Incremen
             assert!(sample.time <= now);
         }
     });
-    assert_eq!(shared.lost_increments(), 0);
+    assert_eq!(shared.lost_increments.get(), 0);
     (increments, texts(&shared))
 }
 
@@ -65,7 +65,7 @@ fn control_gets_every_increment_of_5_ms() {
 fn the_newest_sample_is_the_sensors_last_and_low_passed() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
-    body.clock.run(1_000_000, imu::run(&shared, &body.clock, &mut sensor), |now| {
+    body.clock.run(1_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
         // As often as control ticks, which would see it stand still.
         let phase = core::f32::consts::TAU * (now % 10_000) as f32 * 1e-4;
         body.rate.set(Vector3::x() * phase.sin());
@@ -82,12 +82,12 @@ fn increments_that_nobody_takes_are_counted_and_leave_a_gap() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
     let mut increments = Vec::new();
-    body.clock.run(200_000, imu::run(&shared, &body.clock, &mut sensor), |now| {
+    body.clock.run(200_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
         if !(50_000..150_000).contains(&now) {
             increments.extend(drain(&shared));
         }
     });
-    let lost = shared.lost_increments();
+    let lost = shared.lost_increments.get();
     assert!((20 - INCREMENTS - 1..=20 - INCREMENTS + 1).contains(&(lost as usize)), "{lost}");
     assert_eq!(gaps(&increments), 1);
     let missing = increments.windows(2).map(|pair| pair[1].start - pair[0].end).max();
@@ -149,7 +149,7 @@ fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise
     let rate = |time: u64| if time < 500_000 { 0.5 } else { (time / PERIOD % 3) as f32 };
     let mut increments = Vec::new();
     let mut late = 0;
-    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, &shared), |now| {
+    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, shared.for_simulator()), |now| {
         if now % PERIOD == 0 && now > 0 {
             command(&hil, now);
             let time = now + PERIOD;

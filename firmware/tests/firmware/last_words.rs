@@ -38,34 +38,34 @@ fn words_without_room_are_cut_at_whole_characters() {
 #[test]
 fn the_first_ground_station_that_is_heard_is_told_why_the_vehicle_restarted() {
     let (shared, mut teller) = told();
-    teller.look(&shared, 0);
+    teller.look(shared.for_status(), 0);
     let first = texts(&shared);
     assert_eq!(first.concat(), format!("Restarted: {FAULT}"));
     assert!(first.iter().all(|line| line.len() <= 50));
-    teller.look(&shared, 50_000);
+    teller.look(shared.for_status(), 50_000);
     assert!(texts(&shared).is_empty());
     shared.ground_station.put((), 100_000);
-    teller.look(&shared, 100_000);
+    teller.look(shared.for_status(), 100_000);
     assert_eq!(texts(&shared), first);
-    teller.look(&shared, 150_000);
+    teller.look(shared.for_status(), 150_000);
     assert!(texts(&shared).is_empty());
 }
 
 #[test]
 fn the_card_is_told_once_it_is_ready() {
     let (shared, mut teller) = told();
-    teller.look(&shared, 0);
-    assert!(shared.card.events.take().is_none());
+    teller.look(shared.for_status(), 0);
+    assert!(shared.card_events.take().is_none());
     shared.card.set(CardState::Ready, 3_000_000);
-    teller.look(&shared, 3_000_000);
-    assert!(shared.card.events.take().is_some());
+    teller.look(shared.for_status(), 3_000_000);
+    assert!(shared.card_events.take().is_some());
 }
 
 #[test]
 fn it_is_told_again_until_somebody_arms() {
     let (shared, mut teller) = told();
     let mut count = |time| {
-        teller.look(&shared, time);
+        teller.look(shared.for_status(), time);
         texts(&shared).len()
     };
     assert_eq!([count(0), count(AGAIN - 1), count(AGAIN), count(AGAIN + 1)], [2, 0, 2, 0]);
@@ -87,6 +87,6 @@ fn the_status_task_tells_it() {
         }
     }
     let ((shared, _), clock) = (told(), Simulated::default());
-    clock.run(1_000_000, firmware::status::run(Dark, Dark, &clock, &shared), |_| ());
+    clock.run(1_000_000, firmware::status::run(Dark, Dark, &clock, shared.for_status()), |_| ());
     assert_eq!(texts(&shared).concat(), format!("Restarted: {FAULT}"));
 }

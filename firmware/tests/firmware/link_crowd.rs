@@ -107,7 +107,8 @@ fn acknowledged(frames: &[(u64, Vec<u8>)]) -> Vec<(u16, MavResult)> {
     let (clock, shared, line, written) = (Simulated::default(), Local::new(), Live::default(), RefCell::default());
     let mut desk = Desk::new(&shared);
     let outgoing = Outgoing { written: &written, at_once: 300 };
-    let link = join(receive(line.clone(), &clock, &shared), transmit(outgoing, &clock, &shared));
+    let link =
+        join(receive(line.clone(), &clock, shared.for_receive()), transmit(outgoing, &clock, shared.for_transmit()));
     clock.run(3_200_000, link, |now| {
         if now.is_multiple_of(10_000) {
             shared.ground_station.put((), now);

@@ -268,12 +268,16 @@ fn every_frame_out_is_signed_with_a_stamp_of_its_own() {
     let (clock, shared, written) = (Simulated::default(), keyed(), RefCell::new(Vec::new()));
     let ear = Signing::<NoopRawMutex>::new();
     ear.set(key(), 0, 0);
-    clock.run(3_000_000, transmit(Outgoing { written: &written, at_once: 300 }, &clock, &shared), |now| {
-        if now == 1_000_000 {
-            shared.reply(Reply::AllParameters);
-            shared.announce(Event::new(Severity::Information, "Here"));
-        }
-    });
+    clock.run(
+        3_000_000,
+        transmit(Outgoing { written: &written, at_once: 300 }, &clock, shared.for_transmit()),
+        |now| {
+            if now == 1_000_000 {
+                shared.reply(Reply::AllParameters);
+                shared.announce(Event::new(Severity::Information, "Here"));
+            }
+        },
+    );
     let (mut parser, mut count) = (Parser::new(), 0);
     parser.feed(&written.borrow(), 0, &mut |frame| {
         count += 1;
@@ -352,7 +356,7 @@ fn a_key_is_shown_nowhere() {
     shared.reply(Reply::AllParameters);
     assert_eq!(format!("{:?}", Key::new(secret)), "Some(Key)");
     let (clock, written) = (Simulated::default(), RefCell::new(Vec::new()));
-    clock.run(3_000_000, transmit(Outgoing { written: &written, at_once: 300 }, &clock, &shared), |_| ());
+    clock.run(3_000_000, transmit(Outgoing { written: &written, at_once: 300 }, &clock, shared.for_transmit()), |_| ());
     let written = written.borrow();
     assert!(written.len() > 3_000);
     for part in secret.windows(4) {
@@ -362,8 +366,8 @@ fn a_key_is_shown_nowhere() {
 
 /// Runs storage on a chip for some time, us.
 fn kept(chip: &RefCell<Chip>, shared: &Local, clock: &Simulated, duration: u64) {
-    let mut storage = Storage::load(Words::<32>(chip), shared);
-    clock.run(duration, storage.keep(clock, shared), |now| {
+    let mut storage = Storage::load(Words::<32>(chip), shared.for_storage());
+    clock.run(duration, storage.keep(clock, shared.for_storage()), |now| {
         if now.is_multiple_of(1_000_000) {
             let mode = shared.report.get().map_or(Mode::Ready, |report| report.value.mode);
             report(shared, mode, now);
@@ -374,9 +378,9 @@ fn kept(chip: &RefCell<Chip>, shared: &Local, clock: &Simulated, duration: u64) 
 #[test]
 fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
-    let mut storage = Storage::load(Words::<32>(&chip), &shared);
+    let mut storage = Storage::load(Words::<32>(&chip), shared.for_storage());
     shared.set_signing(key(), FIRST - 1, 0);
-    clock.run(100_000, storage.keep(&clock, &shared), |_| ());
+    clock.run(100_000, storage.keep(&clock, shared.for_storage()), |_| ());
     let mut station = Sender::new(255, key(), FIRST);
     let mut vehicle = shared;
     // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which lasts
@@ -389,8 +393,8 @@ fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
         }
         vehicle = Local::new();
         let clock = Simulated::default();
-        let mut storage = Storage::load(Words::<32>(&chip), &vehicle);
-        clock.run(100_000, storage.keep(&clock, &vehicle), |_| ());
+        let mut storage = Storage::load(Words::<32>(&chip), vehicle.for_storage());
+        clock.run(100_000, storage.keep(&clock, vehicle.for_storage()), |_| ());
         for frame in &heard {
             assert_eq!(judged(&vehicle.signing, frame, 0), Err(Refusal::Replayed));
         }
@@ -413,8 +417,8 @@ fn stamps_are_kept_twice_an_hour_at_most_and_never_while_a_motor_turns() {
     let ready = chip.borrow().writes;
     assert!((1..=2).contains(&ready), "{ready}");
     report(&shared, Mode::Flying, clock.0.get());
-    let mut storage = Storage::load(Words::<32>(&chip), &Local::new());
-    clock.run(hour, storage.keep(&clock, &shared), |now| {
+    let mut storage = Storage::load(Words::<32>(&chip), Local::new().for_storage());
+    clock.run(hour, storage.keep(&clock, shared.for_storage()), |now| {
         if now.is_multiple_of(1_000_000) {
             report(&shared, Mode::Flying, now);
         }
@@ -437,14 +441,14 @@ fn a_key_that_cannot_be_kept_is_told() {
 #[test]
 fn signing_that_was_turned_off_stays_off_after_a_restart() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
-    let mut storage = Storage::load(Words::<32>(&chip), &shared);
+    let mut storage = Storage::load(Words::<32>(&chip), shared.for_storage());
     report(&shared, Mode::Ready, 0);
     for key in [key(), None] {
         shared.set_signing(key, FIRST, 0);
-        clock.run(100_000, storage.keep(&clock, &shared), |_| ());
+        clock.run(100_000, storage.keep(&clock, shared.for_storage()), |_| ());
     }
     let again = Local::new();
-    Storage::load(Words::<32>(&chip), &again);
+    Storage::load(Words::<32>(&chip), again.for_storage());
     Fed::new(&again).message(&disarm(), NOW);
     assert!(is_stopped(&again));
 }

@@ -40,7 +40,7 @@ fn a_frame_in_pieces_between_faults_is_received() {
     let pieces = pieces.flat_map(|piece| [piece, Delivery::Fault, Delivery::End]);
     line.borrow_mut().extend(pieces.take(3));
     line.borrow_mut().push_back(Delivery::Bytes(frame[5..].to_vec()));
-    clock.run(200_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    clock.run(200_000, receive(Incoming(&line), &clock, shared.for_receive()), |_| ());
     assert!(shared.disarm.is_raised());
     assert_eq!(shared.traffic.get().unwrap().value.frames, 1);
 }
@@ -59,7 +59,7 @@ fn a_broken_line_does_not_take_all_the_time() {
         }
     }
     let (clock, shared) = (Simulated::default(), Local::new());
-    clock.run(1_000_000, receive(Broken(0), &clock, &shared), |_| ());
+    clock.run(1_000_000, receive(Broken(0), &clock, shared.for_receive()), |_| ());
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn a_long_burst_is_received_whole() {
     let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
     let burst = (0..=255).flat_map(disarm).collect();
     line.borrow_mut().push_back(Delivery::Bytes(burst));
-    clock.run(300_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    clock.run(300_000, receive(Incoming(&line), &clock, shared.for_receive()), |_| ());
     assert_eq!(shared.traffic.get().unwrap().value.frames, 256);
 }
 
@@ -83,7 +83,8 @@ fn every_command_of_a_burst_is_answered() {
     let burst = (0..40).flat_map(|number| v2(number, &asked(number))).collect();
     line.borrow_mut().push_back(Delivery::Bytes(burst));
     let outgoing = Outgoing { written: &written, at_once: 300 };
-    let link = join(receive(Incoming(&line), &clock, &shared), transmit(outgoing, &clock, &shared));
+    let link =
+        join(receive(Incoming(&line), &clock, shared.for_receive()), transmit(outgoing, &clock, shared.for_transmit()));
     clock.run(200_000, link, |_| ());
     assert_eq!(sent::<COMMAND_ACK_DATA>(&written).len(), 40);
 }
@@ -91,7 +92,7 @@ fn every_command_of_a_burst_is_answered() {
 /// Transmits for `duration` us.
 fn transmitted(shared: &Local, duration: u64, each: impl FnMut(u64)) -> RefCell<Vec<u8>> {
     let (clock, written) = (Simulated::default(), RefCell::default());
-    clock.run(duration, transmit(Outgoing { written: &written, at_once: 7 }, &clock, shared), each);
+    clock.run(duration, transmit(Outgoing { written: &written, at_once: 7 }, &clock, shared.for_transmit()), each);
     written
 }
 
@@ -321,7 +322,7 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     let (clock, shared, written) = (Simulated::default(), Local::new(), RefCell::default());
     let stuck = Outgoing { written: &written, at_once: 0 };
     let mut waiting = Vec::new();
-    clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, &shared), |now| {
+    clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, shared.for_transmit()), |now| {
         flying(&shared, now);
         if shared.events.put(Event::new(Severity::Warning, "one of many")).is_ok() {
             waiting.push(now);

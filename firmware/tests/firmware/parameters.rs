@@ -13,14 +13,14 @@ use std::cell::{Cell, RefCell};
 /// What a boot finds.
 fn booted<const WORD: usize>(chip: &RefCell<Chip>) -> Local {
     let shared = Local::new();
-    Storage::load(Words::<WORD>(chip), &shared);
+    Storage::load(Words::<WORD>(chip), shared.for_storage());
     shared
 }
 
 /// Boots, and keeps parameters for `duration`, us.
 fn kept<const WORD: usize>(chip: &RefCell<Chip>, shared: &Local, duration: u64, each: impl FnMut(u64)) {
-    let (clock, mut storage) = (Simulated::default(), Storage::load(Words::<WORD>(chip), shared));
-    clock.run(duration, storage.keep(&clock, shared), each);
+    let (clock, mut storage) = (Simulated::default(), Storage::load(Words::<WORD>(chip), shared.for_storage()));
+    clock.run(duration, storage.keep(&clock, shared.for_storage()), each);
 }
 
 fn values_survive_a_reboot<const WORD: usize>() {
@@ -99,9 +99,9 @@ impl Flash for Watched<'_> {
 fn control_is_warned_while_flash_is_written() {
     let (chip, shared, unwarned) = (Chip::erased(), Local::new(), Cell::new(0));
     let flash = Watched { words: Words(&chip), shared: &shared, unwarned: &unwarned };
-    let (clock, mut storage) = (Simulated::default(), Storage::load(flash, &shared));
+    let (clock, mut storage) = (Simulated::default(), Storage::load(flash, shared.for_storage()));
     let opened = unwarned.replace(0);
-    clock.run(600_000, storage.keep(&clock, &shared), |now| {
+    clock.run(600_000, storage.keep(&clock, shared.for_storage()), |now| {
         shared.parameters.set(Name::HorizontalSpeed, 1.0 + now as f32 * 1e-5).unwrap();
     });
     assert!(chip.borrow().writes > 2 * RECORDS, "{opened}");

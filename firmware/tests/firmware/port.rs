@@ -47,12 +47,14 @@ impl Bench {
             written: Default::default(),
         };
         let Self { clock, shared, port, incoming: [serial_in, port_in], written: [serial_out, port_out] } = &bench;
-        let on_port = &shared.on_port;
+        let on_port = (&shared.on_port).into();
         let from = Line { serial: serial_in.clone(), port: has_port.then(|| port_in.clone()), on_port };
         let out = |written| Outgoing { written, at_once: 64 };
         let to = Line { serial: out(serial_out), port: has_port.then(|| out(port_out)), on_port };
-        let tasks =
-            select(select(receive(from, clock, shared), transmit(to, clock, shared)), watch(port, clock, shared));
+        let tasks = select(
+            select(receive(from, clock, shared.for_receive()), transmit(to, clock, shared.for_transmit())),
+            watch(port, clock, shared.for_port()),
+        );
         clock.run(duration, tasks, |now| each(&bench, now));
         bench
     }
@@ -132,7 +134,9 @@ fn a_board_without_the_port_keeps_the_serial_line() {
 #[test]
 fn every_move_is_told_once() {
     let (clock, shared, port) = (Simulated::default(), Local::new(), Opened(Cell::new(false)));
-    clock.run(4 * SECOND, watch(&port, &clock, &shared), |now| port.0.set((SECOND..2 * SECOND).contains(&now)));
+    clock.run(4 * SECOND, watch(&port, &clock, shared.for_port()), |now| {
+        port.0.set((SECOND..2 * SECOND).contains(&now))
+    });
     assert_eq!(texts(&shared), ["Link: on USB, the serial line is not heard", "Link: on the serial line"]);
 }
 

@@ -78,7 +78,7 @@ fn bytes_in_pieces_with_noise_between_them_become_switches() {
         bytes.extend([0x00, 0x16]);
     }
     line.borrow_mut().extend(bytes.chunks(7).map(|piece| Delivery::Bytes(piece.to_vec())));
-    clock.run(300_000, receive(Incoming(&line), &clock, &shared), |_| ());
+    clock.run(300_000, receive(Incoming(&line), &clock, shared.for_radio()), |_| ());
     assert!(shared.killed.get().unwrap().value);
     assert!(shared.ground_station.get().is_some());
     // One with a wrong checksum is none.
@@ -86,14 +86,14 @@ fn bytes_in_pieces_with_noise_between_them_become_switches() {
     let mut wrong = frame(&channels(LOW, LOW, HIGH));
     *wrong.last_mut().unwrap() ^= 1;
     line.borrow_mut().push_back(Delivery::Bytes(wrong));
-    Simulated::default().run(300_000, receive(Incoming(&line), &Simulated::default(), &shared), |_| ());
+    Simulated::default().run(300_000, receive(Incoming(&line), &Simulated::default(), shared.for_radio()), |_| ());
     assert!(shared.killed.get().is_none());
 }
 
 #[test]
 fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
     let shared = Local::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     // Turned on with the arm switch up.
     radio.take(&channels(HIGH, LOW, LOW), 0);
     radio.take(&channels(HIGH, LOW, LOW), 20_000);
@@ -114,7 +114,7 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
 #[test]
 fn the_kill_switch_stays_as_it_was_heard() {
     let shared = Local::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(LOW, LOW, HIGH), 0);
     radio.listen(10_000_000);
     assert!(shared.killed.get().unwrap().value);
@@ -126,7 +126,7 @@ fn the_kill_switch_stays_as_it_was_heard() {
 fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>, Vec<Request>) {
     let shared = Local::new();
     report(&shared, mode, is_airborne);
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     let mut channels = channels(HIGH, HIGH, LOW);
     for (channel, stick) in channels.iter_mut().zip(sticks) {
         *channel = (f32::from(MIDDLE) + stick * 819.0).round() as u16;
@@ -189,7 +189,7 @@ fn offboard() -> COMMAND_LONG_DATA {
 #[test]
 fn while_the_sticks_fly_nobody_else_does() {
     let shared = Local::new();
-    Radio::new(&shared).take(&channels(HIGH, HIGH, LOW), 0);
+    Radio::new(shared.for_radio()).take(&channels(HIGH, HIGH, LOW), 0);
     let target = target();
     let mut fed = Fed::new(&shared);
     fed.message(&target, 100_000);
@@ -209,7 +209,7 @@ fn while_the_sticks_fly_nobody_else_does() {
 #[test]
 fn sticks_that_fly_do_not_stand_back_because_somebody_asks() {
     let shared = Local::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     let mut fed = Fed::new(&shared);
     radio.take(&channels(HIGH, HIGH, LOW), 0);
     fed.message(&target(), 100_000);
@@ -225,7 +225,7 @@ fn sticks_that_fly_do_not_stand_back_because_somebody_asks() {
 /// What is asked for once a radio with its switch `flies` has fallen silent in a mode.
 fn asked_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(HIGH, flies, LOW), 0);
     report(&shared, mode, true);
     radio.listen(SILENCE);
@@ -243,7 +243,7 @@ fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
     }
     // Whatever the link asks for meanwhile.
     let shared = Local::new();
-    let mut radio = Radio::new(&shared);
+    let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(HIGH, HIGH, LOW), 0);
     report(&shared, Mode::Flying, true);
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
@@ -257,7 +257,7 @@ fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
 fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
     let shared = Local::new();
     let mut desk = Desk::new(&shared);
-    let (mut radio, mut fed) = (Radio::new(&shared), Fed::new(&shared));
+    let (mut radio, mut fed) = (Radio::new(shared.for_radio()), Fed::new(&shared));
     let companion = SET_POSITION_TARGET_LOCAL_NED_DATA { x: 40.0, z: -20.0, ..target() };
     let mut fly = |desk: &mut Desk<'_>, ticks: Range<u64>, heard: bool| {
         for tick in ticks {

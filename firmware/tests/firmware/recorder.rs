@@ -43,7 +43,7 @@ fn part(ofs: u32, count: u32) -> LOG_REQUEST_DATA_DATA {
 /// What goes out within `duration`, us.
 fn transmitted(shared: &Local, duration: u64) -> RefCell<Vec<u8>> {
     let (clock, written) = (Simulated::default(), RefCell::default());
-    clock.run(duration, transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared), |_| ());
+    clock.run(duration, transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared.for_transmit()), |_| ());
     written
 }
 

@@ -118,7 +118,7 @@ impl Restart for Machine<'_> {
 fn restarted(mode: Mode, first: f32) -> (Option<(u64, bool)>, Vec<String>) {
     let (clock, shared, time) = (Simulated::default(), Local::new(), Cell::new(None));
     let mut machine = Machine(&clock, &time, &shared);
-    clock.run(2_000_000, restart::run(&shared, &clock, &mut machine), |now| {
+    clock.run(2_000_000, restart::run(shared.for_restart(), &clock, &mut machine), |now| {
         if now == 500_000 {
             assert!(shared.can_restart.is_raised() && shared.has_bootloader.is_raised() && time.get().is_none());
             report(&shared, Mode::Ready, now);

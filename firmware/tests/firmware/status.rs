@@ -51,7 +51,7 @@ fn what_somebody_nearby_must_know_has_a_pattern_of_its_own() {
 fn the_light_shows_the_pattern_at_its_pace_and_flickers_without_a_report() {
     let (clock, shared, lamp) = (Simulated::default(), Local::new(), RefCell::default());
     report(&shared, Mode::Flying, 0);
-    clock.run(3_000_000, run(Lamp(&lamp), Cell(Some(12.0)), &clock, &shared), |_| ());
+    clock.run(3_000_000, run(Lamp(&lamp), Cell(Some(12.0)), &clock, shared.for_status()), |_| ());
     let shown: String = lamp.borrow().iter().map(|&on| if on { '#' } else { '.' }).collect();
     assert_eq!(shown.len(), 60);
     assert_eq!(&shown[..20], "####################");
@@ -62,7 +62,7 @@ fn the_light_shows_the_pattern_at_its_pace_and_flickers_without_a_report() {
 fn the_battery_is_read_and_warned_of_when_low() {
     let (clock, shared, lamp) = (Simulated::default(), Local::new(), RefCell::default());
     shared.parameters.set(Name::BatteryLow, 10.5).unwrap();
-    clock.run(15_000_000, run(Lamp(&lamp), Cell(Some(10.4)), &clock, &shared), |_| ());
+    clock.run(15_000_000, run(Lamp(&lamp), Cell(Some(10.4)), &clock, shared.for_status()), |_| ());
     let voltage = shared.voltage.get().unwrap();
     assert!(voltage.value == 10.4 && voltage.time > 14_500_000);
     assert_eq!(texts(&shared), ["Battery low: 10.4 V"; 2]);
@@ -74,7 +74,7 @@ fn the_battery_is_read_and_warned_of_when_low() {
 fn a_battery_that_does_not_answer_or_reads_nonsense_stops_nothing() {
     for cell in [None, Some(f32::NAN)] {
         let (clock, shared, lamp) = (Simulated::default(), Local::new(), RefCell::default());
-        clock.run(1_000_000, run(Lamp(&lamp), Cell(cell), &clock, &shared), |_| ());
+        clock.run(1_000_000, run(Lamp(&lamp), Cell(cell), &clock, shared.for_status()), |_| ());
         assert!(shared.voltage.get().is_none());
         assert_eq!(lamp.borrow().len(), 20);
     }
@@ -127,5 +127,5 @@ fn events_without_room_are_counted() {
     for _ in 0..20 {
         shared.announce(Event::new(Severity::Critical, "again"));
     }
-    assert_eq!(shared.lost_events(), 20 - firmware::shared::EVENTS as u32);
+    assert_eq!(shared.lost_events.get(), 20 - firmware::shared::EVENTS as u32);
 }

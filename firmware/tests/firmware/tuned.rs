@@ -18,7 +18,7 @@ use std::cell::RefCell;
 
 /// Boots on `shared`; why it can never arm, if so.
 fn boot_on(shared: &Local) -> Option<Grounded> {
-    let (pilot, _) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
+    let (pilot, _) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
     pilot.grounded()
 }
 
@@ -61,15 +61,15 @@ fn every_row_of_the_configuration_shows_what_was_built() {
 fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
     let chip = Chip::erased();
     let shared = Local::new();
-    let mut storage = Storage::load(Words::<4>(&chip), &shared);
+    let mut storage = Storage::load(Words::<4>(&chip), shared.for_storage());
     assert_eq!(boot_on(&shared), None);
     assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
     assert_eq!(said(&shared, Name::GainAttitude, 90.0), ["GAIN_ATT_P: may be flown, from the next boot on"]);
     let clock = Simulated::default();
-    clock.run(10_000, storage.keep(&clock, &shared), |_| ());
+    clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
 
     let again = Local::new();
-    Storage::load(Words::<4>(&chip), &again);
+    Storage::load(Words::<4>(&chip), again.for_storage());
     assert_eq!(boot_on(&again), None, "{:?}", texts(&again));
     assert_eq!((again.parameters.get(Name::Mass), again.parameters.get(Name::GainAttitude)), (0.4, 90.0));
     assert_eq!(again.parameters.set_by_hand().collect::<Vec<_>>(), [Name::Mass, Name::GainAttitude]);
@@ -120,7 +120,7 @@ fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certifica
     let shared = Local::new();
     let configuration = configuration::embedded().unwrap();
     let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7 };
-    boot::start_with(Box::leak(Box::new(boot::Place::new())), &shared, built).unwrap();
+    boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap();
     let words = said(&shared, Name::GainRate, 110.0);
     assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
     assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
@@ -148,8 +148,8 @@ fn nobody_arms_while_somebody_is_busy() {
     let flags: [fn(&Local) -> &Flag; 3] = [|s| &s.saving, |s| &s.judging, |s| &s.restarting];
     for flag in flags {
         let shared = Local::new();
-        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), &shared).unwrap();
-        let mut control = Control::new(&shared, pilot, outputs);
+        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
+        let mut control = Control::new(shared.for_control(), pilot, outputs);
         let mut refused = |now: u64| {
             for end in [now - 5_000, now] {
                 shared.increment(increment(end));
@@ -173,7 +173,7 @@ fn booted_with(identity: u32, stored: &[(Name, f32)]) -> (Option<Grounded>, Vec<
     stored.iter().for_each(|&(name, value)| values[name as usize] = value);
     let chip: RefCell<Chip> = chip_with(&values);
     let shared = Local::new();
-    Storage::load(Words::<4>(&chip), &shared);
+    Storage::load(Words::<4>(&chip), shared.for_storage());
     let grounded = boot_on(&shared);
     let texts = texts(&shared);
     (grounded, texts, shared)

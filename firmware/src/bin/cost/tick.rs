@@ -18,7 +18,7 @@ use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Sett
 use firmware::control::Control;
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
-use firmware::shared::{Asked, Shared};
+use firmware::shared::{Asked, SamplesView, Shared};
 use flight::{FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
@@ -48,29 +48,30 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
     let estimator = ESTIMATOR.init_with(|| Estimator::new(&Settings::bmi088(configuration.vehicle())));
     let mut pilot =
         Pilot::new(Ok(certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, MEMORY.take());
-    let mut control = Control::new(&shared, &mut pilot, outputs);
+    let mut control = Control::new(shared.for_control(), &mut pilot, outputs);
     let tick: Tick<'_> = black_box(Control::tick);
+    let link = shared.for_receive();
     let mut body = Body::standing(*configuration.vehicle());
     let mut cost = Cost::default();
     for number in 1..=STANDING + RISING + CIRCLING {
         let now = number * PERIOD;
-        let wrench = shared.report.get().and_then(|report| report.value.wrench);
-        body.advance(wrench.as_ref(), now, &shared);
+        let wrench = link.report().get().and_then(|report| report.value.wrench);
+        body.advance(wrench.as_ref(), now, shared.for_samples());
         if let Some(pose) = body.late_pose(now) {
-            let _ = shared.poses.put(pose);
+            let _ = link.poses().put(pose);
         }
-        shared.ground_station.put((), now);
+        link.ground_station().put((), now);
         let asked = match number {
             STANDING => Some(Request::Arm),
             FLYING => Some(Request::FlySetpoints),
             _ => None,
         };
         if let Some(request) = asked {
-            shared.request(Asked { request, order: None, times: 1 });
+            link.request(Asked { request, order: None, times: 1 });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {
-            shared.setpoint.put(setpoint(circle, circling), now);
+            link.setpoint().put(setpoint(circle, circling), now);
         }
         let (instructions, _) = counter.short(|| tick(&mut control, now));
         if circling.is_some() {
@@ -78,7 +79,7 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
         }
     }
     cost.print("whole control tick, circle");
-    shared.report.get().is_some_and(|report| report.value.mode == Mode::Flying)
+    link.report().get().is_some_and(|report| report.value.mode == Mode::Flying)
 }
 
 /// Where the circle begins, or is.
@@ -112,7 +113,7 @@ impl Body {
     }
 
     /// Moves on to `now`, us, under what the law asked for; tells what an IMU would. Without thrust it stands.
-    fn advance(&mut self, wrench: Option<&Wrench>, now: u64, shared: &Shared<NoopRawMutex>) {
+    fn advance(&mut self, wrench: Option<&Wrench>, now: u64, shared: SamplesView<'_, NoopRawMutex>) {
         let seconds = INCREMENT as f32 * 1e-6;
         for part in (0..INCREMENTS).rev() {
             let end = now - part * INCREMENT;
@@ -132,7 +133,7 @@ impl Body {
             });
         }
         let sample = ImuSample { angular_velocity: self.state.angular_velocity, specific_force: Vector3::zeros() };
-        shared.imu.put(sample, now);
+        shared.imu().put(sample, now);
         self.past.rotate_left(1);
         if let Some(last) = self.past.last_mut() {
             *last = self.state;

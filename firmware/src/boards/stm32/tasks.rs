@@ -26,7 +26,10 @@ use crate::parameters::storage::Storage;
 use crate::parameters::table::Name;
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
-use crate::shared::{Event, Severity};
+use crate::shared::{
+    self, CardView, ControlView, Event, ImuView, PortView, RadioView, ReceiveView, RestartView, Severity,
+    SimulatorView, StatusView, StorageView, TransmitView,
+};
 use crate::{boot, card, imu, link, radio, status};
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
@@ -34,9 +37,10 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use flight::Pilot;
 use static_cell::StaticCell;
 
-type Shared = crate::shared::Shared<CriticalSectionRawMutex>;
-type Hil = hil::Hil<CriticalSectionRawMutex>;
-type Repeated = repeat::Repeated<CriticalSectionRawMutex>;
+type Raw = CriticalSectionRawMutex;
+type Shared = shared::Shared<Raw>;
+type Hil = hil::Hil<Raw>;
+type Repeated = repeat::Repeated<Raw>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
@@ -48,36 +52,39 @@ pub fn run() -> ! {
     defmt::info!("started by {} on {=str}", board.restart, chosen::NAME);
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
+    let booting = shared.for_boot();
     let kept = kept::take(board.restart.is_power());
     if let Some(words) = kept.or_else(|| board.restart.words().map(LastWords::new)) {
         defmt::error!("{=str}", words.as_str());
-        shared.last_words.put(words, 0);
+        booting.last_words().put(words, 0);
     }
     if !board.has_crystal {
-        shared.clock_doubtful.raise();
-        shared.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
+        booting.clock_doubtful().raise();
+        booting.announce(Event::new(Severity::Warning, "The clock's crystal does not run: no arming"));
     }
     if !has_cache {
-        shared.announce(Event::new(Severity::Warning, "The instruction cache is not on: slow"));
+        booting.announce(Event::new(Severity::Warning, "The instruction cache is not on: slow"));
     }
     static HIL: StaticCell<Hil> = StaticCell::new();
     let hil = HIL.init_with(Hil::new);
-    let parameters = Storage::load(board.storage, shared);
-    if let Some(wiring) = outputs::wiring(shared.parameters.get(Name::MotorOrder)) {
+    let parameters = Storage::load(board.storage, shared.for_storage());
+    if let Some(wiring) = outputs::wiring(booting.parameters().get(Name::MotorOrder)) {
         board.motors.wire(wiring);
     }
-    if board.transmitter.set_baudrate(shared.parameters.get(Name::SerialRate) as u32).is_err() {
-        shared.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
+    if board.transmitter.set_baudrate(booting.parameters().get(Name::SerialRate) as u32).is_err() {
+        booting.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
     }
     if restart::has_no_brown_out() {
-        shared.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
+        booting.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
     }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
-        shared.recorder.attach(Ring::recover(memory));
+        booting.recorder().attach(Ring::recover(memory));
     }
     static PLACE: boot::Place = boot::Place::new();
     // Without the error's words: what prints them takes 2 KB, and the build refuses such files.
-    let Ok((pilot, outputs)) = boot::start(&PLACE, shared) else { panic!("the embedded scenario has not four rotors") };
+    let Ok((pilot, outputs)) = boot::start(&PLACE, booting) else {
+        panic!("the embedded scenario has not four rotors")
+    };
 
     CONTROL_INTERRUPT.set_priority(Priority::P6);
     let spawner = CONTROL.start(CONTROL_INTERRUPT);
@@ -85,35 +92,35 @@ pub fn run() -> ! {
     static REPEATED: StaticCell<Repeated> = StaticCell::new();
     let repeated = REPEATED.init_with(Repeated::new);
     spawner.spawn(repeat_commands(repeated, board.motors).unwrap());
-    spawner.spawn(control(shared, hil, pilot, outputs, repeated, board.watchdog).unwrap());
+    spawner.spawn(control(shared.for_control(), hil, pilot, outputs, repeated, board.watchdog).unwrap());
 
     SENSOR_INTERRUPT.set_priority(Priority::P7);
     let spawner = SENSOR.start(SENSOR_INTERRUPT);
-    spawner.spawn(sample(shared, board.imu).unwrap());
+    spawner.spawn(sample(shared.for_imu(), board.imu).unwrap());
 
     SERVICES_INTERRUPT.set_priority(Priority::P8);
     let spawner = SERVICES.start(SERVICES_INTERRUPT);
     spawner.spawn(carry_link(shared, board.receiver, board.transmitter, board.usb).unwrap());
-    spawner.spawn(simulated_sensors(shared, hil, board.simulator_receiver).unwrap());
-    spawner.spawn(simulated_motors(shared, hil, board.simulator_transmitter).unwrap());
+    spawner.spawn(simulated_sensors(shared.for_simulator(), hil, board.simulator_receiver).unwrap());
+    spawner.spawn(simulated_motors(shared.for_simulator(), hil, board.simulator_transmitter).unwrap());
     if let Some(radio) = board.radio {
-        spawner.spawn(listen(shared, radio).unwrap());
+        spawner.spawn(listen(shared.for_radio(), radio).unwrap());
     }
-    spawner.spawn(show(shared, board.light, board.battery).unwrap());
-    spawner.spawn(keep(shared, parameters).unwrap());
-    spawner.spawn(restart_when_asked(shared).unwrap());
+    spawner.spawn(show(shared.for_status(), board.light, board.battery).unwrap());
+    spawner.spawn(keep(shared.for_storage(), parameters).unwrap());
+    spawner.spawn(restart_when_asked(shared.for_restart()).unwrap());
 
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
         if let Some(card) = board.card {
-            spawner.spawn(log_flights(shared, card).unwrap());
+            spawner.spawn(log_flights(shared.for_card(), card).unwrap());
         }
     })
 }
 
 #[embassy_executor::task]
 async fn control(
-    shared: &'static Shared,
+    shared: ControlView<'static, Raw>,
     hil: &'static Hil,
     pilot: &'static mut Pilot<'static>,
     outputs: Outputs,
@@ -121,7 +128,7 @@ async fn control(
     mut watchdog: BoardWatchdog,
 ) {
     let pins = Repeater { repeated, clock: SystemClock };
-    let mut motors = SelectedMotors { pins, hil, wanted: &shared.hil, clock: SystemClock };
+    let mut motors = SelectedMotors { pins, hil, wanted: shared.hil(), clock: SystemClock };
     Control::new(shared, pilot, outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
 }
 
@@ -131,7 +138,7 @@ async fn repeat_commands(repeated: &'static Repeated, mut motors: BoardMotors) {
 }
 
 #[embassy_executor::task]
-async fn sample(shared: &'static Shared, mut sensor: BoardImu) {
+async fn sample(shared: ImuView<'static, Raw>, mut sensor: BoardImu) {
     imu::run(shared, &SystemClock, &mut sensor).await;
 }
 
@@ -144,22 +151,24 @@ async fn carry_link(shared: &'static Shared, receiver: Receiver, transmitter: Tr
     if let Some(Usb { device, receiver, transmitter, port }) = usb.map(|usb| Usb::new(usb, chosen::NAME)) {
         (port_receiver, port_transmitter) = (Some(receiver), Some(transmitter));
         spawner.spawn(answer_host(device).unwrap());
-        spawner.spawn(watch_port(shared, port).unwrap());
+        spawner.spawn(watch_port(shared.for_port(), port).unwrap());
     } else {
-        shared.announce(Event::new(Severity::Warning, "USB has no supply: the port stays off"));
+        shared.for_port().announce(Event::new(Severity::Warning, "USB has no supply: the port stays off"));
     }
-    let on_port = &shared.on_port;
-    spawner.spawn(receive(shared, Line { serial: receiver, port: port_receiver, on_port }).unwrap());
-    spawner.spawn(transmit(shared, Line { serial: transmitter, port: port_transmitter, on_port }).unwrap());
+    let on_port = shared.for_receive().on_port();
+    let line = Line { serial: receiver, port: port_receiver, on_port };
+    spawner.spawn(receive(shared.for_receive(), line).unwrap());
+    let line = Line { serial: transmitter, port: port_transmitter, on_port };
+    spawner.spawn(transmit(shared.for_transmit(), line).unwrap());
 }
 
 #[embassy_executor::task]
-async fn receive(shared: &'static Shared, line: Line<'static, Receiver, PortReceiver>) {
+async fn receive(shared: ReceiveView<'static, Raw>, line: Line<'static, Receiver, PortReceiver>) {
     link::receive::receive(line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn transmit(shared: &'static Shared, line: Line<'static, Transmitter, PortTransmitter>) {
+async fn transmit(shared: TransmitView<'static, Raw>, line: Line<'static, Transmitter, PortTransmitter>) {
     link::transmit::transmit(line, &SystemClock, shared).await;
 }
 
@@ -169,41 +178,41 @@ async fn answer_host(mut device: Device) {
 }
 
 #[embassy_executor::task]
-async fn watch_port(shared: &'static Shared, port: UsbPort) {
+async fn watch_port(shared: PortView<'static, Raw>, port: UsbPort) {
     link::port::watch(&port, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn simulated_sensors(shared: &'static Shared, hil: &'static Hil, line: SimulatorReceiver) {
+async fn simulated_sensors(shared: SimulatorView<'static, Raw>, hil: &'static Hil, line: SimulatorReceiver) {
     hil::receive(hil, line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn simulated_motors(shared: &'static Shared, hil: &'static Hil, line: SimulatorTransmitter) {
+async fn simulated_motors(shared: SimulatorView<'static, Raw>, hil: &'static Hil, line: SimulatorTransmitter) {
     hil::transmit(hil, line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn listen(shared: &'static Shared, line: RadioReceiver) {
+async fn listen(shared: RadioView<'static, Raw>, line: RadioReceiver) {
     radio::receive(line, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn show(shared: &'static Shared, light: Lamp, battery: BoardBattery) {
+async fn show(shared: StatusView<'static, Raw>, light: Lamp, battery: BoardBattery) {
     status::run(light, battery, &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn keep(shared: &'static Shared, mut storage: Storage<ParameterFlash>) {
+async fn keep(shared: StorageView<'static, Raw>, mut storage: Storage<ParameterFlash>) {
     storage.keep(&SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
-async fn restart_when_asked(shared: &'static Shared) {
+async fn restart_when_asked(shared: RestartView<'static, Raw>) {
     crate::restart::run(shared, &SystemClock, &mut Chip).await;
 }
 
 #[embassy_executor::task]
-async fn log_flights(shared: &'static Shared, slot: BoardCard) {
+async fn log_flights(shared: CardView<'static, Raw>, slot: BoardCard) {
     card::run(slot, card::PREPARED, &SystemClock, shared).await;
 }

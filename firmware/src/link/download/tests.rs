@@ -1,4 +1,5 @@
 use super::*;
+use crate::shared::Shared;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 
 type Local = Shared<NoopRawMutex>;
@@ -9,12 +10,12 @@ fn messages(size: u32, offset: u32, wanted: u32) -> (Vec<Message>, u64) {
     let shared = Local::new();
     shared.card.set(CardState::Ready, 0);
     let mut download = Download::new();
-    download.read(0, offset, wanted, 0, &shared);
+    download.read(0, offset, wanted, 0, shared.for_transmit());
     let (mut messages, mut now) = (vec![], 0);
     let mut is_answered = false;
     while download.due() < u64::MAX {
         if now >= download.due() || is_answered {
-            messages.extend(download.next(now, &shared));
+            messages.extend(download.next(now, shared.for_transmit()));
         }
         is_answered = false;
         if let Some(question) = shared.library.asked() {

@@ -61,7 +61,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             return;
         }
         let call = Call::from(message);
-        let (order, armed) = (Order { command: call.command as u16, sender }, self.shared.commander.get());
+        let (order, armed) = (Order { command: call.command as u16, sender }, self.shared.commander().get());
         let delivery = self.repetitions.look(frame, order.command);
         if delivery != Delivery::New {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
@@ -85,9 +85,9 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// Acts on a command at `now`, us; what to answer, unless somebody else does.
     fn act(&mut self, call: &Call, order: Order, now: u64) -> Option<MavResult> {
-        let report = self.shared.report.get();
+        let report = self.shared.report().get();
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
-        let origin = self.shared.origin.get().map_or_else(Origin::default, |origin| origin.value);
+        let origin = self.shared.origin().get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
                 if request == Request::FlySetpoints {
@@ -102,7 +102,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 return None;
             }
             Action::ForceDisarm => self.shared.request_disarm(),
-            Action::EnterHil => self.shared.hil.raise(),
+            Action::EnterHil => self.shared.hil().raise(),
             Action::Restart => return Some(self.restart(false)),
             Action::StartBootloader => return Some(self.restart(true)),
             Action::Refuse(result, words) => {
@@ -125,29 +125,29 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// what was accepted.
     fn restart(&mut self, into_bootloader: bool) -> MavResult {
         let shared = self.shared;
-        let (refused, result) = if !shared.can_restart.is_raised() {
+        let (refused, result) = if !shared.can_restart().is_raised() {
             ("Restart: nobody here can do that", MavResult::MAV_RESULT_UNSUPPORTED)
-        } else if into_bootloader && !shared.has_bootloader.is_raised() {
+        } else if into_bootloader && !shared.has_bootloader().is_raised() {
             ("Restart: there is no bootloader", MavResult::MAV_RESULT_UNSUPPORTED)
-        } else if shared.saving.is_raised() {
+        } else if shared.saving().is_raised() {
             ("Restart: parameters are being saved", MavResult::MAV_RESULT_TEMPORARILY_REJECTED)
-        } else if shared.restarting.is_raised() {
-            if shared.into_bootloader.is_raised() == into_bootloader {
+        } else if shared.restarting().is_raised() {
+            if shared.into_bootloader().is_raised() == into_bootloader {
                 return MavResult::MAV_RESULT_ACCEPTED;
             }
             ("Restart: another one is under way", MavResult::MAV_RESULT_TEMPORARILY_REJECTED)
         } else {
             if into_bootloader {
-                shared.into_bootloader.raise();
+                shared.into_bootloader().raise();
             } else {
-                shared.into_bootloader.lower();
+                shared.into_bootloader().lower();
             }
             // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
-            shared.restarting.raise();
+            shared.restarting().raise();
             if !shared.is_turning() {
                 return MavResult::MAV_RESULT_ACCEPTED;
             }
-            shared.restarting.lower();
+            shared.restarting().lower();
             ("Restart: only disarmed, and no motor turning", MavResult::MAV_RESULT_DENIED)
         };
         shared.announce(Event::new(Severity::Warning, refused));
@@ -158,10 +158,10 @@ impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn calibrate(&mut self, asked: Calibration) -> Result<(), MavResult> {
         let refused = if self.shared.is_armed() {
             "Calibration: only while disarmed"
-        } else if self.shared.hil.is_raised() {
+        } else if self.shared.hil().is_raised() {
             "Calibration: a simulator has the sensors"
         } else {
-            return self.shared.calibrations.put(asked).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            return self.shared.calibrations().put(asked).map_err(|_| MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
         };
         self.shared.announce(Event::new(Severity::Warning, refused));
         Err(MavResult::MAV_RESULT_DENIED)

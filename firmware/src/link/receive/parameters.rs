@@ -59,13 +59,13 @@ impl<M: RawMutex> Receiver<'_, M> {
             return warn(&format_args!("{}: is a REAL32", name.row().name));
         }
         // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
-        shared.judging.raise();
+        shared.judging().raise();
         if shared.is_armed() {
             warn(&"Parameters change only while disarmed");
         } else if name.is_tuned() && shared.is_turning() {
             warn(&format_args!("{}: not while a motor turns", name.row().name));
         } else {
-            match shared.parameters.set(name, value) {
+            match shared.parameters().set(name, value) {
                 Ok(()) if name.is_tuned() => {
                     let words = format_args!("{}: may be flown, from the next boot on", name.row().name);
                     shared.announce(Event::new(Severity::Information, words));
@@ -79,6 +79,6 @@ impl<M: RawMutex> Receiver<'_, M> {
                 }
             }
         }
-        shared.judging.lower();
+        shared.judging().lower();
     }
 }

@@ -23,7 +23,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         match Origin::new(latitude, longitude, altitude) {
             Some(origin) => {
-                self.shared.origin.put(origin, frame.time);
+                self.shared.origin().put(origin, frame.time);
                 self.shared.reply(Reply::Message(Kind::GlobalOrigin));
             }
             None => self.refused(),

@@ -43,8 +43,8 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// The recorder's recording goes; files stay, because nothing on a vehicle deletes a file.
     pub(super) fn erase_recordings(&mut self, frame: &Frame<'_>, message: &LOG_ERASE_DATA) {
         if self.is_addressed(message.target_system, message.target_component) && self.may_read(frame) {
-            self.shared.recorder.erase();
-            if self.shared.card.state() == CardState::Ready {
+            self.shared.recorder().erase();
+            if self.shared.card().state() == CardState::Ready {
                 let words = "Log: files stay on the card; delete them there";
                 self.shared.announce(Event::new(Severity::Information, words));
             }

@@ -18,9 +18,9 @@ impl<M: RawMutex> Receiver<'_, M> {
     #[inline(never)]
     pub(super) fn is_genuine(&mut self, frame: &Frame<'_>) -> bool {
         let shared = self.shared;
-        let must_be_signed = shared.parameters.get(Name::SignedOnly) > 0.0;
-        let Err(refusal) = shared.signing.judge(frame, must_be_signed) else { return true };
-        if shared.on_port.is_raised() {
+        let must_be_signed = shared.parameters().get(Name::SignedOnly) > 0.0;
+        let Err(refusal) = shared.signing().judge(frame, must_be_signed) else { return true };
+        if shared.on_port().is_raised() {
             return true;
         }
         if !matches!(frame.message, HEARTBEAT_DATA::ID | RADIO_STATUS_DATA::ID) {
@@ -37,7 +37,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         let shared = self.shared;
         let key = Key::new(message.secret_key);
-        let (severity, words) = if !shared.on_port.is_raised() {
+        let (severity, words) = if !shared.on_port().is_raised() {
             (Severity::Warning, "Signing: a key is taken over USB only")
         } else if shared.is_turning() {
             (Severity::Warning, "Signing: only disarmed, and no motor turning")

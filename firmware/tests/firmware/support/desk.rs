@@ -20,8 +20,8 @@ pub struct Desk<'a> {
 impl<'a> Desk<'a> {
     /// Just booted.
     pub fn new(shared: &'a Local) -> Self {
-        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared).unwrap();
-        Self { shared, control: Control::new(shared, pilot, outputs), now: 0 }
+        let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
+        Self { shared, control: Control::new(shared.for_control(), pilot, outputs), now: 0 }
     }
 
     /// One tick on, with what the IMU and a camera say of a vehicle at rest.

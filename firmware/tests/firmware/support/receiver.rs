@@ -24,7 +24,7 @@ pub struct Fed<'a> {
 impl<'a> Fed<'a> {
     /// Nothing received yet.
     pub fn new(shared: &'a Local) -> Self {
-        Self { parser: Parser::new(), receiver: Receiver::new(shared), sequence: 0 }
+        Self { parser: Parser::new(), receiver: Receiver::new(shared.for_receive()), sequence: 0 }
     }
 
     /// Receives bytes at `now`, us.

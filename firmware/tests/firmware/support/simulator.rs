@@ -41,7 +41,8 @@ pub fn command(hil: &Hil, time: u64) {
     let (wanted, clock) = (Flag::new(), Simulated::default());
     wanted.raise();
     clock.0.set(time);
-    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: &wanted, clock }.write(MotorCommand::Stop)).unwrap();
+    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: (&wanted).into(), clock }.write(MotorCommand::Stop))
+        .unwrap();
 }
 
 /// What the sensors say at `time_usec`.
