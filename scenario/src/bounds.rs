@@ -15,6 +15,7 @@
 //!
 //! The other six are needed, and none may be less than the scenario's own reference takes.
 
+use crate::number::Number;
 use crate::section::{FieldError, Section};
 use controller_core::reference::ReferenceBounds;
 
@@ -34,15 +35,7 @@ pub fn read_bounds(
     let Some(section) = root.optional_section("reference_bounds")? else {
         return Ok(default());
     };
-    let fields = [
-        ("horizontal_speed", own.horizontal_speed),
-        ("horizontal_acceleration", own.horizontal_acceleration),
-        ("vertical_acceleration", own.vertical_acceleration),
-        ("jerk", own.jerk),
-        ("snap", own.snap),
-        ("heading_rate", own.heading_rate),
-        ("heading_second_derivative", own.heading_second_derivative),
-    ];
+    let fields = named(own);
     section.allow(&fields.map(|(key, _)| key))?;
     let mut values = [0.0_f32; 7];
     for (value, (key, taken)) in values.iter_mut().zip(fields) {
@@ -76,20 +69,35 @@ pub fn read_bounds(
     bounds.validated().map_err(|error| root.refused(&error))
 }
 
+/// The keys of the section with their values.
+#[must_use]
+pub fn named(bounds: &ReferenceBounds) -> [(&'static str, f32); 7] {
+    // No field is left out: one that is added has to be added here.
+    let ReferenceBounds {
+        horizontal_speed,
+        horizontal_acceleration,
+        vertical_acceleration,
+        jerk,
+        snap,
+        heading_rate,
+        heading_second_derivative,
+    } = *bounds;
+    [
+        ("horizontal_speed", horizontal_speed),
+        ("horizontal_acceleration", horizontal_acceleration),
+        ("vertical_acceleration", vertical_acceleration),
+        ("jerk", jerk),
+        ("snap", snap),
+        ("heading_rate", heading_rate),
+        ("heading_second_derivative", heading_second_derivative),
+    ]
+}
+
 /// `bounds` as the section of a scenario file.
 #[must_use]
 pub fn written(bounds: &ReferenceBounds) -> String {
-    format!(
-        "[reference_bounds]\nhorizontal_speed = {:?}\nhorizontal_acceleration = {:?}\nvertical_acceleration = {:?}\njerk = {:?}\nsnap = {:?}\n\
-         heading_rate = {:?}\nheading_second_derivative = {:?}\n",
-        bounds.horizontal_speed,
-        bounds.horizontal_acceleration,
-        bounds.vertical_acceleration,
-        bounds.jerk,
-        bounds.snap,
-        bounds.heading_rate,
-        bounds.heading_second_derivative
-    )
+    let lines = named(bounds).map(|(key, value)| format!("{key} = {}\n", Number(value)));
+    format!("[reference_bounds]\n{}", lines.concat())
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! Every key is one of [`ExtendedParameters::TABLE`]; `docs/scenario-file.md` lists them, and [`written`] prints them
 //! all.
 
+use crate::number::Number;
 use crate::section::{FieldError, Section};
 use controller_core::configuration::ExtendedLaw;
 use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
@@ -64,7 +65,7 @@ pub fn written(parameters: &ExtendedParameters) -> String {
             let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
             before = constant.section;
         }
-        let _ = writeln!(text, "{:37} #{}", format!("{} = {value:?}", constant.key), constant.about);
+        let _ = writeln!(text, "{:37} #{}", format!("{} = {}", constant.key, Number(value)), constant.about);
     }
     text
 }

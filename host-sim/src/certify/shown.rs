@@ -1,6 +1,7 @@
 //! `certify --show`: every constant that is used, as sections of a scenario file.
 
 use controller_core::configuration::{LawParameters, PaperLaw};
+use scenario::number::Number;
 use scenario::vehicle::named;
 use scenario::{Scenario, bounds, extended};
 
@@ -11,9 +12,10 @@ pub fn constants(scenario: &Scenario) -> String {
     let (law, constants) = match configuration.law() {
         LawParameters::Extended(law) => ("extended", extended::written(&law.parameters)),
         LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
-            let lines: String = named(gains).iter().map(|(key, value)| format!("{key} = {value:?}\n")).collect();
-            let floor =
-                thrust_floor.map_or(String::new(), |floor| format!("# with [control] thrust_floor = {floor:?}\n"));
+            let lines: String =
+                named(gains).iter().map(|(key, value)| format!("{key} = {}\n", Number(*value))).collect();
+            let floor = thrust_floor
+                .map_or(String::new(), |floor| format!("# with [control] thrust_floor = {}\n", Number(floor)));
             ("paper", format!("{floor}[gains]\n{lines}"))
         }
     };
