@@ -64,15 +64,6 @@ impl Memory {
     pub const RESET: Self = Self { filter: FilterState::ZERO, lift: None };
 }
 
-/// What a flight needs of a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Command {
-    /// T and tau.
-    pub wrench: Wrench,
-    /// theta~.
-    pub mrp: Vector3<f32>,
-}
-
 /// What a step went through, at the state it was given and before the filters advance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Diagnostics {
@@ -190,16 +181,6 @@ impl Controller {
     #[cfg(any(test, feature = "uncertified"))]
     pub fn restore(&mut self, memory: Memory) {
         self.memory = memory;
-    }
-
-    /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
-    ///
-    /// # Errors
-    /// As [`Self::step`].
-    #[inline(never)]
-    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
-        let (wrench, Diagnostics { mrp, .. }) = self.step(state, reference)?;
-        Ok(Command { wrench, mrp })
     }
 
     /// One tick of the law.

@@ -29,7 +29,6 @@
 pub mod actuators;
 pub mod attitude;
 pub mod budget;
-pub mod constants;
 pub mod controller;
 pub mod defaults;
 pub mod force;

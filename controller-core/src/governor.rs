@@ -132,8 +132,8 @@ impl Governor {
         period: f32,
         memory: &'m mut Memory,
     ) -> Result<&'m mut Self, ParameterError> {
-        for (value, field) in bounds.named() {
-            require_positive(value, field)?;
+        for (value, path) in bounds.values().into_iter().zip(ReferenceBounds::PATHS) {
+            require_positive(value, path)?;
         }
         for (value, most, field) in [
             (period, 0.1, "governor.period"),

@@ -77,6 +77,7 @@ pub mod attitude;
 pub mod attitude_reference;
 pub mod certificate;
 pub mod configuration;
+pub mod constants;
 pub mod controller;
 pub mod error;
 pub mod extended;

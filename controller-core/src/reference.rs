@@ -18,7 +18,8 @@ mod segment;
 mod spline;
 pub mod waypoints;
 
-use crate::error::{InputError, ParameterError, Reason, require, require_finite};
+use crate::constants::{Range, constants};
+use crate::error::{InputError, ParameterError};
 use crate::heading::Heading;
 use crate::math;
 use crate::state::{STATE_RANGE, check_vectors, sum_of_squares};
@@ -66,23 +67,24 @@ impl Reference {
     }
 }
 
-/// Omega_r of Assumption 1: how hard a reference may ask the vehicle to move.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReferenceBounds {
-    /// K_v12: horizontal speed, Euclidean, m/s. Only a law that feeds drag forward depends on it.
-    pub horizontal_speed: f32,
-    /// K_a12: horizontal acceleration, Euclidean, m/s^2.
-    pub horizontal_acceleration: f32,
-    /// K_a3: |vertical acceleration|, m/s^2.
-    pub vertical_acceleration: f32,
-    /// K_j: jerk, Euclidean, m/s^3.
-    pub jerk: f32,
-    /// K_s: snap, Euclidean, m/s^4.
-    pub snap: f32,
-    /// K_nu': |nu_d'| = |psi'|, rad/s.
-    pub heading_rate: f32,
-    /// K_nu'': |nu_d''| = sqrt(psi''^2 + psi'^4), 1/s^2.
-    pub heading_second_derivative: f32,
+constants! {
+    /// Omega_r of Assumption 1: how hard a reference may ask the vehicle to move.
+    pub struct ReferenceBounds {
+        /// K_v12, m/s: horizontal speed, Euclidean. Only a law that feeds drag forward depends on it.
+        reference_bounds.horizontal_speed: Range::BOUND, FIXED;
+        /// K_a12, m/s^2: horizontal acceleration, Euclidean.
+        reference_bounds.horizontal_acceleration: Range::BOUND, FIXED;
+        /// K_a3, m/s^2: |vertical acceleration|.
+        reference_bounds.vertical_acceleration: Range::BOUND, FIXED;
+        /// K_j, m/s^3: jerk, Euclidean.
+        reference_bounds.jerk: Range::BOUND, FIXED;
+        /// K_s, m/s^4: snap, Euclidean.
+        reference_bounds.snap: Range::BOUND, FIXED;
+        /// K_nu', rad/s: |nu_d'| = |psi'|.
+        reference_bounds.heading_rate: Range::BOUND, FIXED;
+        /// K_nu'', 1/s^2: |nu_d''| = sqrt(psi''^2 + psi'^4).
+        reference_bounds.heading_second_derivative: Range::BOUND, FIXED;
+    }
 }
 
 impl ReferenceBounds {
@@ -100,28 +102,11 @@ impl ReferenceBounds {
     /// The greater of each bound.
     #[must_use]
     pub fn covering(&self, other: &Self) -> Self {
-        Self {
-            horizontal_speed: self.horizontal_speed.max(other.horizontal_speed),
-            horizontal_acceleration: self.horizontal_acceleration.max(other.horizontal_acceleration),
-            vertical_acceleration: self.vertical_acceleration.max(other.vertical_acceleration),
-            jerk: self.jerk.max(other.jerk),
-            snap: self.snap.max(other.snap),
-            heading_rate: self.heading_rate.max(other.heading_rate),
-            heading_second_derivative: self.heading_second_derivative.max(other.heading_second_derivative),
+        let (mut values, others) = (self.values(), other.values());
+        for (value, other) in values.iter_mut().zip(others) {
+            *value = value.max(other);
         }
-    }
-
-    /// Each bound with its name.
-    pub(crate) fn named(&self) -> [(f32, &'static str); 7] {
-        [
-            (self.horizontal_speed, "reference_bounds.horizontal_speed"),
-            (self.horizontal_acceleration, "reference_bounds.horizontal_acceleration"),
-            (self.vertical_acceleration, "reference_bounds.vertical_acceleration"),
-            (self.jerk, "reference_bounds.jerk"),
-            (self.snap, "reference_bounds.snap"),
-            (self.heading_rate, "reference_bounds.heading_rate"),
-            (self.heading_second_derivative, "reference_bounds.heading_second_derivative"),
-        ]
+        Self::from_values(values)
     }
 
     /// Checks that every bound is finite and not negative.
@@ -129,10 +114,7 @@ impl ReferenceBounds {
     /// # Errors
     /// Names the first field that is not.
     pub fn validated(self) -> Result<Self, ParameterError> {
-        for (value, field) in self.named() {
-            require_finite(value, field)?;
-            require(value >= 0.0, field, Reason::Negative)?;
-        }
+        self.check()?;
         Ok(self)
     }
 

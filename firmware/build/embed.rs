@@ -8,11 +8,10 @@
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::constants::Constant;
 use controller_core::extended::actuators::ActuatorParameters;
-use controller_core::extended::parameters::ExtendedParameters;
 use nalgebra::Vector3;
-use scenario::vehicle::named;
-use scenario::{Scenario, board, bounds};
+use scenario::{Scenario, board};
 
 /// What is to be built in.
 #[derive(Debug)]
@@ -40,7 +39,7 @@ pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
 fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-    let bounds = fields(bounds::named(configuration.bounds()));
+    let bounds = fields(&configuration.bounds().entries());
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
     let loops = board::judged(scenario);
@@ -87,7 +86,7 @@ fn law_source(law: &LawParameters) -> String {
     let gains = Gains::new(GainParameters {{ {} }}, &vehicle)?;
     Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
 ",
-                fields(named(gains))
+                fields(&gains.entries())
             )
         }
         LawParameters::Extended(ExtendedLaw { parameters, actuators: ActuatorParameters { lag, delay } }) => format!(
@@ -98,7 +97,7 @@ fn law_source(law: &LawParameters) -> String {
     let law = ExtendedLaw {{ parameters, actuators: ActuatorParameters {{ lag: {lag:e}, delay: {delay:e} }} }};
     Configuration::extended(vehicle, limits, law, bounds)?.with_rotors(rotors)
 ",
-            fields(ExtendedParameters::TABLE.iter().map(|constant| constant.key).zip(parameters.values()))
+            fields(&parameters.entries())
         ),
     }
 }
@@ -116,9 +115,10 @@ fn rotor_source(rotor: &Rotor) -> String {
     )
 }
 
-/// The fields of a struct of numbers.
-fn fields<'a>(fields: impl IntoIterator<Item = (&'a str, f32)>) -> String {
-    let written: Vec<String> = fields.into_iter().map(|(name, value)| format!("{name}: {value:e}")).collect();
+/// The fields of a struct of constants.
+fn fields(constants: &[(Constant, f32)]) -> String {
+    let written: Vec<String> =
+        constants.iter().map(|(constant, value)| format!("{}: {value:e}", constant.key)).collect();
     written.join(", ")
 }
 

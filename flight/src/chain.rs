@@ -13,18 +13,18 @@
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady
 //! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
-use super::leaning::{heading, up};
 use super::lift_off::LiftOff;
 use super::refusal::Grounded;
 use super::rules::{Mode, REFUSALS_MAX};
 use super::sinking::Sinking;
 use super::spool::Spool;
+use super::tilt::{heading, up};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
-use controller_core::controller::Command;
 use controller_core::error::InputError;
 use controller_core::governor::{self, Governor, GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
+use controller_core::law::Command;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};

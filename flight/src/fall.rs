@@ -2,25 +2,28 @@
 //!
 //! Nothing that falls is still for longer than a moment, so one that is still for a while lies somewhere.
 
-use super::lasting::Lasting;
-use super::watch::{GROUND_LASTING, is_still};
+use super::debounce::Debounce;
+use super::watch::{GROUND_DEBOUNCE, is_still};
 use estimation::estimator::EstimatedState;
 
 /// Since it was stopped.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Fall {
-    may_last: bool,
-    still: Lasting,
+    may_fall: bool,
+    still: Debounce,
 }
 
 impl Fall {
-    /// Whether it may fall, once a tick; `is_stopped` in the one that stops it in the air. Without
-    /// a state the last answer stands.
-    pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) -> bool {
-        let lies = self.still.is_so(state.is_some_and(is_still), GROUND_LASTING, now);
+    /// Once a tick; `is_stopped` in the one that stops it in the air. Without a state the last answer stands.
+    pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) {
+        let lies = self.still.holds_for(state.is_some_and(is_still), GROUND_DEBOUNCE, now);
         // What has hovered until now was still as well.
-        self.still = if is_stopped { Lasting::default() } else { self.still };
-        self.may_last = is_stopped || self.may_last && !lies;
-        self.may_last
+        self.still = if is_stopped { Debounce::default() } else { self.still };
+        self.may_fall = is_stopped || self.may_fall && !lies;
+    }
+
+    /// Whether it may fall.
+    pub fn may_fall(&self) -> bool {
+        self.may_fall
     }
 }

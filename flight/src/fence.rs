@@ -1,7 +1,7 @@
 //! The fence: a cylinder about the place where the vehicle was armed.
 
-use super::leaning::heading;
 use super::settings::FlightSettings;
+use super::tilt::heading;
 use controller_core::governor::{Motion, Setpoint};
 use controller_core::state::State;
 use nalgebra::{Vector2, Vector3};

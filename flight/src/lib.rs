@@ -41,15 +41,14 @@
 mod hummingbird;
 
 mod bench;
-mod calm;
 mod chain;
+mod debounce;
 mod estimate;
 mod exchange;
 mod fall;
 mod fence;
-mod lasting;
-mod leaning;
 mod lift_off;
+mod low_pass;
 mod motor;
 mod permission;
 pub mod pilot;
@@ -61,6 +60,7 @@ mod settings;
 mod sinking;
 mod spool;
 mod thrust_check;
+mod tilt;
 mod trust;
 mod watch;
 

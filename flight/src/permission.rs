@@ -1,9 +1,9 @@
 //! What arming, turning a motor and the ways of flying need, and why they are refused.
 
 use super::estimate::Estimate;
-use super::leaning::{heading, up};
 use super::refusal::Refusal;
 use super::rules::Mode;
+use super::tilt::{heading, up};
 use controller_core::heading::Heading;
 use estimation::estimator::{EstimatedState, Fault};
 use nalgebra::Vector3;

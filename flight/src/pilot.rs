@@ -1,19 +1,17 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! In a tick, in this order: the estimator takes what was measured; a jump of the estimate is followed; the flight is
-//! looked at; a request is answered; the rules' conditions are worked out and the table decides; a new mode is entered;
-//! a setpoint is taken; and the mode's output is worked out.
+//! `tick` is the order of it; `answers` says what is granted, `conditions` what the rules need to know.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
-use super::exchange::{Inputs, Outcome, Output, PERIOD};
+use super::exchange::{Inputs, Output, PERIOD};
 use super::fall::Fall;
 use super::fence::Fence;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
-use super::rules::{self, BRAKING_MAX, Condition, LEVELLING_MAX, Mode, Transition};
+use super::rules::{self, BRAKING_MAX, Conditions, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
 use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
@@ -110,80 +108,6 @@ impl<'m> Pilot<'m> {
         self.chain.as_ref().err().copied()
     }
 
-    /// One tick: what has arrived since the last, in; what the motors do until the next, out.
-    pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
-        let given_up = self.trust.is_given_up();
-        let estimate = self.estimation.tick(inputs, self.mode.is_armed(), self.is_airborne(), given_up);
-        self.decide(inputs, &estimate)
-    }
-
-    /// The tick on an estimate.
-    fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
-        let followed = self.follow(estimate);
-        let seen = self.look(inputs, estimate);
-        if seen.lied {
-            self.trust.give_up();
-        }
-        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
-            chain.stop_sinking();
-        }
-        if self.mode.flies() {
-            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), inputs.now);
-        } else if !self.mode.is_armed() {
-            self.trust = Trust::default();
-        }
-        if let Some(setpoint) = &inputs.setpoint {
-            self.hear_setpoint(setpoint, inputs.now);
-        }
-        self.take_back(inputs);
-        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
-        let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
-        let conditions = self.requested(inputs, estimate, answer);
-        let conditions = self.happened(conditions, inputs, estimate, &seen);
-        let conditions = conditions
-            .with(Condition::EstimateLost, estimate.is_lost() || !followed)
-            .with(Condition::ChecksPass, ready == Some(Ok(())))
-            .with(Condition::ChecksFail, ready != Some(Ok(())));
-        let transition = rules::transition(self.mode, conditions);
-        let was_airborne = self.is_airborne();
-        if let Some(transition) = transition {
-            self.enter(&transition, inputs, estimate, seen.touched);
-        }
-        let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
-        let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
-        let may_fall = self.fall.tick(is_stopped, estimate.state.as_ref(), inputs.now);
-        let setpoint = inputs.setpoint.and_then(|setpoint| match self.mode {
-            Mode::Flying => Some(self.accept(&setpoint)),
-            // Somebody waits for a flight that it does not begin.
-            Mode::Idling if self.wanted_since.is_some() => {
-                let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
-                may_begin.err().map(Err)
-            }
-            _ => None,
-        });
-        let (output, flown) = self.output(estimate, seen.touched, inputs.now);
-        let share = match (&self.chain, &flown) {
-            (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
-            _ => None,
-        };
-        Outcome {
-            output,
-            mode: self.mode,
-            transition,
-            answer,
-            ready,
-            home: self.home(estimate),
-            is_airborne: self.is_airborne(),
-            may_fall,
-            setpoint,
-            estimated: estimate.state,
-            health: estimate.health,
-            pose: estimate.pose,
-            flown,
-            doubtful_thrust: self.thrust_check.tick(share, inputs.now),
-        }
-    }
-
     /// Goes along where the estimate has jumped; in flight, whether that was possible.
     fn follow(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
@@ -198,12 +122,37 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    fn look(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
+    /// What of the flight is to be acted on: a touchdown, a crash, a lost track, a battery.
+    fn observe(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
         if !self.mode.is_armed() {
             self.watch = Watch::default();
         }
         let chain = self.chain.as_ref().ok();
-        self.watch.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs)
+        let seen = self.watch.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs);
+        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
+            chain.stop_sinking();
+        }
+        seen
+    }
+
+    /// Counts what speaks against the source of poses in this flight.
+    fn judge_poses(&mut self, estimate: &Estimate, seen: &Seen, now: u64) {
+        if seen.lied {
+            self.trust.give_up();
+        }
+        if self.mode.flies() {
+            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), now);
+        } else if !self.mode.is_armed() {
+            self.trust = Trust::default();
+        }
+    }
+
+    /// The rotors' thrust over the commanded thrust, where the law flew.
+    fn delivered_share(&self, flown: &Option<Result<Flown, InputError>>) -> Option<f32> {
+        match (&self.chain, flown) {
+            (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
+            _ => None,
+        }
     }
 
     fn is_airborne(&self) -> bool {
@@ -265,6 +214,25 @@ impl<'m> Pilot<'m> {
         }
     }
 
+    /// The transition that the rules find, done.
+    fn transit(
+        &mut self,
+        conditions: Conditions,
+        inputs: &Inputs,
+        estimate: &Estimate,
+        seen: &Seen,
+    ) -> Option<Transition> {
+        let transition = rules::transition(self.mode, conditions);
+        let was_airborne = self.is_airborne();
+        if let Some(transition) = transition {
+            self.enter(&transition, inputs, estimate, seen.touched);
+        }
+        let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
+        let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
+        self.fall.tick(is_stopped, estimate.state.as_ref(), inputs.now);
+        transition
+    }
+
     /// What the mode does in this tick.
     fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
         match self.mode {
@@ -295,3 +263,4 @@ mod answers;
 mod conditions;
 #[cfg(test)]
 mod tests;
+mod tick;

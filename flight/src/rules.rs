@@ -60,17 +60,17 @@ pub const IDLING_MAX: u64 = 10_000_000;
 pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
 
 /// How long a battery must be low before anything is done, us: it sags under a burst of thrust.
-pub const BATTERY_LASTING: u64 = 3_000_000;
+pub const BATTERY_DEBOUNCE: u64 = 3_000_000;
 
 /// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not
 /// end.
-pub const TRACKING_LASTING: u64 = 5_000_000;
+pub const TRACKING_DEBOUNCE: u64 = 5_000_000;
 
 /// How long the rotors may give less than they are asked for, us. In a certified flight they never do.
-pub const SATURATION_LASTING: u64 = 1_000_000;
+pub const SATURATION_DEBOUNCE: u64 = 1_000_000;
 
 /// How long control may be late with every tick, us.
-pub const OVERRUN_LASTING: u64 = 100_000;
+pub const OVERRUN_DEBOUNCE: u64 = 100_000;
 
 /// The greatest level of a motor test, as a part of the command's range: turns a rotor, lifts nothing.
 pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;

@@ -15,14 +15,14 @@
 //!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
 //!
 //! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the
-//! [average](super::calm). A jerk is over too soon for that.
+//! [average](super::low_pass). A jerk is over too soon for that.
 
-use super::calm::Calm;
 use super::chain::{Chain, Flown};
+use super::debounce::Debounce;
 use super::exchange::{Battery, Inputs};
-use super::lasting::Lasting;
-use super::leaning::up;
-use super::rules::{BATTERY_LASTING, Mode, OVERRUN_LASTING, SATURATION_LASTING, TRACKING_LASTING};
+use super::low_pass::LowPass;
+use super::rules::{BATTERY_DEBOUNCE, Mode, OVERRUN_DEBOUNCE, SATURATION_DEBOUNCE, TRACKING_DEBOUNCE};
+use super::tilt::up;
 use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
@@ -38,24 +38,24 @@ const FOLLOWING: f32 = 0.15;
 /// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
 /// pose takes each for the ground, us: as long as it bounces, and so short that what only shakes keeps count of its
 /// speed.
-const TOUCHED_LASTING: u64 = 3_000_000;
-const TOUCHING_LASTING: u64 = 200_000;
+const TOUCHED_DEBOUNCE: u64 = 3_000_000;
+const TOUCHING_DEBOUNCE: u64 = 200_000;
 
 /// What poses may add to the vertical speed of a landing that has met the ground, beside the accelerometer, m/s: its
 /// jerk is beyond the accelerometer's range, and teaches the estimator to believe whatever comes next.
 const TAUGHT: f32 = 1.0;
 
 /// For how long they do, us: true poses take it back with the next.
-const LIED_LASTING: u64 = 50_000;
+const LIED_DEBOUNCE: u64 = 50_000;
 
 /// How long it must look like the ground, us.
-pub const GROUND_LASTING: u64 = 500_000;
+pub const GROUND_DEBOUNCE: u64 = 500_000;
 
 /// How far below the vehicle the reference is when it has landed, m; how slow the vehicle is then, m/s; and for how
 /// long, us.
 const GONE_ON: f32 = 0.25;
 const STANDING: f32 = 0.1;
-const STANDING_LASTING: u64 = 1_000_000;
+const STANDING_DEBOUNCE: u64 = 1_000_000;
 
 /// How far above the vehicle the reference may be that does not move towards it, m.
 const HELD_DOWN: f32 = 0.5;
@@ -85,17 +85,17 @@ const LEANING: f32 = 1.5;
 /// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
 /// believed, us.
 const STRUCK: f32 = 25.0;
-const STRUCK_LASTING: u64 = 3_000_000;
+const STRUCK_DEBOUNCE: u64 = 3_000_000;
 
 /// The force that an IMU may feel beside the rotors', m/s^2: wind, drag, and rotors that are not what they should be.
 const UNEXPECTED: f32 = 4.0;
 
 /// The rate at which nothing turns that has been levelled for a while, rad/s; and that while, us.
 const TURNING: f32 = 4.0;
-const TURNING_LASTING: u64 = 800_000;
+const TURNING_DEBOUNCE: u64 = 800_000;
 
 /// How long an IMU may not fit, us.
-const DOUBT_LASTING: u64 = 300_000;
+const DOUBT_DEBOUNCE: u64 = 300_000;
 
 /// The cosine of the least tilt of a crash, 60 degrees.
 const LYING_COSINE: f32 = 0.5;
@@ -106,17 +106,17 @@ const LYING_BESIDE: f32 = 0.131_652_5;
 /// Since when what holds.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Watch {
-    tracking: Lasting,
-    saturated: Lasting,
-    lying: Lasting,
-    standing: Lasting,
-    resting: Lasting,
-    low: Lasting,
-    critical: Lasting,
-    late: Lasting,
-    doubtful: Lasting,
-    turning: Lasting,
-    calm: Calm,
+    tracking: Debounce,
+    saturated: Debounce,
+    lying: Debounce,
+    standing: Debounce,
+    resting: Debounce,
+    low: Debounce,
+    critical: Debounce,
+    late: Debounce,
+    doubtful: Debounce,
+    turning: Debounce,
+    low_pass: LowPass,
     /// When the vehicle was last struck in guided flight, us.
     struck: Option<u64>,
     /// When something first stopped a vehicle that goes down, us, and when it last did.
@@ -125,7 +125,7 @@ pub(super) struct Watch {
     touched: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
-    lied: Lasting,
+    lied: Debounce,
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
     /// Whether a low battery has had its landing: whoever flies on knows.
@@ -270,38 +270,38 @@ impl Watch {
     ) -> Seen {
         let Inputs { now, battery, is_late, .. } = *inputs;
         let flown = chain.and_then(Chain::flown).filter(|_| mode.flies());
-        let jumps = state.is_some_and(|state| self.calm.jumps_to(state));
-        let calm = self.calm.tick(state);
-        let look = Look { mode, state: calm.as_ref(), chain, flown };
+        let jumps = state.is_some_and(|state| self.low_pass.jumps_to(state));
+        let smoothed = self.low_pass.tick(state);
+        let look = Look { mode, state: smoothed.as_ref(), chain, flown };
         let is_blind = mode == Mode::Descending;
         self.note_jerks(&look, state, now);
         let jerked = self.has_jerked(mode, now);
-        let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_LASTING;
+        let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_DEBOUNCE;
         let touches = is_blind && self.touched.is_some_and(begins);
         let touched = if is_blind { self.touched.is_some() } else { jerked };
         let is_low = matches!(battery, Battery::Low | Battery::Critical);
         let stands = mode.flies() && chain.is_some_and(Chain::is_standing);
-        let left_behind = self.standing.is_so(look.is_left_behind(), STANDING_LASTING, now);
+        let left_behind = self.standing.holds_for(look.is_left_behind(), STANDING_DEBOUNCE, now);
         let is_taught = mode == Mode::Landing && self.is_taught(jerked, &look, state);
-        let lied = self.lied.is_so(is_taught, LIED_LASTING, now);
+        let lied = self.lied.holds_for(is_taught, LIED_DEBOUNCE, now);
         let rests = look.is_held_up(jerked, self.touched.is_some(), self.hit);
-        let held_up = self.resting.is_so(rests, GROUND_LASTING, now);
+        let held_up = self.resting.holds_for(rests, GROUND_DEBOUNCE, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
-        let doubtful = self.doubtful.is_so(look.is_unexpected() && !rests, DOUBT_LASTING, now);
-        let turning = self.turning.is_so(look.turns(), TURNING_LASTING, now);
+        let doubtful = self.doubtful.holds_for(look.is_unexpected() && !rests, DOUBT_DEBOUNCE, now);
+        let turning = self.turning.holds_for(look.turns(), TURNING_DEBOUNCE, now);
         let is_thrown = self.is_thrown(&look, state, jumps, now);
         Seen {
-            tracking_lost: self.tracking.is_so(far, TRACKING_LASTING, now) || is_thrown,
-            saturated: self.saturated.is_so(look.is_inexact(), SATURATION_LASTING, now),
+            tracking_lost: self.tracking.holds_for(far, TRACKING_DEBOUNCE, now) || is_thrown,
+            saturated: self.saturated.holds_for(look.is_inexact(), SATURATION_DEBOUNCE, now),
             landed: left_behind || held_up || stands,
             touched,
             touches,
             lied,
-            crashed: self.lying.is_so(look.lies(), GROUND_LASTING, now),
-            battery_low: self.low.is_so(is_low, BATTERY_LASTING, now) && !self.low_is_told,
-            battery_critical: self.critical.is_so(battery == Battery::Critical, BATTERY_LASTING, now),
+            crashed: self.lying.holds_for(look.lies(), GROUND_DEBOUNCE, now),
+            battery_low: self.low.holds_for(is_low, BATTERY_DEBOUNCE, now) && !self.low_is_told,
+            battery_critical: self.critical.holds_for(battery == Battery::Critical, BATTERY_DEBOUNCE, now),
             imu_doubtful: doubtful || turning,
-            overrun: self.late.is_so(is_late, OVERRUN_LASTING, now),
+            overrun: self.late.holds_for(is_late, OVERRUN_DEBOUNCE, now),
         }
     }
 
@@ -339,7 +339,7 @@ impl Watch {
 
     /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
     fn has_jerked(&self, mode: Mode, now: u64) -> bool {
-        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_LASTING;
+        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_DEBOUNCE;
         self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
     }
 
@@ -348,7 +348,7 @@ impl Watch {
         if look.is_struck(state) {
             self.struck = Some(now);
         }
-        let recently = self.struck.is_some_and(|struck| now.saturating_sub(struck) < STRUCK_LASTING);
+        let recently = self.struck.is_some_and(|struck| now.saturating_sub(struck) < STRUCK_DEBOUNCE);
         look.mode.is_guided() && jumps && recently
     }
 

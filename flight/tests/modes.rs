@@ -3,7 +3,7 @@
 use crate::support::{Flight, GROUND, SPOOLING, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::rules::{BATTERY_LASTING, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_LASTING};
+use flight::rules::{BATTERY_DEBOUNCE, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_DEBOUNCE};
 use flight::{Battery, Mode, MotorTest, Output, PERIOD, Reason, Refusal, Request};
 
 /// On its way to a far point, turning.
@@ -329,7 +329,7 @@ fn a_low_battery_lands_the_next_flight_as_it_did_the_last() {
             flight.inputs.battery = Battery::Low;
             flight.tick().transition.map(|transition| (tick, transition.reason))
         });
-        assert_eq!(landing, Some((BATTERY_LASTING / PERIOD + 1, Reason::BatteryLow)));
+        assert_eq!(landing, Some((BATTERY_DEBOUNCE / PERIOD + 1, Reason::BatteryLow)));
         flight.inputs.disarm = true;
         assert_eq!(flight.tick().output, Output::Stop);
         // Down again, with another battery.
@@ -374,7 +374,7 @@ fn a_vehicle_that_does_not_get_off_the_ground_lands_a_while_after_its_reference_
         assert!(heights.len() < 1_000);
     };
     assert_eq!(reason, Reason::TrackingLost);
-    let then = heights.len() - (TRACKING_LASTING / PERIOD) as usize;
+    let then = heights.len() - (TRACKING_DEBOUNCE / PERIOD) as usize;
     assert!(heights[then - 2] < 0.5 && heights[then + 1] > 0.5, "{:?}", &heights[then - 2..]);
 }
 

@@ -12,7 +12,7 @@ use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
 use host_sim::tune::{Tuned, output, tune, widest_bounds};
 use host_sim::whole_file::WholeFile;
-use scenario::{Scenario, bounds, check_name};
+use scenario::{Scenario, check_name, constants};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -56,7 +56,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
             "\nwith these gains every margin stays at least {} for references {} times as demanding:\n\n{}",
             percent(requirements.margin),
             short(factor),
-            bounds::written(&widest)
+            constants::written(&widest.entries())
         );
     }
     print_text(&summary)?;

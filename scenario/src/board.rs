@@ -9,7 +9,6 @@
 //! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built
 //! for a board.
 
-use crate::bounds;
 use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;
 use crate::sampled_loop::{Axis, LoopModel, Timing};
@@ -119,7 +118,7 @@ fn numbers(configuration: &Configuration) -> Vec<f64> {
     match configuration.law() {
         LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
             numbers.push(1.0);
-            numbers.extend(gains.named().map(|(_, gain)| gain));
+            numbers.extend(gains.values());
             // No floor is zero.
             numbers.push(thrust_floor.unwrap_or(0.0));
         }
@@ -133,7 +132,7 @@ fn numbers(configuration: &Configuration) -> Vec<f64> {
     let LimitParameters { thrust_max, torque_max } = **configuration.limits();
     numbers.extend([mass, inertia.x, inertia.y, inertia.z, gravity]);
     numbers.extend([thrust_max, torque_max.x, torque_max.y, torque_max.z]);
-    numbers.extend(bounds::named(configuration.bounds()).map(|(_, bound)| bound));
+    numbers.extend(configuration.bounds().values());
     for rotor in configuration.rotors().into_iter().flat_map(|rotors| rotors.iter()) {
         let Rotor { position, spin, thrust_coefficient, drag_coefficient, thrust_min, thrust_max } = *rotor;
         let turns = match spin {

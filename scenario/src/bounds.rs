@@ -15,8 +15,9 @@
 //!
 //! The other six are needed, and none may be less than the scenario's own reference takes.
 
-use crate::number::Number;
+use crate::constants;
 use crate::section::{FieldError, Section};
+use controller_core::constants::Constant;
 use controller_core::reference::ReferenceBounds;
 
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
@@ -35,10 +36,9 @@ pub fn read_bounds(
     let Some(section) = root.optional_section("reference_bounds")? else {
         return Ok(default());
     };
-    let fields = named(own);
-    section.allow(&fields.map(|(key, _)| key))?;
-    let mut values = [0.0_f32; 7];
-    for (value, (key, taken)) in values.iter_mut().zip(fields) {
+    section.allow(&constants::keys(&ReferenceBounds::TABLE, "reference_bounds"))?;
+    let mut values = [0.0_f32; ReferenceBounds::COUNT];
+    for (value, (Constant { key, .. }, taken)) in values.iter_mut().zip(own.entries()) {
         *value = match key {
             "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
             _ => section.number(key)?,
@@ -48,56 +48,7 @@ pub fn read_bounds(
             return Err(FieldError::new(section.path_of(key), problem));
         }
     }
-    let [
-        horizontal_speed,
-        horizontal_acceleration,
-        vertical_acceleration,
-        jerk,
-        snap,
-        heading_rate,
-        heading_second_derivative,
-    ] = values;
-    let bounds = ReferenceBounds {
-        horizontal_speed,
-        horizontal_acceleration,
-        vertical_acceleration,
-        jerk,
-        snap,
-        heading_rate,
-        heading_second_derivative,
-    };
-    bounds.validated().map_err(|error| root.refused(&error))
-}
-
-/// The keys of the section with their values.
-#[must_use]
-pub fn named(bounds: &ReferenceBounds) -> [(&'static str, f32); 7] {
-    // No field is left out: one that is added has to be added here.
-    let ReferenceBounds {
-        horizontal_speed,
-        horizontal_acceleration,
-        vertical_acceleration,
-        jerk,
-        snap,
-        heading_rate,
-        heading_second_derivative,
-    } = *bounds;
-    [
-        ("horizontal_speed", horizontal_speed),
-        ("horizontal_acceleration", horizontal_acceleration),
-        ("vertical_acceleration", vertical_acceleration),
-        ("jerk", jerk),
-        ("snap", snap),
-        ("heading_rate", heading_rate),
-        ("heading_second_derivative", heading_second_derivative),
-    ]
-}
-
-/// `bounds` as the section of a scenario file.
-#[must_use]
-pub fn written(bounds: &ReferenceBounds) -> String {
-    let lines = named(bounds).map(|(key, value)| format!("{key} = {}\n", Number(value)));
-    format!("[reference_bounds]\n{}", lines.concat())
+    ReferenceBounds::from_values(values).validated().map_err(|error| root.refused(&error))
 }
 
 #[cfg(test)]

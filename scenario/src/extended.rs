@@ -5,17 +5,16 @@
 //! v_across = 6.0             # m/s
 //! ```
 //!
-//! Every key is one of [`ExtendedParameters::TABLE`]; `docs/scenario-file.md` lists them, and [`written`] prints them
-//! all.
+//! Every key is one of [`ExtendedParameters::TABLE`]; `docs/scenario-file.md` lists them, and
+//! [`constants::written`] prints them all.
 
-use crate::number::Number;
+use crate::constants;
 use crate::section::{FieldError, Section};
 use controller_core::configuration::ExtendedLaw;
 use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
-use std::fmt::Write;
 
 /// Reads both sections for `airframe`, from which missing constants follow.
 ///
@@ -25,14 +24,8 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
     let mut given = NOTHING_GIVEN;
     for name in ["gains", "estimates"] {
         let Some(section) = root.optional_section(name)? else { continue };
-        let of_section = || ExtendedParameters::TABLE.iter().zip(0..).filter(|(constant, _)| constant.section == name);
-        let keys: Vec<&str> = of_section().map(|(constant, _)| constant.key).collect();
-        section.allow(&keys)?;
-        for (constant, place) in of_section().filter(|(constant, _)| section.has(constant.key)) {
-            let value = section.number(constant.key)? as f32;
-            constant.range.check(value, constant.path).map_err(|error| root.refused(&error))?;
-            given[place] = Some(value);
-        }
+        let read = constants::read(root, &section, name, &ExtendedParameters::TABLE)?;
+        given = core::array::from_fn(|place| read[place].or(given[place]));
     }
     let parameters = defaults::constants(airframe, &given);
     let parameters = Extended::new(parameters, airframe.vehicle).map_err(|error| root.refused(&error))?;
@@ -53,19 +46,4 @@ fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> R
         );
         FieldError::new(field, problem)
     })
-}
-
-/// All constants as the sections of a scenario file, each with its meaning.
-#[must_use]
-pub fn written(parameters: &ExtendedParameters) -> String {
-    let mut text = String::new();
-    let mut before = "";
-    for (constant, value) in ExtendedParameters::TABLE.iter().zip(parameters.values()) {
-        if constant.section != before {
-            let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
-            before = constant.section;
-        }
-        let _ = writeln!(text, "{:37} #{}", format!("{} = {}", constant.key, Number(value)), constant.about);
-    }
-    text
 }

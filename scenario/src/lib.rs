@@ -30,6 +30,7 @@ pub mod board;
 pub mod body;
 pub mod bounds;
 pub mod campaign;
+pub mod constants;
 pub mod extended;
 pub mod file;
 pub mod inertia;

@@ -8,6 +8,7 @@
 //! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
 
 use crate::bounds::{DEFAULT_SPEED, read_bounds};
+use crate::constants;
 use crate::extended::read_extended;
 use crate::inertia;
 use crate::reality::drag::{self, Drag};
@@ -194,29 +195,13 @@ fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
     Err(FieldError::new("rotors.position", problem))
 }
 
-/// The keys of the paper law's `[gains]` with their values.
-#[must_use]
-pub fn named(gains: &GainParameters) -> [(&'static str, f32); 11] {
-    gains.named().map(|(path, value)| (path.trim_start_matches("gains."), value))
-}
-
-/// Reads `[gains]`.
+/// Reads `[gains]` of the paper's law: all of them are needed.
 fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
     let section = root.section("gains")?;
-    section.allow(&named(&GainParameters::TABLE_1).map(|(key, _)| key))?;
-    let gain = |key: &str| section.number(key).map(|value| value as f32);
-    let parameters = GainParameters {
-        k_p: gain("k_p")?,
-        k_v: gain("k_v")?,
-        k_f: gain("k_f")?,
-        k_s: gain("k_s")?,
-        k_theta: gain("k_theta")?,
-        k_omega: gain("k_omega")?,
-        m_p: gain("m_p")?,
-        m_theta: gain("m_theta")?,
-        m_omega: gain("m_omega")?,
-        delta: gain("delta")?,
-        alpha: gain("alpha")?,
-    };
-    Gains::new(parameters, vehicle).map_err(|error| root.refused(&error))
+    section.allow(&constants::keys(&GainParameters::TABLE, "gains"))?;
+    let mut values = [0.0; GainParameters::COUNT];
+    for (value, constant) in values.iter_mut().zip(&GainParameters::TABLE) {
+        *value = section.number(constant.key)? as f32;
+    }
+    Gains::new(GainParameters::from_values(values), vehicle).map_err(|error| root.refused(&error))
 }

@@ -24,7 +24,7 @@ use crate::allocation::Rotors;
 use crate::attitude::rotate_back;
 use crate::attitude_reference::DesiredAttitude;
 use crate::configuration::ExtendedLaw;
-use crate::controller::{Command, Diagnostics};
+use crate::controller::Diagnostics;
 use crate::error::InputError;
 use crate::math;
 use crate::path_lifting;
@@ -104,16 +104,6 @@ impl Controller {
     #[must_use]
     pub fn estimates(&self) -> Estimates {
         self.learning.believed(&self.memory.averages)
-    }
-
-    /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled.
-    ///
-    /// # Errors
-    /// As [`Self::step`].
-    #[inline(never)]
-    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<Command, InputError> {
-        let (wrench, Diagnostics { mrp, .. }) = self.step(state, reference)?;
-        Ok(Command { wrench, mrp })
     }
 
     /// One tick of the law.

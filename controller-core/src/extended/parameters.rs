@@ -1,7 +1,7 @@
 //! The constants of the extended law, declared once and validated. Every one has a default from the vehicle's numbers:
 //! [`super::defaults`].
 
-use super::constants::{Range, constants};
+use crate::constants::{Range, constants};
 use crate::error::{ParameterError, Reason, require};
 use crate::vehicle::Vehicle;
 use core::ops::Deref;
@@ -119,9 +119,7 @@ impl Extended {
     /// # Errors
     /// Names the first field that is out of its range.
     pub fn new(parameters: ExtendedParameters, vehicle: &Vehicle) -> Result<Self, ParameterError> {
-        for (constant, value) in ExtendedParameters::TABLE.iter().zip(parameters.values()) {
-            constant.range.check(value, constant.path)?;
-        }
+        parameters.check()?;
         let least = Self::FLOOR_MARGIN_LEAST * vehicle.mass * vehicle.gravity;
         require(parameters.floor_margin >= least, "gains.floor_margin", Reason::Below(least))?;
         for (value, bound, field) in [

@@ -5,8 +5,8 @@
 
 #[cfg(target_os = "none")]
 mod target {
-    use controller_core::controller::{Command, Controller};
     use controller_core::error::InputError;
+    use controller_core::law::{Command, Law};
     use controller_core::reference::Reference;
     use controller_core::state::State;
     use core::hint::black_box;
@@ -16,7 +16,7 @@ mod target {
     use flight::Stamped;
     use nalgebra::Vector3;
 
-    type Step = fn(&mut Controller, &State, &Reference) -> Result<Command, InputError>;
+    type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
     type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
     type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
     type Estimation = (
@@ -29,7 +29,7 @@ mod target {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let step: Step = Controller::command;
+        let step: Step = Law::command;
         let estimation: Estimation =
             (Conditioner::sample, Estimator::imu, Estimator::pose, Estimator::state, Estimator::health);
         black_box((step, estimation));

@@ -155,12 +155,27 @@ impl<'m> Pilot<'m> {
 
     /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by
     /// arming, so before that it is not asked.
-    pub(super) fn hear_setpoint(&mut self, setpoint: &Setpoint, now: u64) {
+    pub(super) fn keep_setpoint(&mut self, inputs: &Inputs) {
+        let Some(setpoint) = &inputs.setpoint else { return };
         match self.check(setpoint) {
             Err(refusal) if self.mode.is_armed() || refusal != Refusal::OutsideFence => {
-                self.newest.refuse(refusal, now);
+                self.newest.refuse(refusal, inputs.now);
             }
-            _ => self.newest.keep(setpoint, now),
+            _ => self.newest.keep(setpoint, inputs.now),
+        }
+    }
+
+    /// Gives the governor a setpoint where setpoints are flown; where somebody waits for a flight, why it does not
+    /// begin.
+    pub(super) fn fly_setpoint(&mut self, inputs: &Inputs, estimate: &Estimate) -> Option<Result<(), Refusal>> {
+        let setpoint = inputs.setpoint?;
+        match self.mode {
+            Mode::Flying => Some(self.accept(&setpoint)),
+            Mode::Idling if self.wanted_since.is_some() => {
+                let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
+                may_begin.err().map(Err)
+            }
+            _ => None,
         }
     }
 

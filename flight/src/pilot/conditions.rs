@@ -101,6 +101,21 @@ impl Pilot<'_> {
             .with(Condition::Overrun, seen.overrun)
     }
 
+    /// Whether the estimate can be flown, and the checks before arming pass.
+    pub(super) fn checked(
+        &self,
+        conditions: Conditions,
+        estimate: &Estimate,
+        followed: bool,
+        ready: Option<Result<(), Refusal>>,
+    ) -> Conditions {
+        let is_ready = ready == Some(Ok(()));
+        conditions
+            .with(Condition::EstimateLost, estimate.is_lost() || !followed)
+            .with(Condition::ChecksPass, is_ready)
+            .with(Condition::ChecksFail, !is_ready)
+    }
+
     /// Remembers from when on poses have been refused for what they say, and until when, none having been believed
     /// since.
     fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {

@@ -2,7 +2,7 @@
 
 extern crate std;
 use super::super::rules::REFUSALS_MAX;
-use super::super::{Pose, Reason, Request, Stamped, Velocity};
+use super::super::{Outcome, Pose, Reason, Request, Stamped, Velocity};
 use super::*;
 use crate::hummingbird;
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};

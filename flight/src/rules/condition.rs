@@ -66,18 +66,18 @@ estimation::listed! {
         GroundStationGone,
         /// A setpoint that must be renewed was not.
         SetpointsLost,
-        /// The battery has been low for [`super::BATTERY_LASTING`].
+        /// The battery has been low for [`super::BATTERY_DEBOUNCE`].
         BatteryLow,
         /// It has been critical for as long.
         BatteryCritical,
         /// The vehicle is outside the fence.
         FenceBreached,
-        /// The vehicle has been too far from its reference for [`super::TRACKING_LASTING`], or was struck and thrown
+        /// The vehicle has been too far from its reference for [`super::TRACKING_DEBOUNCE`], or was struck and thrown
         /// out of its place.
         TrackingLost,
-        /// The rotors have not given what the law asked for during [`super::SATURATION_LASTING`].
+        /// The rotors have not given what the law asked for during [`super::SATURATION_DEBOUNCE`].
         Saturated,
-        /// Control has been late for [`super::OVERRUN_LASTING`].
+        /// Control has been late for [`super::OVERRUN_DEBOUNCE`].
         Overrun,
     }
 }

@@ -64,7 +64,7 @@ fn ticks(duration: u64) -> u64 {
 #[test]
 fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
     let lost = |mode, estimated: &EstimatedState| {
-        let seen = seen(mode, &mut chain(), estimated, ticks(TRACKING_LASTING));
+        let seen = seen(mode, &mut chain(), estimated, ticks(TRACKING_DEBOUNCE));
         seen.tracking_lost
     };
     let moving = |height: f32| {
@@ -91,7 +91,7 @@ fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is()
         assert!(!look(&at(0.0), PERIOD) && !look(&hit, 2 * PERIOD));
         look(&moved, 2 * PERIOD + later)
     };
-    assert!(thrown(Mode::Holding, 26.0, STRUCK_LASTING - 1) && !thrown(Mode::Holding, 26.0, STRUCK_LASTING));
+    assert!(thrown(Mode::Holding, 26.0, STRUCK_DEBOUNCE - 1) && !thrown(Mode::Holding, 26.0, STRUCK_DEBOUNCE));
     assert!(thrown(Mode::Flying, -70.0, PERIOD) && !thrown(Mode::Holding, 24.0, PERIOD));
     assert!(!thrown(Mode::Descending, 26.0, PERIOD));
 }
@@ -99,7 +99,7 @@ fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is()
 #[test]
 fn a_vehicle_that_lies_still_has_crashed_and_one_that_turns_has_not() {
     let crashed = |mode, estimated: &EstimatedState| {
-        let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_LASTING));
+        let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_DEBOUNCE));
         seen.crashed
     };
     // Beside where the law wants it, which is level.
@@ -151,7 +151,7 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
         let asked = chain.asked_acceleration(chain.flown().unwrap());
         assert!(asked < HELD_UP.1, "{asked} m/s^2");
         change(&mut estimated);
-        seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_LASTING)).landed
+        seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE)).landed
     };
     assert!(landed(|_| ()));
     assert!(landed(|estimated| estimated.acceleration.z = -0.39));
@@ -214,7 +214,7 @@ fn seen_after(jerk: f32, ticks: u64) -> Seen {
 
 #[test]
 fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
-    let long = ticks(GROUND_LASTING) + 60;
+    let long = ticks(GROUND_DEBOUNCE) + 60;
     assert!(!seen_after(1.0, long).landed && seen_after(15.0, long).landed);
     assert!(!seen_after(15.0, long).imu_doubtful);
 }
@@ -226,9 +226,9 @@ fn a_low_battery_is_told_until_it_is_acted_on() {
         let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
         watch.tick(Mode::Holding, None, None, FAR, &inputs).battery_low
     };
-    assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_LASTING));
-    assert!(look(&mut watch, BATTERY_LASTING));
+    assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_DEBOUNCE));
+    assert!(look(&mut watch, BATTERY_DEBOUNCE));
     watch.tell_low();
-    assert!(!look(&mut watch, BATTERY_LASTING + PERIOD));
-    assert!(!look(&mut watch, 9 * BATTERY_LASTING));
+    assert!(!look(&mut watch, BATTERY_DEBOUNCE + PERIOD));
+    assert!(!look(&mut watch, 9 * BATTERY_DEBOUNCE));
 }

@@ -6,8 +6,8 @@ use super::chosen::chosen;
 use crate::table::short;
 use controller_core::configuration::{LawParameters, PaperLaw};
 use controller_core::extended::parameters::ExtendedParameters;
-use scenario::vehicle::named;
-use scenario::{Scenario, bounds};
+use scenario::Scenario;
+use scenario::constants::written;
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
 /// The beginning of the line with the tuned figures.
@@ -49,7 +49,7 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     if Scenario::parse(&text, "").is_ok_and(|read| read.configuration.bounds() == judged) {
         return Ok(text);
     }
-    let section: DocumentMut = bounds::written(judged).parse()?;
+    let section: DocumentMut = written(&judged.entries()).parse()?;
     if let Some(bounds) = section["reference_bounds"].as_table() {
         // Without the place that it had in its own document.
         document["reference_bounds"] = Item::Table(bounds.iter().map(|(key, bound)| (key, bound.clone())).collect());
@@ -66,7 +66,7 @@ fn constants(scenario: &Scenario) -> Vec<(&'static str, &'static str, Option<f32
         }
         (LawParameters::Extended(_), None) => Vec::new(),
         (LawParameters::Paper(PaperLaw { gains, thrust_floor }), _) => {
-            let gains = named(gains).map(|(key, value)| ("gains", key, Some(value)));
+            let gains = gains.entries().map(|(gain, value)| (gain.section, gain.key, Some(value)));
             gains.into_iter().chain([("control", "thrust_floor", *thrust_floor)]).collect()
         }
     }

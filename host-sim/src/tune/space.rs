@@ -54,10 +54,10 @@ impl Space {
     pub fn start(&self) -> Point {
         let configuration = &self.scenario.configuration;
         match configuration.law() {
-            LawParameters::Paper(PaperLaw { gains: g, thrust_floor }) => {
+            LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
                 let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.least_thrust());
-                let values = [g.k_p, g.k_v, g.k_f, g.k_s, g.k_theta, g.k_omega, g.m_p, g.m_theta, g.m_omega, floor];
-                values.iter().map(|value| f64::from(*value).ln()).collect()
+                let searched = gains.entries().into_iter().filter(|(gain, _)| gain.searched).map(|(_, value)| value);
+                searched.chain([floor]).map(|value| f64::from(value).ln()).collect()
             }
             LawParameters::Extended(_) => vec![0.0; searched().count()],
         }
@@ -96,14 +96,14 @@ impl Space {
     }
 
     fn papers(&self, law: &PaperLaw, point: &Point) -> Option<Configuration> {
-        let numbers: Vec<f32> = point.iter().map(|x| x.exp() as f32).collect();
-        let [k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, floor] = *numbers.as_slice() else {
-            return None;
-        };
+        let mut numbers = point.iter().map(|x| x.exp() as f32);
         let own = &self.scenario.configuration;
-        let GainParameters { delta, alpha, .. } = *law.gains;
-        let parameters = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, m_p, m_theta, m_omega, delta, alpha };
-        let gains = Gains::new(parameters, own.vehicle()).ok()?;
+        let mut values = law.gains.values();
+        for (value, _) in values.iter_mut().zip(&GainParameters::TABLE).filter(|(_, gain)| gain.searched) {
+            *value = numbers.next()?;
+        }
+        let floor = numbers.next()?;
+        let gains = Gains::new(GainParameters::from_values(values), own.vehicle()).ok()?;
         let configuration = own.with_gains(gains).ok()?;
         match self.floor {
             None => Some(configuration),

@@ -1,7 +1,7 @@
-//! The one declaration of every constant of the extended law, and the macro that reads it.
+//! The one declaration of every constant: gains of both laws and the bounds of references.
 //!
 //! A constant is one entry: section and key as in scenario files, symbol and meaning, unit, range, and whether `tune`
-//! searches it. The struct, its table, the checks, the scenario's keys, the search space, the board's image and the
+//! searches it. The struct, its table, its checks, the scenario's keys, the search space, the board's image and the
 //! documents' table follow from it.
 
 use crate::error::{ParameterError, Reason, require, require_finite};
@@ -22,6 +22,8 @@ impl Range {
     pub const LEVEL: Self = Self { least: 0.0, greatest: 1e3 };
     /// A bandwidth of a filter, 1/s: slower ones add up rounding, faster ones are beyond every tick.
     pub const BANDWIDTH: Self = Self { least: 0.2, greatest: 100.0 };
+    /// The bound of a motion.
+    pub const BOUND: Self = Self { least: 0.0, greatest: f32::MAX };
     /// A share of one, above zero.
     pub const SHARE: Self = Self { least: 1e-7, greatest: 1.0 };
 
@@ -37,6 +39,8 @@ impl Range {
     /// Names `field`.
     pub fn check(&self, value: f32, field: &'static str) -> Result<(), ParameterError> {
         require_finite(value, field)?;
+        require(self.least <= 0.0 || value > 0.0, field, Reason::NotPositive)?;
+        require(self.least < 0.0 || value >= 0.0, field, Reason::Negative)?;
         require(value >= self.least, field, Reason::Below(self.least))?;
         require(value <= self.greatest, field, Reason::Above(self.greatest))
     }
@@ -77,15 +81,19 @@ macro_rules! constants {
             /// How many constants there are.
             pub const COUNT: usize = [$(stringify!($key)),*].len();
 
+            /// Section and key of every constant, in the order of [`Self::values`].
+            pub const PATHS: [&'static str; Self::COUNT] =
+                [$(concat!(stringify!($section), ".", stringify!($key))),*];
+
             /// Every constant, in the order of [`Self::values`].
-            pub const TABLE: [$crate::extended::constants::Constant; Self::COUNT] = [
-                $( $crate::extended::constants::Constant {
+            pub const TABLE: [$crate::constants::Constant; Self::COUNT] = [
+                $( $crate::constants::Constant {
                     path: concat!(stringify!($section), ".", stringify!($key)),
                     section: stringify!($section),
                     key: stringify!($key),
                     about: $about,
                     range: $range,
-                    searched: $crate::extended::constants::$searched,
+                    searched: $crate::constants::$searched,
                 } ),*
             ];
 
@@ -93,6 +101,22 @@ macro_rules! constants {
             #[must_use]
             pub fn values(&self) -> [f32; Self::COUNT] {
                 [$(self.$key),*]
+            }
+
+            /// Checks that every constant is in its range.
+            ///
+            /// # Errors
+            /// Names the first that is not.
+            pub fn check(&self) -> Result<(), $crate::error::ParameterError> {
+                $( $range.check(self.$key, concat!(stringify!($section), ".", stringify!($key)))?; )*
+                Ok(())
+            }
+
+            /// Each constant with its value.
+            #[must_use]
+            pub fn entries(&self) -> [($crate::constants::Constant, f32); Self::COUNT] {
+                let [$($key),*] = Self::TABLE;
+                [$(($key, self.$key)),*]
             }
 
             /// The struct of these values, in the table's order.

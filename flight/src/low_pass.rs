@@ -32,9 +32,9 @@ struct Average {
 
 /// The average, if there is a state.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct Calm(Option<Average>);
+pub(super) struct LowPass(Option<Average>);
 
-impl Calm {
+impl LowPass {
     /// Whether a state has jumped since the last one.
     pub fn jumps_to(&self, estimated: &EstimatedState) -> bool {
         self.0.is_some_and(|last| last.jumps != estimated.jumps)
@@ -55,9 +55,10 @@ impl Calm {
         let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
         let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
-        let calm = EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps, gained };
+        let smoothed =
+            EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps, gained };
         self.0 = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });
-        Some(calm)
+        Some(smoothed)
     }
 }
 

@@ -1,0 +1,60 @@
+//! The tick on one page: from what was measured to what the motors do, in the order of the data.
+//!
+//! ```text
+//! increments, poses -> estimate -> seen -------> conditions -> mode -> governor -> law -> allocation -> output
+//!                        jump -> reference         ^                      ^
+//! request ------------------> answer --------------'                      |
+//! setpoint -------------------------------------------------------------- '
+//! ```
+
+use super::Pilot;
+use crate::estimate::Estimate;
+use crate::exchange::{Inputs, Outcome};
+
+impl Pilot<'_> {
+    /// One tick: what has arrived since the last, in; what the motors do until the next, out.
+    pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
+        let (armed, airborne, given_up) = (self.mode.is_armed(), self.is_airborne(), self.trust.is_given_up());
+        let estimate = self.estimation.tick(inputs, armed, airborne, given_up);
+        self.decide(inputs, &estimate)
+    }
+
+    /// The tick on an estimate.
+    pub(super) fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
+        let now = inputs.now;
+        // Estimate.
+        let followed = self.follow(estimate);
+        let seen = self.observe(inputs, estimate);
+        self.judge_poses(estimate, &seen, now);
+        // What others want.
+        self.keep_setpoint(inputs);
+        self.take_back(inputs);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
+        let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
+        // The rules.
+        let conditions = self.requested(inputs, estimate, answer);
+        let conditions = self.happened(conditions, inputs, estimate, &seen);
+        let conditions = self.checked(conditions, estimate, followed, ready);
+        let transition = self.transit(conditions, inputs, estimate, &seen);
+        // Governor, law and allocation.
+        let setpoint = self.fly_setpoint(inputs, estimate);
+        let (output, flown) = self.output(estimate, seen.touched, now);
+        let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
+        Outcome {
+            output,
+            mode: self.mode,
+            transition,
+            answer,
+            ready,
+            home: self.home(estimate),
+            is_airborne: self.is_airborne(),
+            may_fall: self.fall.may_fall(),
+            setpoint,
+            estimated: estimate.state,
+            health: estimate.health,
+            pose: estimate.pose,
+            flown,
+            doubtful_thrust,
+        }
+    }
+}
