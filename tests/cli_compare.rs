@@ -371,7 +371,7 @@ fn shards_and_single_flights_of_another_law_are_those_of_its_campaign() {
 
     let again = fly(&["--flights", "70", "--replay", "6"]);
     let text = stdout(&again);
-    assert!(text.starts_with("hummingbird-lee-6: 1 s flown; under the law lee, of which nothing is proven"), "{text}");
+    assert!(text.starts_with("hummingbird-lee-6: 1 s flown, under the law lee, of which nothing is proven"), "{text}");
     let log = fs::read_to_string(directory.join("flights/hummingbird-lee-6/log.csv")).unwrap();
     let place = log.lines().next().unwrap().split(',').position(|name| name == "pz").unwrap();
     let heights: Vec<f64> =

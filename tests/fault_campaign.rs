@@ -37,8 +37,8 @@ use std::ops::Range;
 use std::path::Path;
 
 /// What no failure here leads to: what an operator asks for; and what the certificate and the checks of every input
-/// rule out, however the vehicle fails; and what it takes long lies for: `lying_poses`. `flight/pilot/tests.rs` and `flight/rules/tests.rs` in the core cause that on
-/// purpose.
+/// rule out, however the vehicle fails; and what it takes long lies for: `lying_poses`. `flight/pilot/tests.rs` and
+/// `flight/rules/tests.rs` in the core cause that on purpose.
 const NOT_BY_FAILURES: [Condition; 11] = [
     Condition::Uncertified,
     Condition::MotorTestPermitted,

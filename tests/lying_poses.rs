@@ -1,5 +1,5 @@
-//! Poses that lie: random sources of poses in any phase of a flight, flown in closed loop by the core's whole pilot on a
-//! simulated vehicle; and each flight held to what an operator may count on.
+//! Poses that lie: random sources of poses in any phase of a flight, flown in closed loop by the core's whole pilot on
+//! a simulated vehicle; and each flight held to what an operator may count on.
 //!
 //! - `lie`: what a source says instead of the truth; `flight`: one flight, to the ground.
 //!

@@ -101,7 +101,7 @@ pub fn require(condition: bool, field: &'static str, reason: Reason) -> Result<(
 /// Requires a finite number.
 ///
 /// # Errors
-/// `field`, if it is none.
+/// `field`, if it is not.
 pub fn require_finite(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require(value.is_finite(), field, Reason::NotFinite)
 }
@@ -109,7 +109,7 @@ pub fn require_finite(value: f32, field: &'static str) -> Result<(), ParameterEr
 /// Requires a finite number above zero.
 ///
 /// # Errors
-/// `field`, if it is none.
+/// `field`, if it is not.
 pub fn require_positive(value: f32, field: &'static str) -> Result<(), ParameterError> {
     require_finite(value, field)?;
     require(value > 0.0, field, Reason::NotPositive)

@@ -26,7 +26,7 @@ constants! {
         gains.m_theta: Range::POSITIVE, SEARCHED;
         /// Saturation level of the body-rate feedback, N m.
         gains.m_omega: Range::POSITIVE, SEARCHED;
-        /// Hysteresis of the switch between a modified Rodrigues vector and its shadow: it happens at |theta| = 1 + delta.
+        /// Hysteresis of the switch to the shadow of a modified Rodrigues vector: it happens at |theta| = 1 + delta.
         gains.delta: Range::POSITIVE, FIXED;
         /// Distance at which the path-lifting memory follows the attitude error, in (0, 1).
         gains.alpha: Range::POSITIVE, FIXED;

@@ -234,7 +234,7 @@ impl Governor {
         self.turn = TurnGoal::STOP;
     }
 
-    /// Whether the reference is at rest where it was asked to be, and stays there until told otherwise.
+    /// Whether the reference is at rest at its goal, and stays there until another setpoint.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.direct.is_averaged()

@@ -12,7 +12,7 @@
 //!                    nominal, covariance -> advance, test, fuse -> nominal alone, to the end
 //! ```
 //!
-//! - `present`: what the law is told of it, without the rotors' shaking;
+//! - `present`: the state for the law, without the rotors' shaking;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;

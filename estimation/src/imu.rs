@@ -22,7 +22,7 @@
 //! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
 //! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
-//! [`watch`] finds samples that are none: stuck ones, full scale, an accelerometer that does not answer. A shock is
+//! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is
 //! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment says so, for
 //! the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
 //! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does

@@ -1,7 +1,7 @@
 //! What is done with one motor on the bench, while nothing else turns: turning it slowly, and telling its controller
 //! something.
 //!
-//! | setting | what its controller hears, from the beginning |
+//! | setting | the commands that its controller gets, from the beginning |
 //! |---|---|
 //! | beep | beep for a tick; then the stop command, for as long as the tone lasts |
 //! | direction | the direction for a tick; 40 ms of the stop command; save for a tick; the stop command while it is saved |
@@ -16,7 +16,7 @@ use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
 /// How long telling a controller something takes, us: the tone of a beep, which is the longest.
 const SETTING_LASTS: u64 = 300_000;
 
-/// When a direction is saved, us after it was told.
+/// When a direction is saved, us after its command.
 const SAVED_AFTER: u64 = 5 * PERIOD;
 
 /// What is under way on the bench.
@@ -36,7 +36,7 @@ impl Bench {
             Self::Turning(MotorTest { rotor, level, duration }) => (rotor, level, duration),
             Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_LASTS),
         };
-        // Written so that a number that is none is refused.
+        // Written so that NaN is refused.
         match () {
             () if rotor >= rotors => Err(Refusal::NoSuchRotor),
             () if !(level > 0.0 && level <= MOTOR_TEST_LEVEL_MAX) => Err(Refusal::MotorTestLevel),

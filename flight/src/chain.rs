@@ -59,13 +59,13 @@ pub struct Flown {
     pub state: State,
     /// The reference.
     pub reference: Reference,
-    /// The wrench the law asked for.
+    /// The wrench that the law commands.
     pub wrench: Wrench,
     /// p~, m, world.
     pub position_error: Vector3<f32>,
     /// theta~, the modified Rodrigues parameters of the attitude error.
     pub mrp: Vector3<f32>,
-    /// What the rotors are believed to give of what they are asked for; 1 without an estimate.
+    /// The thrust scale: delivered over commanded thrust, estimated; 1 without an estimate.
     pub thrust_scale: f32,
 }
 
@@ -90,7 +90,7 @@ pub(super) struct Chain<'m> {
     reference: Reference,
     thrusts: Option<Thrusts>,
     flown: Option<Flown>,
-    /// Whether the rotors give what the law asked for.
+    /// Whether the rotors deliver the commanded wrench.
     is_exact: bool,
     spool: Spool,
     sinking: Sinking,
@@ -352,7 +352,7 @@ impl<'m> Chain<'m> {
         self.flown.as_ref()
     }
 
-    /// Whether the rotors gave what the law asked for last.
+    /// Whether the rotors delivered the last commanded wrench.
     pub fn is_exact(&self) -> bool {
         self.is_exact
     }
@@ -396,7 +396,7 @@ impl<'m> Chain<'m> {
         self.law.thrust_scale() * self.gravity / (self.gravity - self.vertical_force())
     }
 
-    /// The acceleration beside the one that was asked for and the one that the law knows of, m/s^2, world.
+    /// The acceleration that neither the commanded thrust nor the estimated force explains, m/s^2, world.
     pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
         let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);
         let asked = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);

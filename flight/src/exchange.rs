@@ -19,10 +19,10 @@ pub const PERIOD: u64 = 10_000;
 /// What the battery has left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Battery {
-    /// Nobody measures it, and nobody wants it watched.
+    /// Not measured, and not to be watched.
     #[default]
     Unknown,
-    /// It is to be watched, and nobody measures it.
+    /// To be watched, and not measured.
     Missing,
     /// Enough.
     Good,
@@ -46,9 +46,9 @@ pub struct Inputs<'a> {
     pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.
     pub poses: &'a [Stamped<PoseMeasurement>],
-    /// When the ground station was last heard, us.
+    /// The time of the ground station's last heartbeat, us.
     pub ground_station: Option<u64>,
-    /// What was asked for since the last tick.
+    /// The request that came since the last tick.
     pub request: Option<Request>,
     /// Whether a disarm command with force came since the last tick: it stops motors in the air as well.
     pub disarm: bool,
@@ -56,7 +56,7 @@ pub struct Inputs<'a> {
     pub killed: bool,
     /// Whether something is under way that may stall the processor: flash that is written.
     pub is_busy: bool,
-    /// Whether nobody knows how exact the clock is: its crystal does not run.
+    /// Whether the clock's accuracy is unknown: its crystal does not run.
     pub is_clock_doubtful: bool,
     /// Whether the last tick's command did not reach the motors.
     pub motors_fail: bool,
@@ -84,7 +84,7 @@ pub enum Output {
         /// Part of the command's range, at most [`super::rules::MOTOR_TEST_LEVEL_MAX`].
         level: f32,
     },
-    /// One motor's controller is told something, the others stop.
+    /// One motor's controller gets a command, the others stop.
     Tell {
         /// The motor's index in the rotors' order.
         rotor: usize,

@@ -6,8 +6,8 @@
 //! - `permission`: what arming and turning a motor need; `motor`, `bench`: what is asked of one
 //!   motor while nothing else turns, and done with it;
 //! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
-//! - `estimate`: what the [estimator](estimation::estimator) makes of a tick's increments and poses, and since when all is
-//!   well;
+//! - `estimate`: what the [estimator](estimation::estimator) makes of a tick's increments and poses, and since when all
+//!   is well;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `watch`: whether it follows, has landed, or lies on its back;
 //! - `fall`: whether a vehicle that was stopped in the air lies still again;

@@ -20,10 +20,10 @@ pub struct MotorSetting {
     pub setting: Setting,
 }
 
-/// What a motor's controller can be told.
+/// A command to a motor's controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Setting {
-    /// Make itself heard.
+    /// Beep.
     Beep,
     /// Turn the motor as it is wired, from now on.
     Normal,

@@ -24,11 +24,11 @@ pub(super) struct Start {
     pub heading: Heading,
 }
 
-/// Only where no motor turns, and nobody has to look first, may one begin to.
+/// A motor may begin to turn where none does, and where the vehicle needs no inspection first.
 pub(super) fn to_turn_motors(mode: Mode) -> Result<(), Refusal> {
     match mode {
         Mode::Checks | Mode::Ready | Mode::Locked => Ok(()),
-        // There the IMU has not been heard.
+        // There no IMU sample has come.
         Mode::Boot => Err(Refusal::ImuStale),
         Mode::MotorTest => Err(Refusal::MotorTestRunning),
         Mode::Stopped => Err(Refusal::Stopped),
@@ -66,7 +66,7 @@ pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result
     // With an estimate it is the body rate that is missing.
     let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::ImuStale)?;
     let (speed, rate) = MOVING;
-    // Written so that a number that is none is refused.
+    // Written so that NaN is refused.
     let still = state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate;
     require(still, Refusal::Moving)?;
     require(acceleration.norm_squared() < GRAVITY_ERROR * GRAVITY_ERROR, Refusal::Gravity)?;

@@ -200,7 +200,7 @@ impl<'m> Pilot<'m> {
                     let _ = chain.accept(setpoint);
                 }
             }
-            // A request has said already what the reference does.
+            // The request has set the reference already.
             (Mode::Holding, Reason::HoldCommanded | Reason::PoseRegained) => {}
             (Mode::Holding, _) => chain.hold(),
             (Mode::Descending, _) => {

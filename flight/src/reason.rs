@@ -8,7 +8,7 @@ pub const TEXT_MAX: usize = 50;
 estimation::worded! {
     /// Why the mode changed.
     pub enum Reason {
-        /// The IMU was heard for the first time.
+        /// The IMU's first sample came.
         Started = "Boot over: checking",
         /// The configuration is not certified.
         NotCertified = "Locked: not certified to fly",

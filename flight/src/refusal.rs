@@ -56,7 +56,7 @@ pub enum Refusal {
     Grounded(Grounded),
     /// The motors turn already.
     AlreadyArmed,
-    /// The vehicle was stopped in flight or crashed, and nobody has disarmed it since.
+    /// The vehicle was stopped in flight or crashed, and has not been disarmed since.
     Stopped,
     /// The kill switch is on.
     Killed,
@@ -77,7 +77,7 @@ pub enum Refusal {
     NotIdling,
     /// Only in the air there is somewhere to hold or land.
     NotInTheAir,
-    /// A landing goes on until somebody has the vehicle hold.
+    /// A landing goes on until a hold request.
     Landing,
     /// It goes down by the IMU alone, and knows of no place to hold or fly to.
     WithoutPose,
@@ -107,7 +107,7 @@ pub enum Refusal {
     Gravity,
     /// Body z is 30 degrees or more from up.
     Tilted,
-    /// Nothing was heard from a ground station for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+    /// The ground station has been silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
     GroundStationSilent,
     /// The governor cannot start at the vehicle: the field to blame.
     Reference(&'static str),

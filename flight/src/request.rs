@@ -1,4 +1,4 @@
-//! What somebody may ask for, and the setpoints that come beside it.
+//! Requests to the pilot, and the setpoints that come beside them.
 
 use super::motor::{MotorSetting, MotorTest};
 use super::refusal::Refusal;
@@ -7,7 +7,7 @@ use controller_core::governor::{Motion, Setpoint};
 /// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
 pub const SETPOINT_AGE_MAX: u64 = 1_000_000;
 
-/// What somebody may ask for.
+/// A request to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Request {
     /// Arm and idle.
@@ -17,7 +17,7 @@ pub enum Request {
     /// Go up so high, m, or as high as the settings say; then hold.
     TakeOff(Option<f32>),
     /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_WANTED_MAX`] and
-    /// unless anything else is asked for.
+    /// unless another request comes.
     FlySetpoints,
     /// Come to rest and hold position.
     Hold,

@@ -66,7 +66,7 @@ pub const BATTERY_DEBOUNCE: u64 = 3_000_000;
 /// end.
 pub const TRACKING_DEBOUNCE: u64 = 5_000_000;
 
-/// How long the rotors may give less than they are asked for, us. In a certified flight they never do.
+/// How long the rotors may deliver less than the command, us. In a certified flight they never do.
 pub const SATURATION_DEBOUNCE: u64 = 1_000_000;
 
 /// How long control may be late with every tick, us.

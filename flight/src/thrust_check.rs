@@ -3,7 +3,7 @@
 //! The law learns a steady lack of thrust as a vertical force and the rest as its thrust scale;
 //! `Chain::delivered_share` puts the two together. With a compensated battery, the right mass and the right curve the
 //! share stays near 1; vertical wind moves it by its acceleration over gravity. A share further off than [`DOUBTFUL`]
-//! for [`DEBOUNCE`] is reported, so that somebody looks before the estimates reach their limits.
+//! for [`DEBOUNCE`] is reported, before the estimates reach their limits.
 
 /// The distance of the share from 1 beyond which it is doubtful.
 pub const DOUBTFUL: f32 = 0.15;

@@ -36,7 +36,7 @@ const SPEAKS_FOR: u64 = 100_000;
 pub(super) struct Trust {
     /// s.
     doubt: f32,
-    /// When poses were heard last, us.
+    /// The time of the last poses, us.
     heard: u64,
     is_given_up: bool,
 }

@@ -78,8 +78,8 @@ const HIT: f32 = 10.0;
 /// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
-/// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees leaves as
-/// much.
+/// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees
+/// leaves as much.
 const LEANING: f32 = 1.5;
 
 /// The acceleration that only a crash adds to what was commanded, m/s^2; and for how long after it no frame's move is
@@ -128,7 +128,7 @@ pub(super) struct Watch {
     lied: Debounce,
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
-    /// Whether a low battery has had its landing: whoever flies on knows.
+    /// Whether a low battery has caused its landing: a flight that goes on after it is the pilot's choice.
     low_is_told: bool,
 }
 
@@ -225,8 +225,8 @@ impl Look<'_> {
         sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
 
-    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not, or with a
-    /// `hit`.
+    /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not,
+    /// or with a `hit`.
     fn is_held_up(&self, jerked: bool, touched: bool, hit: bool) -> bool {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };

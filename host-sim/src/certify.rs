@@ -147,10 +147,10 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
 }
 
 fn inequalities(certificate: &PaperCertificate) -> String {
-    let head = ["inequality", "available", "", "as printed", "margin", "", "sharp", "margin", ""];
+    let head = ["inequality", "available", "printed", "margin", "", "sharp", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for (printed, sharp) in certificate.printed.inequalities.iter().zip(&certificate.sharp.inequalities) {
-        let mut row = vec![sharp.name.to_owned(), short(sharp.available), sharp.unit.to_owned()];
+        let mut row = vec![sharp.name.to_owned(), format!("{} {}", short(sharp.available), sharp.unit)];
         row.extend(required(printed));
         row.extend(required(sharp));
         rows.push(row);

@@ -50,12 +50,12 @@ pub struct Claim {
 pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let published = scenario.is_papers();
     let duration = scenario.timing.duration();
-    let steady = format!("steady state (last {} s)", short(duration / 4.0));
+    let steady = format!("steady state, last {} s", short(duration / 4.0));
     let mut claims = vec![
         commands(verdict),
         loops(verdict),
         near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration),
-        near(format!("within {NEAR_MRP} of its attitude (MRP) for good"), flown.attitude_reached(), duration),
+        near(format!("within {NEAR_MRP} of its attitude for good"), flown.attitude_reached(), duration),
         tracking(scenario, flown),
         at_most(
             format!("position error, {steady}"),

@@ -110,7 +110,7 @@ fn fly_into(
     };
     let holds = claims::all_hold(&outcome.claims);
     print_text(&format!(
-        "{}: {} s flown; {}\n\n{}\n{}; log, figures and report in {}\n",
+        "{}: {} s flown, {}\n\n{}\n{}; log, figures and report in {}\n",
         scenario.name,
         scenario.timing.duration(),
         outcome.certification,

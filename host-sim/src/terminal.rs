@@ -33,8 +33,30 @@ pub fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
+/// Widest line of prose on a terminal.
+const WIDTH_MAX: usize = 100;
+
+/// Writes a text to standard output: as it is to a file or a pipe, with its prose folded and its failures in red to a
+/// terminal.
 pub fn print_text(text: &str) -> Result<(), String> {
-    print(|| io::stdout().write_all(text.as_bytes()))
+    let terminal = console::Term::stdout();
+    let shown = match terminal.size_checked().filter(|_| terminal.is_term()) {
+        Some((_, columns)) => coloured(&folded(text, WIDTH_MAX.min(columns.into()))),
+        None => text.to_owned(),
+    };
+    print(|| io::stdout().write_all(shown.as_bytes()))
+}
+
+/// Lines of prose no wider than `width`; the rows of tables, whose columns are two spaces apart, stay as they are.
+fn folded(text: &str, width: usize) -> String {
+    let fold = |line: &str| if line.contains("  ") { line.to_owned() } else { textwrap::fill(line, width) };
+    text.split('\n').map(fold).collect::<Vec<_>>().join("\n")
+}
+
+/// What fails in red, unless NO_COLOR says otherwise.
+fn coloured(text: &str) -> String {
+    let red = |word: &str| console::style(word).red().bold().to_string();
+    ["FAILS", "NOT", "UNSTABLE"].iter().fold(text.to_owned(), |text, word| text.replace(word, &red(word)))
 }
 
 /// What a scenario is read from, once: a pipe cannot be read twice.
@@ -72,4 +94,15 @@ pub fn not_a_campaigns(directory: &Path) -> Result<(), String> {
 /// Whether both paths lead to one file that exists.
 pub fn same_file(one: &Path, other: &Path) -> bool {
     matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prose_is_folded_and_tables_are_not() {
+        let (prose, row) = ("one two three four", "a row  of a table  that is wide");
+        assert_eq!(folded(&format!("{prose}\n{row}\n"), 10), format!("one two\nthree four\n{row}\n"));
+    }
 }

@@ -103,6 +103,17 @@ impl<'a> Section<'a> {
         FieldError::new(error.field, format!("{}{found}", error.reason))
     }
 
+    /// Names all of `keys` that are missing, in one line.
+    ///
+    /// # Errors
+    /// If any is.
+    pub fn require_all(&self, keys: &[&str]) -> Result<(), FieldError> {
+        let mut missing = keys.iter().filter(|key| !self.has(key));
+        let (Some(first), rest) = (missing.next(), missing.copied().collect::<Vec<_>>()) else { return Ok(()) };
+        let others = if rest.is_empty() { String::new() } else { format!(", as are {}", rest.join(", ")) };
+        Err(FieldError::new(self.path_of(first), format!("missing{others}")))
+    }
+
     /// Whether `key` is there.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {

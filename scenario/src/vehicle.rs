@@ -138,6 +138,7 @@ pub fn known_drag(drag: &Drag, vehicle: &Vehicle, rotors: Option<&Rotors>) -> f3
 pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
     let section = root.section("vehicle")?;
     section.allow(&["mass", "inertia", "gravity"])?;
+    section.require_all(&["mass", "inertia"])?;
     let mass = section.number("mass")? as f32;
     let moments = inertia::read(&section, "inertia")?;
     let gravity = section.number_or("gravity", DEFAULT_GRAVITY)? as f32;
@@ -199,6 +200,7 @@ fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
 fn read_gains(root: &Section, vehicle: &Vehicle) -> Result<Gains, FieldError> {
     let section = root.section("gains")?;
     section.allow(&constants::keys(&GainParameters::TABLE, "gains"))?;
+    section.require_all(&constants::keys(&GainParameters::TABLE, "gains"))?;
     let mut values = [0.0; GainParameters::COUNT];
     for (value, constant) in values.iter_mut().zip(&GainParameters::TABLE) {
         *value = section.number(constant.key)? as f32;

@@ -52,7 +52,7 @@ pub struct Allocation {
 }
 
 impl Allocation {
-    /// Whether the wrench asked for is the wrench delivered (to rounding).
+    /// Whether the delivered wrench is the commanded one (to rounding).
     #[must_use]
     pub fn is_exact(&self) -> bool {
         !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
@@ -85,7 +85,7 @@ pub struct Mixer {
 }
 
 impl Mixer {
-    /// Of no rotors: it asks nothing of nobody.
+    /// Of no rotors.
     pub const NONE: Self = Self {
         minimum_norm: MinimumNorm::NONE,
         roll_pitch: Polygon::NONE,

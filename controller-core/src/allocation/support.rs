@@ -168,9 +168,9 @@ pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
 /// The extremes of one rotor's thrust over a set of commands, and what it has. All in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorDemand {
-    /// Least thrust asked for.
+    /// Least commanded thrust.
     pub least: f64,
-    /// Greatest thrust asked for.
+    /// Greatest commanded thrust.
     pub greatest: f64,
     /// Least thrust it can give.
     pub available_min: f64,

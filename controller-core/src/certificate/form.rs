@@ -119,7 +119,7 @@ pub(super) fn form(configuration: &Configuration, law: &PaperLaw, derivation: De
         Inequality::new("A1 pitch torque for the reference", "N m", alone.y, available.y),
         Inequality::new("A1 yaw torque for the reference", "N m", alone.z, available.z),
         Inequality::new("T1 saturation level M_p < g - K_a3", "m/s^2", m_p, gravity - vertical),
-        Inequality::new("T1 least thrust > 0, floor at most m (g - M_p - K_a3)", "N", floor, least_law).or_equal(),
+        Inequality::new("T1 least thrust > 0 and >= floor", "N", floor, least_law).or_equal(),
         Inequality::new("T1 greatest thrust", "N", thrust.greatest, thrust_max),
         Inequality::new("T2 roll torque", "N m", torque.x, available.x),
         Inequality::new("T2 pitch torque", "N m", torque.y, available.y),

@@ -7,7 +7,8 @@ use crate::vehicle::Vehicle;
 use core::ops::Deref;
 
 constants! {
-    /// All constants of the extended law; see [`Extended`] for the validated form. "Across" is both horizontal axes together.
+    /// All constants of the extended law; see [`Extended`] for the validated form. "Across" is both horizontal axes
+    /// together.
     pub struct ExtendedParameters {
         /// k_p across, 1/s^2: position gain.
         gains.k_p_across: Range::POSITIVE, SEARCHED;
@@ -110,8 +111,8 @@ constants! {
 pub struct Extended(ExtendedParameters);
 
 impl Extended {
-    /// The least margin of the thrust floor, in weights: rounding in single precision moves a rotor's thrust by a tenth of it at most, up to
-    /// ten times the thrust that hovers.
+    /// The least margin of the thrust floor, in weights: rounding in single precision moves a rotor's thrust by a tenth
+    /// of it at most, up to ten times the thrust that hovers.
     pub const FLOOR_MARGIN_LEAST: f32 = 1e-5;
 
     /// Checks every constant, and that the vehicle can never be asked to push down.

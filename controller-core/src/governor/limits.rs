@@ -12,9 +12,9 @@ pub const SPEED_RANGE: f32 = 256.0;
 /// What the governor needs beyond the bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GovernorLimits {
-    /// Greatest horizontal speed asked for, m/s, where the bounds allow it. (A faster start is slowed down.)
+    /// Greatest horizontal speed towards a setpoint, m/s, where the bounds allow it. (A faster start is slowed down.)
     pub horizontal_speed: f32,
-    /// Greatest vertical speed asked for, m/s.
+    /// Greatest vertical speed towards a setpoint, m/s.
     pub vertical_speed: f32,
     /// How long snap takes from one end of its bound to the other, s.
     pub snap_ramp: f32,

@@ -197,7 +197,7 @@ fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
     within(position, UNCERTAIN.0) && within(velocity, UNCERTAIN.1) && within(attitude, UNCERTAIN.2)
 }
 
-/// Written so that a number that is none is a fault.
+/// Written so that NaN is a fault.
 fn within(value: f32, most: f32) -> bool {
     value <= most
 }

@@ -1,6 +1,6 @@
 //! The stream of poses, judged by itself: what its sender says of it, its time stamps, and whether it moves at all.
 //!
-//! - A pose whose sender says that tracking has failed is none.
+//! - A pose whose sender says that tracking has failed is refused.
 //! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those
 //!   forgotten.
 //! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved
@@ -43,7 +43,7 @@ impl Stream {
     /// Judges a pose at `now`, us.
     ///
     /// # Errors
-    /// Says why it is none.
+    /// The reason for a refusal.
     pub fn admit(&mut self, pose: &Stamped<PoseMeasurement>, now: u64) -> Result<(), Rejected> {
         if pose.time > now.saturating_add(STAMP_LEAD_MAX) {
             return Err(Rejected::Future);

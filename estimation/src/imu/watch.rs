@@ -1,4 +1,4 @@
-//! Samples that are none: what a sensor says that has failed.
+//! Invalid samples: what a failed sensor delivers.
 //!
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two
 //! triples in a row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the

@@ -1,4 +1,4 @@
-//! What is granted of what is asked for.
+//! Which requests are granted.
 
 use super::Pilot;
 use crate::bench::Bench;
@@ -53,10 +53,10 @@ impl<'m> Pilot<'m> {
         estimate: &Estimate,
         seen: &Seen,
     ) -> Result<(), Refusal> {
-        // Whatever is asked for in the tick of a disarm command came before it.
+        // Requests in the tick of a disarm command came before it.
         require(!inputs.disarm, Refusal::DisarmCommanded)?;
         match request {
-            // It is so: who heard no answer asks again.
+            // It is so already: a client whose answer was lost asks again.
             Request::Arm if self.mode.is_armed() => require(!inputs.killed, Refusal::Killed),
             Request::Arm => {
                 permission::to_turn_motors(self.mode)?;
@@ -129,7 +129,7 @@ impl<'m> Pilot<'m> {
         self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded)).and_then(act)
     }
 
-    /// Whether what makes a vehicle land, whoever would like to fly on, is so.
+    /// Whether something makes the vehicle land, whatever requests come.
     pub(super) fn must_land(&self, seen: &Seen, estimate: &Estimate) -> bool {
         let Seen { battery_critical, tracking_lost, saturated, overrun, .. } = *seen;
         battery_critical || tracking_lost || saturated || overrun || self.is_outside(estimate)

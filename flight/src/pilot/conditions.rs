@@ -15,7 +15,7 @@ use estimation::estimator::{COASTING_AFTER, EstimatedState, Fault, Rejected, Tak
 use estimation::measurement::is_fresh;
 
 impl Pilot<'_> {
-    /// What was asked for and granted.
+    /// The conditions that a granted request fulfils.
     pub(super) fn requested(
         &mut self,
         inputs: &Inputs,
@@ -43,7 +43,7 @@ impl Pilot<'_> {
             .with(Condition::SetpointsRequested, setpoints)
     }
 
-    /// What happened besides.
+    /// The conditions that follow from the flight.
     pub(super) fn happened(
         &mut self,
         conditions: Conditions,

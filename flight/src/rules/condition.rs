@@ -3,7 +3,7 @@
 estimation::listed! {
     /// One thing that may hold.
     pub enum Condition {
-        /// An IMU has been heard.
+        /// An IMU sample has come.
         Started,
         /// There is nothing certified to fly with.
         Uncertified,
@@ -60,9 +60,9 @@ estimation::listed! {
         PoseRegainedToLand,
         /// Descending has lasted [`super::DESCENDING_MAX`].
         DescendingOver,
-        /// Nothing was heard from the ground station for [`super::GROUND_STATION_SILENCE_MAX`].
+        /// The ground station has been silent for [`super::GROUND_STATION_SILENCE_MAX`].
         GroundStationSilent,
-        /// Nothing was heard from it for as long as a vehicle holds before it lands.
+        /// It has been silent for as long as a vehicle holds before it lands.
         GroundStationGone,
         /// A setpoint that must be renewed was not.
         SetpointsLost,
@@ -75,7 +75,7 @@ estimation::listed! {
         /// The vehicle has been too far from its reference for [`super::TRACKING_DEBOUNCE`], or was struck and thrown
         /// out of its place.
         TrackingLost,
-        /// The rotors have not given what the law asked for during [`super::SATURATION_DEBOUNCE`].
+        /// The rotors have not delivered the commanded wrench during [`super::SATURATION_DEBOUNCE`].
         Saturated,
         /// Control has been late for [`super::OVERRUN_DEBOUNCE`].
         Overrun,

@@ -28,7 +28,7 @@ estimation::worded! {
     ///                                                +---------------------------+
     /// ```
     pub enum Mode {
-        /// Motors stopped; no IMU has been heard.
+        /// Motors stopped; no IMU sample has come.
         Boot = "boot",
         /// Motors stopped; something that arming needs is missing.
         Checks = "checks",
@@ -48,7 +48,7 @@ estimation::worded! {
         Landing = "landing",
         /// Without a pose: level, then going down by the IMU alone, until the ground is found.
         Descending = "descending",
-        /// Motors stopped in the air or after a crash; until a disarm command says that somebody has looked.
+        /// Motors stopped in the air or after a crash, until a disarm command confirms an inspection.
         Stopped = "stopped",
         /// Nothing to fly with that is certified; for ever.
         Locked = "locked",

@@ -17,6 +17,10 @@ use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 
+/// What the word means.
+const CERTIFIED: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
+                         stay within the limits, and small motions are stable with margin.";
+
 /// A flight that is over.
 pub struct Flight<'a> {
     /// What was flown.
@@ -57,7 +61,7 @@ pub fn page(flight: &Flight, recorder: Recorder) -> Page {
         (
             "Certificate",
             vec![
-                Block::Text(format!("Configuration {}.", flight.certification)),
+                Block::Text(format!("Configuration {}.{CERTIFIED}", flight.certification)),
                 Block::Table(inequalities(verdict)),
                 Block::Table(loops(verdict)),
             ],

@@ -73,3 +73,12 @@ fn keys_and_values_without_an_end_are_refused_at_once_and_in_a_short_line() {
     let error = FieldError::new("name", format!("must be short, found {endless:?}")).to_string();
     assert!(error.len() < 3000 && error.starts_with("name: must be short, found \"kkk"), "{error}");
 }
+
+#[test]
+fn all_that_is_missing_is_named_together() {
+    let table = "mass = 1.0".parse().unwrap();
+    let section = Section::root(&table);
+    let missing = section.require_all(&["mass", "inertia", "gravity"]).unwrap_err();
+    assert_eq!(missing.to_string(), "inertia: missing, as are gravity");
+    assert!(section.require_all(&["mass"]).is_ok());
+}
