@@ -1,9 +1,10 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
-//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, and the scenario
-//! examples. The front page stays short.
+//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the columns of log.csv,
+//! and the scenario examples. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
+use host_sim::log;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::collections::BTreeSet;
@@ -62,7 +63,7 @@ fn anchor(heading: &str) -> String {
 
 #[test]
 fn every_link_between_pages_leads_to_a_file() {
-    let mut pages = ["README.md", "CHANGELOG.md", "vehicles/README.md"].map(str::to_owned).to_vec();
+    let mut pages = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "vehicles/README.md"].map(str::to_owned).to_vec();
     for entry in fs::read_dir(Path::new(ROOT).join("docs")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         pages.extend(name.ends_with(".md").then(|| format!("docs/{name}")));
@@ -116,9 +117,32 @@ fn the_diagrams_of_the_flight_modes_have_the_arrows_of_the_rules() {
 }
 
 #[test]
-fn the_front_page_stays_below_1400_words() {
+fn the_front_page_has_at_most_900_words() {
     let words = read("README.md").split_whitespace().count();
-    assert!(words < 1400, "{words}");
+    assert!(words <= 900, "{words}");
+}
+
+#[test]
+fn the_columns_of_the_log_are_listed_in_their_order() {
+    let page = read("docs/log.md");
+    let rows = page.lines().filter(|line| line.starts_with("| `"));
+    let names = rows.filter_map(|line| line.split('|').nth(1));
+    let listed: Vec<&str> = names.flat_map(|names| names.split('`').skip(1).step_by(2)).collect();
+
+    // One rotor stands for all. Sensors and an estimator exclude each other.
+    let file = read("vehicles/hummingbird.toml") + "[wind]\nsteady = [1, 0, 0]\n";
+    let file = file + "[battery]\nfull_voltage = 12\nempty_voltage = 11\nresistance = 0.01\ncapacity = 1\n";
+    let mut written: Vec<String> = Vec::new();
+    for section in ["[sensors]\n", "[estimator]\n"] {
+        let scenario = Scenario::parse(&format!("{file}{section}"), "f").unwrap();
+        let header = log::header(1, true) + &log::reality_header(&scenario.reality);
+        for column in header.split(',').map(str::to_owned) {
+            if !written.contains(&column) {
+                written.push(column);
+            }
+        }
+    }
+    assert_eq!(listed, written);
 }
 
 /// A number as short as it can be read.

@@ -113,10 +113,8 @@ macro_rules! constants {
             }
 
             /// Each constant with its value.
-            #[must_use]
-            pub fn entries(&self) -> [($crate::constants::Constant, f32); Self::COUNT] {
-                let [$($key),*] = Self::TABLE;
-                [$(($key, self.$key)),*]
+            pub fn entries(&self) -> impl Iterator<Item = ($crate::constants::Constant, f32)> {
+                Self::TABLE.into_iter().zip(self.values())
             }
 
             /// The struct of these values, in the table's order.

@@ -39,7 +39,7 @@ pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
 fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-    let bounds = fields(&configuration.bounds().entries());
+    let bounds = fields(configuration.bounds().entries());
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
     let loops = board::judged(scenario);
@@ -86,7 +86,7 @@ fn law_source(law: &LawParameters) -> String {
     let gains = Gains::new(GainParameters {{ {} }}, &vehicle)?;
     Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
 ",
-                fields(&gains.entries())
+                fields(gains.entries())
             )
         }
         LawParameters::Extended(ExtendedLaw { parameters, actuators: ActuatorParameters { lag, delay } }) => format!(
@@ -97,7 +97,7 @@ fn law_source(law: &LawParameters) -> String {
     let law = ExtendedLaw {{ parameters, actuators: ActuatorParameters {{ lag: {lag:e}, delay: {delay:e} }} }};
     Configuration::extended(vehicle, limits, law, bounds)?.with_rotors(rotors)
 ",
-            fields(&parameters.entries())
+            fields(parameters.entries())
         ),
     }
 }
@@ -116,9 +116,8 @@ fn rotor_source(rotor: &Rotor) -> String {
 }
 
 /// The fields of a struct of constants.
-fn fields(constants: &[(Constant, f32)]) -> String {
-    let written: Vec<String> =
-        constants.iter().map(|(constant, value)| format!("{}: {value:e}", constant.key)).collect();
+fn fields(constants: impl Iterator<Item = (Constant, f32)>) -> String {
+    let written: Vec<String> = constants.map(|(constant, value)| format!("{}: {value:e}", constant.key)).collect();
     written.join(", ")
 }
 

@@ -3,6 +3,8 @@
 #[cfg(feature = "crazyflie-bolt")]
 pub mod crazyflie_bolt;
 #[cfg(any(feature = "stm32", feature = "mps2"))]
+pub mod fault;
+#[cfg(any(feature = "stm32", feature = "mps2"))]
 pub mod guard;
 #[cfg(any(feature = "stm32", feature = "mps2"))]
 pub mod handover;

@@ -56,7 +56,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
             "\nwith these gains every margin stays at least {} for references {} times as demanding:\n\n{}",
             percent(requirements.margin),
             short(factor),
-            constants::written(&widest.entries())
+            constants::written(widest.entries())
         );
     }
     print_text(&summary)?;

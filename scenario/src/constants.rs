@@ -35,7 +35,7 @@ pub fn read<const N: usize>(
 
 /// Constants with their values as sections of a scenario file, each with its meaning.
 #[must_use]
-pub fn written(entries: &[(Constant, f32)]) -> String {
+pub fn written(entries: impl Iterator<Item = (Constant, f32)>) -> String {
     let mut text = String::new();
     let mut before = "";
     for (constant, value) in entries {
@@ -43,7 +43,7 @@ pub fn written(entries: &[(Constant, f32)]) -> String {
             let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
             before = constant.section;
         }
-        let _ = writeln!(text, "{:37} #{}", format!("{} = {}", constant.key, Number(*value)), constant.about);
+        let _ = writeln!(text, "{:37} #{}", format!("{} = {}", constant.key, Number(value)), constant.about);
     }
     text
 }

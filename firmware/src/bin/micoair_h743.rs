@@ -14,5 +14,5 @@ mod target {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    eprintln!("this is firmware: README.md says how to build and flash it");
+    eprintln!("this is firmware: docs/boards.md says how to build and flash it");
 }

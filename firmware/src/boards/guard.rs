@@ -10,7 +10,8 @@
 //!
 //! A function whose frame is larger than the guard could step over it; `.ci/budgets` holds every frame to less.
 
-use core::{fmt, ptr};
+use super::fault::Fault;
+use core::ptr;
 use cortex_m::peripheral::{MPU, SCB};
 use cortex_m_rt::ExceptionFrame;
 
@@ -51,49 +52,23 @@ pub fn watch(mpu: &mut MPU) {
     cortex_m::asm::isb();
 }
 
-/// What the core says of a fault.
-pub struct Fault {
-    /// Where it was, and where that was called from; none where the stack that says so is no stack.
-    pub place: Option<(u32, u32)>,
-    /// The configurable fault status register: what it was.
-    pub status: u32,
-    /// The hard fault status register.
-    pub hard_status: u32,
-    /// The bus fault address register.
-    pub bus_address: u32,
-    /// Whether the stack ran into the guard.
-    pub is_overflow: bool,
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.is_overflow { "stack overflow" } else { "fault" })?;
-        if let Some((place, caller)) = self.place {
-            write!(f, " at {place:#010x} from {caller:#010x}")?;
-        }
-        let Self { status, hard_status, bus_address, .. } = self;
-        write!(f, ", CFSR {status:#010x}, HFSR {hard_status:#010x}, BFAR {bus_address:#010x}")
-    }
-}
-
-impl Fault {
-    fn at(frame: *const ExceptionFrame) -> Self {
-        // SAFETY: registers that only tell; reading has no effect.
-        let core = unsafe { &*SCB::PTR };
-        let (status, memory_address) = (core.cfsr.read(), core.mmfar.read() as usize);
-        let (first, end) = ((&raw const _stack_end).addr(), (&raw const _stack_start).addr());
-        // Where they could not be saved (MSTKERR), nothing is there.
-        let is_saved = status & 0x10 == 0;
-        let is_stack =
-            is_saved && (first..=end - size_of::<ExceptionFrame>()).contains(&frame.addr()) && frame.is_aligned();
-        // SAFETY: aligned, and within the memory that the linker gives to the stack, where any bits are numbers.
-        let frame = is_stack.then(|| unsafe { ptr::read(frame) });
-        // An access to the guard is named (DACCVIOL, MMARVALID).
-        let in_guard = status & 0x82 == 0x82 && (guard()..guard() + GUARD).contains(&memory_address);
-        let is_overflow = !is_saved || in_guard;
-        let place = frame.map(|frame| (frame.pc(), frame.lr()));
-        Self { place, status, hard_status: core.hfsr.read(), bus_address: core.bfar.read(), is_overflow }
-    }
+/// What the core says of the fault that it saved at `frame`.
+fn fault_at(frame: *const ExceptionFrame) -> Fault {
+    // SAFETY: registers that only tell; reading has no effect.
+    let core = unsafe { &*SCB::PTR };
+    let (status, memory_address) = (core.cfsr.read(), core.mmfar.read() as usize);
+    let (first, end) = ((&raw const _stack_end).addr(), (&raw const _stack_start).addr());
+    // Where they could not be saved (MSTKERR), nothing is there.
+    let is_saved = status & 0x10 == 0;
+    let is_stack =
+        is_saved && (first..=end - size_of::<ExceptionFrame>()).contains(&frame.addr()) && frame.is_aligned();
+    // SAFETY: aligned, and within the memory that the linker gives to the stack, where any bits are numbers.
+    let frame = is_stack.then(|| unsafe { ptr::read(frame) });
+    // An access to the guard is named (DACCVIOL, MMARVALID).
+    let in_guard = status & 0x82 == 0x82 && (guard()..guard() + GUARD).contains(&memory_address);
+    let is_overflow = !is_saved || in_guard;
+    let place = frame.map(|frame| (frame.pc(), frame.lr()));
+    Fault { place, status, hard_status: core.hfsr.read(), bus_address: core.bfar.read(), is_overflow }
 }
 
 // The stack that the core has saved registers on is the first argument; the main stack begins anew.
@@ -117,5 +92,5 @@ core::arch::global_asm!(
 );
 
 extern "C" fn on_fault(frame: *const ExceptionFrame) -> ! {
-    faulted(&Fault::at(frame))
+    faulted(&fault_at(frame))
 }

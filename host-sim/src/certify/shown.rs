@@ -10,16 +10,16 @@ use scenario::number::Number;
 pub fn constants(scenario: &Scenario) -> String {
     let configuration = &scenario.configuration;
     let (law, constants) = match configuration.law() {
-        LawParameters::Extended(law) => ("extended", written(&law.parameters.entries())),
+        LawParameters::Extended(law) => ("extended", written(law.parameters.entries())),
         LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
             let floor = thrust_floor
                 .map_or(String::new(), |floor| format!("# with [control] thrust_floor = {}\n", Number(floor)));
-            ("paper", floor + &written(&gains.entries()))
+            ("paper", floor + &written(gains.entries()))
         }
     };
     format!(
         "# {}: all that `[control] law = \"{law}\"` flies with, in place of these sections\n{constants}\n{}",
         scenario.name,
-        written(&configuration.bounds().entries())
+        written(configuration.bounds().entries())
     )
 }

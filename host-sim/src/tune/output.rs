@@ -49,7 +49,7 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     if Scenario::parse(&text, "").is_ok_and(|read| read.configuration.bounds() == judged) {
         return Ok(text);
     }
-    let section: DocumentMut = written(&judged.entries()).parse()?;
+    let section: DocumentMut = written(judged.entries()).parse()?;
     if let Some(bounds) = section["reference_bounds"].as_table() {
         // Without the place that it had in its own document.
         document["reference_bounds"] = Item::Table(bounds.iter().map(|(key, bound)| (key, bound.clone())).collect());
@@ -67,7 +67,7 @@ fn constants(scenario: &Scenario) -> Vec<(&'static str, &'static str, Option<f32
         (LawParameters::Extended(_), None) => Vec::new(),
         (LawParameters::Paper(PaperLaw { gains, thrust_floor }), _) => {
             let gains = gains.entries().map(|(gain, value)| (gain.section, gain.key, Some(value)));
-            gains.into_iter().chain([("control", "thrust_floor", *thrust_floor)]).collect()
+            gains.chain([("control", "thrust_floor", *thrust_floor)]).collect()
         }
     }
 }

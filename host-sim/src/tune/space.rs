@@ -56,7 +56,7 @@ impl Space {
         match configuration.law() {
             LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
                 let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.least_thrust());
-                let searched = gains.entries().into_iter().filter(|(gain, _)| gain.searched).map(|(_, value)| value);
+                let searched = gains.entries().filter(|(gain, _)| gain.searched).map(|(_, value)| value);
                 searched.chain([floor]).map(|value| f64::from(value).ln()).collect()
             }
             LawParameters::Extended(_) => vec![0.0; searched().count()],

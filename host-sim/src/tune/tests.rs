@@ -275,7 +275,7 @@ fn a_file_with_every_constant_loses_those_that_follow_from_the_vehicle() {
     let [scenario, ..] = extended();
     let (before, _) = EXTENDED[0].split_once("[gains]").unwrap();
     let (_, after) = EXTENDED[0].split_once("[control]").unwrap();
-    let all = scenario::constants::written(&parameters(&scenario).entries());
+    let all = scenario::constants::written(parameters(&scenario).entries());
     let text = format!("{before}{all}\n[control]{after}");
     assert!(Scenario::parse(&text, "f").unwrap().flies_like(&scenario));
     let verdict = verdict(&scenario, Requirements::default());

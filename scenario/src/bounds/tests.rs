@@ -50,7 +50,7 @@ fn stated_they_replace_the_references_own() {
         heading_second_derivative: 2.0,
     };
     assert_eq!(read(WIDER), Ok(wider));
-    assert_eq!(read(&crate::constants::written(&wider.entries())), Ok(wider));
+    assert_eq!(read(&crate::constants::written(wider.entries())), Ok(wider));
 }
 
 #[test]

@@ -113,7 +113,7 @@ fn a_constant_of_the_extended_law_is_the_files_and_the_others_follow() {
         let refused = with(line).err().unwrap().what;
         assert!(refused.starts_with(words), "{refused}");
     }
-    let written = crate::constants::written(&own.entries());
+    let written = crate::constants::written(own.entries());
     let (head, tail) = EXTENDED.split_once("[gains]").unwrap();
     let all = format!("{head}{written}{}", &tail[tail.find("\n[control]").unwrap()..]);
     assert_eq!(parameters(Scenario::parse(&all, "f").unwrap()), own);

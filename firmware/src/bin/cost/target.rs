@@ -8,7 +8,7 @@ use crate::stack;
 use crate::tick;
 use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::certified::{Certified, Refused};
-use controller_core::certificate::configuration::Configuration;
+use controller_core::configuration::Configuration;
 use controller_core::error::InputError;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;

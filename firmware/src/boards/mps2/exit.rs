@@ -2,7 +2,7 @@
 //!
 //! The lines are plain text, not defmt: a fault may come while defmt's encoder is in use.
 
-use crate::boards::guard::Fault;
+use crate::boards::fault::Fault;
 use core::fmt::Display;
 use core::panic::PanicInfo;
 use cortex_m as _; // the critical section that printing takes

@@ -29,7 +29,7 @@
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};
-use crate::boards::guard::Fault;
+use crate::boards::fault::Fault;
 use crate::boards::kept;
 use crate::dshot::{BITS, zero_width};
 use crate::ending::{Ending, FRAMES, LAST_FRAMES};
