@@ -3,10 +3,10 @@
 
 use controller_core::certificate::certified::Certified;
 use flight::Reason;
-use host_sim::campaign::hours::{Hours, Plan, fly};
 use rayon::prelude::*;
 use scenario::Scenario;
 use std::path::Path;
+use verification::hours::{Hours, Plan, fly};
 
 fn flown(plan: Plan) -> Hours {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles");

@@ -5,6 +5,8 @@
 //! | what is tested | suites |
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
+//! | the laws beside it, at half a turn | [`half_turn`] |
+//! | a vehicle's numbers from a flight and a bench | [`identify`] |
 //! | the state it is told | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
@@ -40,7 +42,9 @@ mod extended_flows;
 mod extended_independent;
 mod fault_campaign;
 mod governor_campaign;
+mod half_turn;
 mod hysteresis;
+mod identify;
 mod independent_law;
 mod kinematics;
 mod lockstep;

@@ -3,12 +3,12 @@
 
 use crate::support::binary::{directory, host_sim, status};
 use controller_core::certificate::certified::Certified;
-use host_sim::campaign::fly_all;
 use host_sim::course::Course;
 use host_sim::flight::Flight;
 use nalgebra::Vector3;
 use scenario::Scenario;
 use std::time::Instant;
+use verification::campaign::fly_all;
 
 const HUMMINGBIRD: &str = include_str!("../vehicles/hummingbird-paper-law.toml");
 const EXTENDED: &str = include_str!("../vehicles/hummingbird.toml");
@@ -213,7 +213,7 @@ fn a_campaign_of_disturbed_flights_takes_moments() {
         case
     };
     let flown =
-        fly_all(Some(&certified), 200, circumstances, |scenario, flight| Course::over(scenario, flight, NEAR)).unwrap();
+        fly_all(&certified, 200, circumstances, |scenario, flight| Course::over(scenario, flight, NEAR)).unwrap();
     let seconds = started.elapsed().as_secs_f64();
     println!("200 flights of 20 s in {seconds:.2} s: {:.0} simulated seconds per second", 4000.0 / seconds);
     assert!(flown.iter().all(|course| course.as_ref().is_ok_and(|course| course.excursion < 10.0)));
@@ -221,4 +221,28 @@ fn a_campaign_of_disturbed_flights_takes_moments() {
     let ends: Vec<f64> = flown.iter().flatten().map(|course| course.end_error).collect();
     let (least, greatest) = ends.iter().fold((f64::MAX, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
     assert!(greatest < 1.2 * least, "{least} {greatest}");
+}
+
+#[test]
+fn a_campaign_is_its_flights_one_by_one_in_order() {
+    let sections =
+        "[drag]\nframe = [0.005, 0.005, 0.01]\n[wind]\nsteady = [1, 0, 0]\n[sensors]\nposition_noise = 0.002\n";
+    let text = format!("{HUMMINGBIRD}\n{sections}").replace("duration = 40.0", "duration = 2.0");
+    let scenario = Scenario::parse(&text, "f").unwrap();
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    let circumstances = |number: u64| {
+        let mut case = scenario.clone();
+        case.initial.velocity.y = 0.1 * number as f64;
+        if let Some(sensors) = &mut case.reality.sensors {
+            sensors.seed = number;
+        }
+        case
+    };
+    let course = |scenario: &Scenario, flight| Course::over(scenario, flight, 0.1).unwrap();
+    let all = fly_all(&certified, 12, circumstances, course).unwrap();
+    let one_by_one: Vec<Course> = (0..12)
+        .map(|number| course(&circumstances(number), Flight::certified(&circumstances(number), &certified).unwrap()))
+        .collect();
+    assert_eq!(all, one_by_one);
+    assert!(all.windows(2).all(|pair| pair[0] != pair[1]));
 }

@@ -8,8 +8,8 @@
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
-use host_sim::piloted::{Nobody, PilotedVehicle, Place};
 use scenario::reality::estimator::Estimator;
+use verification::piloted::{Nobody, PilotedVehicle, Place};
 
 /// When it gets which command, and until when it is watched, ticks.
 const ARM: u64 = 200;

@@ -19,10 +19,10 @@ use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
 use flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
 use host_sim::instruments::{Felt, SAMPLE};
-use host_sim::piloted::{Meddler, PilotedVehicle, Place};
 use host_sim::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
+use verification::piloted::{Meddler, PilotedVehicle, Place};
 
 /// How far the plane of the rotors is above the IMU, m.
 const ABOVE: f64 = 0.02;

@@ -21,7 +21,7 @@
 //! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
 //! | [`memory`] | the law's memory from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
-//! | [`constants`], [`parameters`] | all of its constants, declared once, validated | |
+//! | [`crate::constants`], [`parameters`] | all of its constants, declared once, validated | |
 //! | [`defaults`] | every constant from a vehicle's numbers | 14 |
 //!
 //! Each estimate has a level; a level of zero turns it off.

@@ -3,11 +3,13 @@
 //! With it goes which factors on its gains have sampled loops with margin, judged here because no board can, and a
 //! number by which parameters that were tuned on one configuration know that they are on another.
 //!
-//! The numbers are written with all their digits and read back bit for bit. Nothing that is worked out from them is
+//! The numbers are written with all the digits that reading back bit for bit takes. Nothing that is worked out from them is
 //! carried over: the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::constants::Constant;
+use controller_core::extended::actuators::ActuatorParameters;
 use nalgebra::Vector3;
 use scenario::{Scenario, board};
 
@@ -37,32 +39,34 @@ pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
 fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-    let bounds = configuration.bounds();
+    let bounds = fields(configuration.bounds().entries());
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
     let loops = board::judged(scenario);
     let (across, vertical) = loops.bits();
     format!(
         "/// The scenario's name.
-pub const NAME: &str = {name:?};
+pub const NAME: &str = \"{name}\";
 
 /// A number of this configuration, below 2^24: see `scenario::board::identity`.
 pub const IDENTITY: u32 = {identity};
 
 /// Which factors on its gains have sampled loops with margin.
-pub static LOOPS: JudgedLoops = JudgedLoops::from_bits({across:?}, {vertical:?});
+pub static LOOPS: JudgedLoops = JudgedLoops::from_bits([{across}], [{vertical}]);
 
 fn built() -> Result<Configuration, ParameterError> {{
-    let vehicle = VehicleParameters {{ mass: {mass:?}, inertia: {inertia}, gravity: {gravity:?} }};
+    let vehicle = VehicleParameters {{ mass: {mass:e}, inertia: {inertia}, gravity: {gravity:e} }};
     let vehicle = Vehicle::new(vehicle)?;
-    let limits = LimitParameters {{ thrust_max: {thrust_max:?}, torque_max: {torque_max} }};
+    let limits = LimitParameters {{ thrust_max: {thrust_max:e}, torque_max: {torque_max} }};
     let limits = Limits::new(limits, &vehicle)?;
-    let bounds = {bounds:?};
+    let bounds = ReferenceBounds {{ {bounds} }};
     let rotors = Rotors::new(&[
 {rotors}    ])?;
 {law}}}
 ",
-        name = scenario.name,
+        name = scenario.name.escape_default(),
+        across = bytes(across),
+        vertical = bytes(vertical),
         identity = board::identity(scenario),
         mass = vehicle.mass,
         inertia = vector(&vehicle.inertia),
@@ -76,24 +80,24 @@ fn built() -> Result<Configuration, ParameterError> {{
 fn law_source(law: &LawParameters) -> String {
     match law {
         LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
-            let floor = thrust_floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:?})"));
+            let floor = thrust_floor.map_or(String::new(), |floor| format!("?.with_thrust_floor({floor:e})"));
             format!(
                 "    use controller_core::gains::{{GainParameters, Gains}};
-    let gains = Gains::new({:?}, &vehicle)?;
+    let gains = Gains::new(GainParameters {{ {} }}, &vehicle)?;
     Configuration::new(vehicle, limits, gains, bounds)?.with_rotors(rotors){floor}
 ",
-                **gains
+                fields(gains.entries())
             )
         }
-        LawParameters::Extended(ExtendedLaw { parameters, actuators }) => format!(
+        LawParameters::Extended(ExtendedLaw { parameters, actuators: ActuatorParameters { lag, delay } }) => format!(
             "    use controller_core::configuration::ExtendedLaw;
     use controller_core::extended::actuators::ActuatorParameters;
     use controller_core::extended::parameters::{{Extended, ExtendedParameters}};
-    let parameters = Extended::new({:?}, &vehicle)?;
-    let law = ExtendedLaw {{ parameters, actuators: {actuators:?} }};
+    let parameters = Extended::new(ExtendedParameters {{ {} }}, &vehicle)?;
+    let law = ExtendedLaw {{ parameters, actuators: ActuatorParameters {{ lag: {lag:e}, delay: {delay:e} }} }};
     Configuration::extended(vehicle, limits, law, bounds)?.with_rotors(rotors)
 ",
-            **parameters
+            fields(parameters.entries())
         ),
     }
 }
@@ -106,11 +110,22 @@ fn rotor_source(rotor: &Rotor) -> String {
     };
     let Rotor { thrust_coefficient, drag_coefficient, thrust_min, thrust_max, .. } = rotor;
     format!(
-        "Rotor {{ position: {position}, spin: Spin::{spin}, thrust_coefficient: {thrust_coefficient:?}, \
-         drag_coefficient: {drag_coefficient:?}, thrust_min: {thrust_min:?}, thrust_max: {thrust_max:?} }}"
+        "Rotor {{ position: {position}, spin: Spin::{spin}, thrust_coefficient: {thrust_coefficient:e}, \
+         drag_coefficient: {drag_coefficient:e}, thrust_min: {thrust_min:e}, thrust_max: {thrust_max:e} }}"
     )
 }
 
+/// The fields of a struct of constants.
+fn fields(constants: impl Iterator<Item = (Constant, f32)>) -> String {
+    let written: Vec<String> = constants.map(|(constant, value)| format!("{}: {value:e}", constant.key)).collect();
+    written.join(", ")
+}
+
+/// The elements of an array.
+fn bytes(bytes: &[u8]) -> String {
+    bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(", ")
+}
+
 fn vector(v: &Vector3<f32>) -> String {
-    format!("Vector3::new({:?}, {:?}, {:?})", v.x, v.y, v.z)
+    format!("Vector3::new({:e}, {:e}, {:e})", v.x, v.y, v.z)
 }

@@ -7,11 +7,11 @@
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::Estimator;
 use flight::{Memory, Pilot};
-use host_sim::campaign::hours::{Hours, Obeyed, Plan, TIMED, fly};
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
+use verification::hours::{Hours, Obeyed, Plan, TIMED, fly};
 
 /// Where a clock's milliseconds overflow 32 bits, us.
 const OVERFLOW: u64 = (1 << 32) * 1_000;

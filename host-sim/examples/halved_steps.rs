@@ -4,13 +4,13 @@
 
 use controller_core::certificate::certified::Certified;
 use host_sim::campaign::draw::circumstances;
-use host_sim::campaign::fly_all;
 use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
-use host_sim::campaign::step::{halved, longest};
+use host_sim::campaign::step::{longest, of};
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
+use verification::campaign::fly_all;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -18,12 +18,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("expected FILE COUNT".into());
     };
     let scenario = longest(&Scenario::load(Path::new(file))?);
-    let finer = halved(&scenario).ok_or("half the plant step does not fit the scenario's delay")?;
+    let finer = of(&scenario, 0.5 * scenario.timing.step())?;
     let certified = Certified::new(scenario.configuration.clone())
         .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
     let fly = |scenario: &Scenario| {
         let thrown = |number| circumstances(scenario, &scenario.campaign.ranges, scenario.campaign.seed, number);
-        fly_all(Some(&certified), count.parse::<u64>()?, thrown, |scenario, flight| {
+        fly_all(&certified, count.parse::<u64>()?, thrown, |scenario, flight| {
             Outcome::of(scenario, flight, certified.certificate())
         })
         .map_err(Box::<dyn Error>::from)

@@ -11,10 +11,10 @@ use host_sim::identify::flight_log::FlightLog;
 use host_sim::identify::identify;
 use host_sim::identify::quantities::Quantity;
 use host_sim::identify::telling;
-use host_sim::identify::trials::{Drag, Trial};
 use rayon::prelude::*;
 use scenario::{STUDY, Scenario};
 use std::error::Error;
+use verification::identify_trials::{Drag, Trial};
 
 /// A name, what is told, what is true.
 type Told = Vec<(&'static str, Quantity, f64)>;

@@ -13,15 +13,12 @@
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
 //! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
 //! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
-//! | [`recoveries`], [`mod@hours`] | campaigns without a file |
 
 pub mod batches;
 pub mod draw;
 pub mod fly;
-pub mod hours;
 pub mod manifest;
 pub mod outcome;
-pub mod recoveries;
 pub mod report;
 pub mod rows;
 pub mod step;
@@ -30,12 +27,7 @@ pub mod summary;
 pub mod throw;
 pub mod written;
 
-use crate::flight::Flight;
 use arrow_schema::ArrowError;
-use controller_core::certificate::certified::Certified;
-use controller_core::error::ParameterError;
-use rayon::prelude::*;
-use scenario::Scenario;
 use std::fmt;
 
 /// Why a campaign ended before its end.
@@ -67,29 +59,6 @@ impl fmt::Display for CampaignError {
 }
 
 impl std::error::Error for CampaignError {}
-
-/// Flies the flights 0 to `count` - 1 on all cores: each in its `circumstances`, and of each what `gather` makes of it,
-/// in the order of their numbers. With `certified` the law and the allocation are those that boards fly, certified once
-/// for all flights; without it each is flown as the uncertified configuration that its scenario has.
-///
-/// # Errors
-/// [`ParameterError`] if the law refuses a scenario's period; a [`Scenario`] that was read from a file has a good one.
-pub fn fly_all<T: Send>(
-    certified: Option<&Certified>,
-    count: u64,
-    circumstances: impl Fn(u64) -> Scenario + Sync,
-    gather: impl Fn(&Scenario, Flight) -> T + Sync,
-) -> Result<Vec<T>, ParameterError> {
-    let fly = |number| {
-        let scenario = circumstances(number);
-        let flight = match certified {
-            Some(certified) => Flight::certified(&scenario, certified),
-            None => Flight::uncertified(&scenario),
-        };
-        Ok(gather(&scenario, flight?))
-    };
-    (0..count).into_par_iter().map(fly).collect()
-}
 
 /// The value below which `part`, 0 to 1, of `values` lie; none of no values. Values that are no numbers count as the
 /// greatest.

@@ -6,8 +6,6 @@
 use crate::actuators::ActuationError;
 use crate::controller::Controller;
 use crate::estimation::{Estimation, NoEstimate};
-use crate::plant::Diverged;
-use crate::plant::body::Body;
 use crate::reality::Surroundings;
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
@@ -89,9 +87,6 @@ pub struct Brief {
 
 /// What a law answers, with what it says of it.
 type Answer<D> = Result<(Wrench, D), InputError>;
-
-/// The same in a flight.
-type Answered<D> = Result<(Wrench, D), FlightError>;
 
 /// A flight that could not go on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -242,52 +237,18 @@ impl Flight {
         step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
     ) -> Result<(Option<State>, Brief, D), FlightError> {
         let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
-        let reference = self.reference();
-        let told = self.told()?;
-        let (wrench, more) = self.answer(&told.unwrap_or_else(|| state.measured()), &reference, step)?;
-        let held = self.hold(&self.asked(&wrench));
+        let reference = self.trajectory.at(time_us);
+        let told = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
+        let answer = step(&mut self.controller, &told.unwrap_or_else(|| state.measured()), &reference);
+        let (wrench, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
+        let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
-        self.end(clipped || standing);
-        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
-    }
-
-    /// The measured state, where that is not the true one.
-    #[inline(always)]
-    fn told(&mut self) -> Result<Option<State>, FlightError> {
-        let state = *self.vehicle.state();
-        self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))
-    }
-
-    /// What the law answers, and what `step` says of that.
-    #[inline(always)]
-    fn answer<D>(
-        &mut self,
-        told: &State,
-        reference: &Reference,
-        step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
-    ) -> Answered<D> {
-        step(&mut self.controller, told, reference).map_err(|error| self.error(Cause::Law(error)))
-    }
-
-    /// What the rotors are to be asked for.
-    #[inline]
-    fn asked(&self, wrench: &Wrench) -> Wrench {
-        wrench.scaled(1.0 / self.controller.thrust_scale())
-    }
-
-    /// What is asked for at this moment.
-    #[inline]
-    pub(crate) fn reference(&self) -> Reference {
-        self.trajectory.at(self.time_us())
-    }
-
-    /// Ends a tick; whether the motion was another than the wrench alone would have made it.
-    #[inline]
-    fn end(&mut self, disturbed: bool) {
-        if disturbed {
+        // The motion was then another than the wrench alone would have made it.
+        if clipped || standing {
             self.controller.hold_estimates();
         }
         self.tick += 1;
+        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
     }
 
     #[inline]
@@ -329,61 +290,6 @@ impl Flight {
             estimation.sample(self.vehicle.state());
         }
         Ok((clipped, thrusts))
-    }
-}
-
-/// A flight among others that are flown side by side ([`crate::batch`]).
-impl Flight {
-    /// The body that moves and the plant steps of a tick, if the wrench acts on it at once and no estimator watches the
-    /// motion.
-    pub(crate) fn bare(&self) -> Option<(&Body, u32)> {
-        let plant = self.vehicle.bare().filter(|_| self.estimation.is_none())?;
-        Some((plant.body(), self.steps_per_tick))
-    }
-
-    /// Whether both are asked for the same, now and at every tick to come.
-    pub(crate) fn shares_reference(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.trajectory, &other.trajectory) && (self.tick, self.period_us) == (other.tick, other.period_us)
-    }
-
-    /// The vehicle's true state.
-    #[inline]
-    pub(crate) fn state(&self) -> &BodyState {
-        self.vehicle.state()
-    }
-
-    /// The beginning of a tick: the measured state.
-    #[inline]
-    pub(crate) fn measured(&mut self) -> Result<State, FlightError> {
-        let told = self.told()?;
-        Ok(told.unwrap_or_else(|| self.vehicle.state().measured()))
-    }
-
-    /// A tick up to the motion: the wrench that the law commands, and the one that the body is to be moved by.
-    #[inline]
-    pub(crate) fn set_off(&mut self, told: &State, reference: &Reference) -> Result<(Wrench, Wrench), FlightError> {
-        let (wrench, ()) = self.answer(told, reference, Controller::command)?;
-        Ok((wrench, self.asked(&wrench)))
-    }
-
-    /// Ends a tick whose motion has led to `state`.
-    #[inline(always)]
-    pub(crate) fn arrive(
-        &mut self,
-        state: BodyState,
-        reference: &Reference,
-        (wrench, clipped): (Wrench, bool),
-    ) -> Result<Brief, FlightError> {
-        let (time_us, before) = (self.time_us(), *self.vehicle.state());
-        self.vehicle.place(state);
-        if !state.is_finite() {
-            return Err(self.error(Cause::Actuation(Diverged.into())));
-        }
-        self.end(clipped);
-        let rotor_thrusts = Thrusts::new();
-        // What moves among others is the model, which has no ground.
-        let standing = false;
-        Ok(Brief { time_us, state: before, reference: *reference, wrench, clipped, rotor_thrusts, standing })
     }
 }
 

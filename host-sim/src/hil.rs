@@ -27,6 +27,7 @@ use pace::Pace;
 use port::{Port, PortError};
 use relay::Relay;
 use scenario::Scenario;
+use scenario::number::Number;
 use senses::Senses;
 use std::fmt;
 use std::io::{self, Write};
@@ -221,11 +222,11 @@ impl Log {
         let (p, v, q, w) = (&s.position, &s.velocity, &s.attitude, &s.angular_velocity);
         write!(self.file, "{time:.6}")?;
         for value in [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z, thrust] {
-            write!(self.file, ",{value:?}")?;
+            write!(self.file, ",{}", Number(value))?;
         }
         write!(self.file, ",{}", u8::from(c.armed))?;
         for command in c.commands {
-            write!(self.file, ",{command:?}")?;
+            write!(self.file, ",{}", Number(command))?;
         }
         writeln!(self.file, ",{}", c.time)
     }

@@ -15,7 +15,6 @@
 //! | [`telling`] | what a log cannot tell, and what to fly for it |
 //! | [`output`], [`margins`] | the scenario with these numbers; what the uncertainty eats of its certificate |
 //! | [`command`] | all of it, from files to a report |
-//! | [`trials`] | flights of vehicles that are not what their file says, to see how often this is right |
 
 pub mod agreement;
 pub mod bench;
@@ -31,7 +30,6 @@ pub mod noise;
 pub mod output;
 pub mod quantities;
 pub mod telling;
-pub mod trials;
 pub mod ulog;
 
 use bench::Bench;

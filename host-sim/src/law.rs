@@ -19,6 +19,7 @@ use controller_core::reference::Reference;
 use controller_core::state::{State, UNIT_TOLERANCE, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use scenario::Scenario;
+use scenario::number::Number;
 use scenario::timing::check_period;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
@@ -125,7 +126,8 @@ impl LawServer {
             };
             let answered = match answer {
                 Ok(Wrench { thrust, torque }) => {
-                    writeln!(output, "{thrust:?} {:?} {:?} {:?}", torque.x, torque.y, torque.z)
+                    let [thrust, x, y, z] = [thrust, torque.x, torque.y, torque.z].map(Number);
+                    writeln!(output, "{thrust} {x} {y} {z}")
                 }
                 Err(problem) => writeln!(output, "error: {problem}"),
             };

@@ -14,8 +14,6 @@
 //! | [`ground`] | something to stand on, for flights that start and end there |
 //! | [`controller`], [`rivals`], [`flier`] | what flies: our law, or other laws to compare it with; the one that is chosen |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
-//! | [`batch`] | flights side by side, in the processor's vector registers |
-//! | [`piloted`] | the whole pilot in closed loop, supervisor, estimator and conditioner included |
 //! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
 //! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
@@ -33,7 +31,6 @@ pub mod map {
 }
 
 pub mod actuators;
-pub mod batch;
 pub mod campaign;
 pub mod certify;
 pub mod claims;
@@ -53,7 +50,6 @@ pub mod instruments;
 pub mod interrupt;
 pub mod law;
 pub mod log;
-pub mod piloted;
 pub mod plant;
 pub mod plots;
 pub mod progress;

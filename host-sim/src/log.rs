@@ -9,6 +9,7 @@
 //! the state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
 
 use crate::flight::Tick;
+use scenario::number::Number;
 use scenario::reality::Reality;
 use std::io::{self, Write};
 
@@ -63,7 +64,7 @@ pub fn bytes_per_row(reality: &Reality) -> u64 {
 pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     let (s, d) = (&tick.state, &tick.diagnostics);
     let (q, nu, qd) = (&s.attitude, tick.reference.heading.direction(), &d.desired_attitude);
-    write!(out, "{:?}", tick.time_us as f64 / 1e6)?;
+    write!(out, "{}", Number(tick.time_us as f64 / 1e6))?;
     doubles(out, s.position.as_slice())?;
     doubles(out, s.velocity.as_slice())?;
     doubles(out, &[q.w, q.i, q.j, q.k])?;
@@ -105,11 +106,11 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
 }
 
 fn doubles(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
-    values.iter().try_for_each(|value| write!(out, ",{value:?}"))
+    values.iter().try_for_each(|value| write!(out, ",{}", Number(*value)))
 }
 
 fn singles(out: &mut impl Write, values: &[f32]) -> io::Result<()> {
-    values.iter().try_for_each(|value| write!(out, ",{value:?}"))
+    values.iter().try_for_each(|value| write!(out, ",{}", Number(*value)))
 }
 
 #[cfg(test)]

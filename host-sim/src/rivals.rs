@@ -18,13 +18,11 @@
 //! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | parts that several of them share |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
 //! | [`start`], [`tuning`] | where the search for them starts; the search |
-//! | [`half_turn`] | what laws do about the half turn, with noise against them: unwinding and chattering |
 
 pub mod cascade;
 pub mod continuous;
 pub mod frame;
 pub mod gains;
-pub mod half_turn;
 pub mod indi;
 pub mod jet;
 pub mod kind;

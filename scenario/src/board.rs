@@ -14,9 +14,12 @@ use crate::reality::estimator::rates_delay;
 use crate::sampled_loop::{Axis, LoopModel, Timing};
 use crate::stability::LoopMargin;
 use crate::verdict::Verdict;
-use controller_core::configuration::LawParameters;
+use controller_core::allocation::{Rotor, Spin};
+use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
+use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::tuning::Factors;
 use controller_core::tuning::judged::JudgedLoops;
+use controller_core::vehicle::{LimitParameters, VehicleParameters};
 
 /// The rate of the firmware's control task, Hz.
 pub const RATE: f64 = 100.0;
@@ -101,9 +104,51 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
 /// other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
-    // FNV-1a, 32 bits, over everything that the configuration and its loops are made of.
-    let text = format!("{:?} {:?}", scenario.configuration, timing(scenario));
-    let hash = text.bytes().fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+    let Timing { period, rotor_lag, delay_samples } = timing(scenario);
+    let mut numbers = numbers(&scenario.configuration);
+    numbers.extend([period, rotor_lag, delay_samples]);
+    hash(&numbers)
+}
+
+/// Every number of a configuration, always in this order: the law's own first, behind a number that says which law it
+/// is; the rotors' last, as there may be any number of them. No pattern leaves a field out, so that one which is added
+/// has to be added here.
+fn numbers(configuration: &Configuration) -> Vec<f64> {
+    let mut numbers: Vec<f32> = Vec::new();
+    match configuration.law() {
+        LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
+            numbers.push(1.0);
+            numbers.extend(gains.values());
+            // No floor is zero.
+            numbers.push(thrust_floor.unwrap_or(0.0));
+        }
+        LawParameters::Extended(ExtendedLaw { parameters, actuators: ActuatorParameters { lag, delay } }) => {
+            numbers.push(2.0);
+            numbers.extend(parameters.values());
+            numbers.extend([lag, delay]);
+        }
+    }
+    let VehicleParameters { mass, inertia, gravity } = **configuration.vehicle();
+    let LimitParameters { thrust_max, torque_max } = **configuration.limits();
+    numbers.extend([mass, inertia.x, inertia.y, inertia.z, gravity]);
+    numbers.extend([thrust_max, torque_max.x, torque_max.y, torque_max.z]);
+    numbers.extend(configuration.bounds().values());
+    for rotor in configuration.rotors().into_iter().flat_map(|rotors| rotors.iter()) {
+        let Rotor { position, spin, thrust_coefficient, drag_coefficient, thrust_min, thrust_max } = *rotor;
+        let turns = match spin {
+            Spin::Clockwise => -1.0,
+            Spin::CounterClockwise => 1.0,
+        };
+        numbers.extend([position.x, position.y, position.z, turns]);
+        numbers.extend([thrust_coefficient, drag_coefficient, thrust_min, thrust_max]);
+    }
+    numbers.into_iter().map(f64::from).collect()
+}
+
+/// FNV-1a, 32 bits folded to 24, over the bits of `numbers`, each with its lowest byte first.
+fn hash(numbers: &[f64]) -> u32 {
+    let bytes = numbers.iter().flat_map(|number| number.to_bits().to_le_bytes());
+    let hash = bytes.fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
     (hash >> 24) ^ (hash & 0x00FF_FFFF)
 }
 
@@ -228,5 +273,17 @@ mod tests {
             assert_ne!(study, identity_of(&STUDY.replace(line, other)), "{line}");
         }
         assert!(study < 1 << 24);
+    }
+
+    #[test]
+    fn the_identity_of_a_configuration_stays_from_one_build_to_the_next() {
+        // Worked out by another program.
+        assert_eq!(hash(&[1.0, -2.5, 0.0]), 0xB3EA9A);
+        let paper = Scenario::parse(include_str!("../../vehicles/hummingbird-paper-law.toml"), "a test").unwrap();
+        let numbers = numbers(&paper.configuration);
+        // Law, gains, floor; vehicle, limits, bounds; four rotors.
+        assert_eq!(numbers.len(), 13 + 16 + 4 * 8);
+        assert_eq!(numbers[0], 1.0);
+        assert_eq!(numbers[13], f64::from(paper.configuration.vehicle().mass));
     }
 }

@@ -1,5 +1,6 @@
 //! Constants as sections of a scenario file: one declaration ([`controller_core::constants`]), read and written here.
 
+use crate::number::Number;
 use crate::section::{FieldError, Section};
 use controller_core::constants::Constant;
 use std::fmt::Write;
@@ -42,7 +43,7 @@ pub fn written(entries: impl Iterator<Item = (Constant, f32)>) -> String {
             let _ = writeln!(text, "{}[{}]", if before.is_empty() { "" } else { "\n" }, constant.section);
             before = constant.section;
         }
-        let _ = writeln!(text, "{:37} #{}", format!("{} = {value:?}", constant.key), constant.about);
+        let _ = writeln!(text, "{:37} #{}", format!("{} = {}", constant.key, Number(value)), constant.about);
     }
     text
 }

@@ -35,6 +35,7 @@ pub mod extended;
 pub mod file;
 pub mod inertia;
 pub mod initial;
+pub mod number;
 pub mod path;
 pub mod reality;
 pub mod reference;

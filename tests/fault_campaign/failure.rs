@@ -2,11 +2,11 @@
 
 use estimation::estimator::PoseMeasurement;
 use flight::{Battery, ImuSample, Inputs, Pose, Stamped, Velocity};
-use host_sim::piloted::{Meddler, PilotedVehicle};
 use host_sim::reality::RealVehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use scenario::body::BodyState;
 use std::f64::consts::{FRAC_PI_4, PI};
+use verification::piloted::{Meddler, PilotedVehicle};
 
 /// One thing that fails. Without another word it lasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

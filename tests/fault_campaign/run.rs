@@ -7,8 +7,8 @@ use super::phase::{Phase, Sight};
 use super::watch;
 use estimation::estimator::Rejected;
 use flight::{Inputs, Mode, Outcome, Output, Reason, Request, Transition};
-use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::{UnitQuaternion, Vector3};
+use verification::piloted::{PilotedVehicle, Place};
 
 /// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone: 0.6 m/s, a landing's
 /// 0.5 m/s that frozen poses have taught it to take for nothing, and 0.2 m/s for each second that it goes down after

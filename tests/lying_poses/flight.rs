@@ -4,11 +4,11 @@ use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{Motion, Setpoint, Turn};
 use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
-use host_sim::piloted::{PilotedVehicle, Place};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use scenario::Scenario;
+use verification::piloted::{PilotedVehicle, Place};
 
 /// The box that it may not leave: a radius and a height, m, about where it was armed.
 pub const BOX: f32 = 3.0;

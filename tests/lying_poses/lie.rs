@@ -2,12 +2,12 @@
 
 use estimation::estimator::PoseMeasurement;
 use flight::{Pose, Stamped, Velocity};
-use host_sim::piloted::Meddler;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::ChaCha8Rng;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 use std::collections::VecDeque;
+use verification::piloted::Meddler;
 
 /// One kind of lie. Rates count from the moment at which the source begins to lie.
 #[derive(Debug, Clone, Copy, PartialEq)]

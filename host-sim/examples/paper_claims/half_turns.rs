@@ -8,7 +8,6 @@ use controller_core::position::FilterState;
 use host_sim::controller::Controller;
 use host_sim::flight::law;
 use host_sim::rivals::continuous::Continuous;
-use host_sim::rivals::half_turn::{Course, LIKE_TABLE_1, Trial};
 use host_sim::rivals::memoryless::Memoryless;
 use host_sim::rivals::pilot::{RivalPilot, model};
 use host_sim::rivals::quaternion_feedback::QuaternionFeedback;
@@ -16,6 +15,7 @@ use host_sim::rivals::rival::Rival;
 use nalgebra::Quaternion;
 use scenario::Scenario;
 use std::error::Error;
+use verification::half_turn::{Course, LIKE_TABLE_1, Trial};
 
 /// Unwinding and chattering.
 pub fn claim(claims: &mut Claims, paper: &Scenario) -> Result<([Course; 2], [Course; 2]), Box<dyn Error>> {

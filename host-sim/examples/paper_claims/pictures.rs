@@ -3,9 +3,9 @@
 use crate::section_six::SectionSix;
 use host_sim::plots::canvas::draw;
 use host_sim::plots::panel::{BLUE, Bound, Curve, INK, Line, Panel, Scale, VERMILION};
-use host_sim::rivals::half_turn::Course;
 use plotters::prelude::*;
 use std::error::Error;
+use verification::half_turn::Course;
 
 fn curve(label: &str, color: RGBColor, line: Line, points: Vec<(f64, f64)>) -> Curve {
     Curve { label: label.to_owned(), color, line, width: if line == Line::Dashed { 2 } else { 3 }, points }

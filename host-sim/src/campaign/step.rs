@@ -28,12 +28,6 @@ pub fn longest(scenario: &Scenario) -> Scenario {
     fitting.unwrap_or_else(|| scenario.clone())
 }
 
-/// `scenario` with half its plant step.
-#[must_use]
-pub fn halved(scenario: &Scenario) -> Option<Scenario> {
-    divided(scenario, scenario.timing.steps_per_tick.checked_mul(2)?)
-}
-
 /// `scenario` with a plant step of so many seconds.
 ///
 /// # Errors

@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 use scenario::Scenario;
+use scenario::number::{Number, array};
 use scenario::reality::sensors::VelocitySource;
 use scenario::reference::ReferenceKind;
 
@@ -24,14 +25,17 @@ pub fn above(text: &str, thrown: &Scenario, seed: u64, number: u64) -> String {
 fn start(thrown: &Scenario) -> Vec<String> {
     let initial = &thrown.initial;
     let q = &initial.attitude;
-    let mut lines =
-        vec![format!("duration = {:?} s, plant.step = {:?} s", thrown.timing.duration(), thrown.timing.step())];
+    let mut lines = vec![format!(
+        "duration = {} s, plant.step = {} s",
+        Number(thrown.timing.duration()),
+        Number(thrown.timing.step())
+    )];
     if let ReferenceKind::Hover { position, heading } = &thrown.reference {
-        lines.push(format!("reference: hover at {} m, heading {heading:?} rad", vector(position)));
+        lines.push(format!("reference: hover at {} m, heading {} rad", vector(position), Number(*heading)));
     }
     lines.push(format!("initial.position = {} m", vector(&initial.position)));
     lines.push(format!("initial.velocity = {} m/s", vector(&initial.velocity)));
-    lines.push(format!("initial attitude, w x y z = [{:?}, {:?}, {:?}, {:?}]", q.w, q.i, q.j, q.k));
+    lines.push(format!("initial attitude, w x y z = {}", array(&[q.w, q.i, q.j, q.k])));
     lines.push(format!("initial.angular_velocity = {} rad/s", vector(&initial.angular_velocity)));
     lines
 }
@@ -44,11 +48,11 @@ fn air(thrown: &Scenario) -> Vec<String> {
         lines.push(format!("drag.linear = {} N s/m", vector(&drag.linear)));
     }
     if let Some(gust) = &wind.gust {
-        lines.push(format!("wind.gust: a step of {} m/s at {:?} s", vector(&gust.velocity), gust.start));
+        lines.push(format!("wind.gust: a step of {} m/s at {} s", vector(&gust.velocity), Number(gust.start)));
     }
     if let Some(turbulence) = &wind.turbulence {
-        let (strength, seed) = (turbulence.wind_at_20_feet, turbulence.seed);
-        lines.push(format!("wind.turbulence: Dryden's, {strength:?} m/s at 20 feet, seed {seed}"));
+        let (strength, seed) = (Number(turbulence.wind_at_20_feet), turbulence.seed);
+        lines.push(format!("wind.turbulence: Dryden's, {strength} m/s at 20 feet, seed {seed}"));
     }
     lines
 }
@@ -60,17 +64,17 @@ fn senses(thrown: &Scenario) -> Vec<String> {
         return vec![format!("estimator.seed = {}", estimator.seed)];
     }
     let Some(sensors) = &reality.sensors else { return vec!["no noise".to_owned()] };
-    let delay = sensors.delay_ticks as f64 * thrown.timing.period();
+    let delay = Number(sensors.delay_ticks as f64 * thrown.timing.period());
     let velocity = match sensors.velocity {
         VelocitySource::Exact { .. } => "exact",
         VelocitySource::AlphaBeta { .. } => "alpha-beta",
         VelocitySource::Observer { .. } => "observer",
     };
     vec![
-        format!("sensors.gyro_noise = {:?} rad/s, sensors.velocity = \"{velocity}\"", sensors.gyro_noise),
-        format!("sensors.position_noise = {:?} m", sensors.position_noise),
-        format!("sensors.attitude_noise_deg = {:?}", sensors.attitude_noise.to_degrees()),
-        format!("sensors.delay = {delay:?} s, sensors.seed = {}", sensors.seed),
+        format!("sensors.gyro_noise = {} rad/s, sensors.velocity = \"{velocity}\"", Number(sensors.gyro_noise)),
+        format!("sensors.position_noise = {} m", Number(sensors.position_noise)),
+        format!("sensors.attitude_noise_deg = {}", Number(sensors.attitude_noise.to_degrees())),
+        format!("sensors.delay = {delay} s, sensors.seed = {}", sensors.seed),
     ]
 }
 
@@ -78,14 +82,18 @@ fn senses(thrown: &Scenario) -> Vec<String> {
 fn truth(thrown: &Scenario) -> Vec<String> {
     let Some(truth) = &thrown.reality.truth else { return vec![] };
     vec![
-        format!("truth.mass = {:?} kg, truth.inertia = {} kg m^2", truth.mass, vector(&truth.inertia)),
+        format!("truth.mass = {} kg, truth.inertia = {} kg m^2", Number(truth.mass), vector(&truth.inertia)),
         format!("truth.centre_of_mass = {} m", vector(&truth.centre_of_mass)),
-        format!("truth.thrust_scale = {:?}, truth.rotor_scales = {:?}", truth.thrust_scale, truth.rotor_scales),
+        format!(
+            "truth.thrust_scale = {}, truth.rotor_scales = {}",
+            Number(truth.thrust_scale),
+            array(&truth.rotor_scales)
+        ),
     ]
 }
 
 fn vector(v: &Vector3<f64>) -> String {
-    format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+    array(v.as_slice())
 }
 
 #[cfg(test)]

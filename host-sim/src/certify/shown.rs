@@ -3,6 +3,7 @@
 use controller_core::configuration::{LawParameters, PaperLaw};
 use scenario::Scenario;
 use scenario::constants::written;
+use scenario::number::Number;
 
 /// The sections with every constant that `scenario` flies with.
 #[must_use]
@@ -11,8 +12,8 @@ pub fn constants(scenario: &Scenario) -> String {
     let (law, constants) = match configuration.law() {
         LawParameters::Extended(law) => ("extended", written(law.parameters.entries())),
         LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
-            let floor =
-                thrust_floor.map_or(String::new(), |floor| format!("# with [control] thrust_floor = {floor:?}\n"));
+            let floor = thrust_floor
+                .map_or(String::new(), |floor| format!("# with [control] thrust_floor = {}\n", Number(floor)));
             ("paper", floor + &written(gains.entries()))
         }
     };

@@ -24,6 +24,7 @@ use super::kind::Kind;
 use super::pilot::model;
 use crate::flier::{LawChoice, OURS};
 use scenario::Scenario;
+use scenario::number::{self, Number};
 use std::fmt::Write;
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
@@ -137,7 +138,7 @@ impl Set {
     #[must_use]
     pub fn written(&self, scenario: &Scenario, origin: &str) -> String {
         // A name with a dot would be a table within a table.
-        let name = &if scenario.name.contains('.') { format!("{:?}", scenario.name) } else { scenario.name.clone() };
+        let name = &if scenario.name.contains('.') { format!("\"{}\"", scenario.name) } else { scenario.name.clone() };
         let lines: String = vehicle(scenario).iter().map(|(key, values)| line(key, values) + "\n").collect();
         let mut text = format!("# {origin}\n[{name}]\n{lines}");
         for (kind, gains, cost) in &self.rivals {
@@ -206,13 +207,13 @@ fn is_said(found: Option<&Item>, key: &str, values: &[f32]) -> bool {
 /// As a line of a table.
 fn line(key: &str, values: &[f32]) -> String {
     match values {
-        [value] => format!("{key} = {value:?}"),
-        several => format!("{key} = {several:?}"),
+        [value] => format!("{key} = {}", Number(*value)),
+        several => format!("{key} = {}", number::array(several)),
     }
 }
 
 /// Five significant digits, as a float of TOML.
 fn rounded(value: f64) -> String {
     let short: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    format!("{short:?}")
+    Number(short).to_string()
 }

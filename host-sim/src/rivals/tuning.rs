@@ -69,7 +69,7 @@ impl<'a> RivalJudge<'a> {
         let mut shown = Vec::new();
         for (flown, model) in MODELS.iter().enumerate() {
             let start = |real: &Scenario| self.kind.flight(self.scenario, real, &gains);
-            let lost = ((MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model:?}"));
+            let lost = ((MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model}"));
             shown.push(show(self.scenario, start, model, RECOVERY).ok_or(lost)?);
         }
         verdict.take(&shown);

@@ -197,7 +197,7 @@ impl Judge {
         let recovery = self.requirements.recovery;
         let mut shown = Vec::new();
         for model in &MODELS {
-            let lost = (1, 1e3, format!("a trial was not flown to its end: {model:?}"));
+            let lost = (1, 1e3, format!("a trial was not flown to its end: {model}"));
             let start = |real: &Scenario| Flight::certified(real, certified).ok();
             shown.push(show(scenario, start, model, recovery).ok_or(lost)?);
         }

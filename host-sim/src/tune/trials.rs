@@ -28,6 +28,7 @@ use scenario::reality::sensors::{Sensors, VelocitySource};
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 use scenario::timing::Timing;
+use std::fmt;
 use std::sync::Arc;
 
 /// The distance that counts as arrived, m.
@@ -67,6 +68,14 @@ pub struct Model {
     pub lag: f64,
     /// Further delay, s, rounded to plant steps.
     pub delay: f64,
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mass, thrust, centre_of_mass: [x, y], lag, delay } = self;
+        write!(f, "mass times {mass}, thrust times {thrust}, centre of mass at [{x}, {y}] m, ")?;
+        write!(f, "lag times {lag}, {delay} s of further delay")
+    }
 }
 
 /// The models a cost is averaged over: as the file says; and mass and thrust 10 % off, the centre of mass 5 mm, half as

@@ -24,7 +24,7 @@ fn the_longest_step_that_fits_is_taken() {
     let mut spinning = vehicle("paper", "");
     spinning.campaign.ranges.rate = 150.0;
     assert_eq!(taken(&spinning), (3, 0), "half a radian a step");
-    let half = halved(&longest(&vehicle("study", ""))).unwrap();
+    let half = of(&vehicle("study", ""), 2.5e-3).unwrap();
     assert_eq!((half.timing.steps_per_tick, half.delay_steps), (4, 4));
 }
 

@@ -4,10 +4,10 @@
 //! and its air: steady wind, turbulence, a gust. It flies the manoeuvre of `scenarios/identify.toml` on the estimator,
 //! with a BMI088 and poses 20 ms late, and leaves what `fly` leaves: log.csv.
 
-use super::bench::{Bench, Measured};
-use super::quantities::Quantities;
-use crate::flight::Flight;
-use crate::log;
+use host_sim::flight::Flight;
+use host_sim::identify::bench::{Bench, Measured};
+use host_sim::identify::quantities::{Quantities, Quantity};
+use host_sim::log;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -15,7 +15,7 @@ use scenario::Scenario;
 use toml_edit::{Array, DocumentMut, Table, value};
 
 /// The manoeuvre.
-pub const MANOEUVRE: &str = include_str!("../../../scenarios/identify.toml");
+pub const MANOEUVRE: &str = include_str!("../../scenarios/identify.toml");
 
 /// How much younger the body rates are that the law gets at a tick than a scenario with an estimator counts at most,
 /// s: the last sample of the IMU came now, not a millisecond ago.
@@ -117,7 +117,7 @@ impl Trial {
 
     /// The name of each quantity, its estimate, and its true value.
     #[must_use]
-    pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, super::quantities::Quantity, f64)> {
+    pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, Quantity, f64)> {
         let t = &self.truths;
         let mut truths = vec![
             ("mass", told.mass, t.mass),

@@ -11,8 +11,6 @@
 //! seconds. What an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or
 //! changes in what they say. SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
 
-use crate::instruments::{Felt, Instruments, SAMPLE};
-use crate::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::configuration::Configuration;
@@ -23,6 +21,8 @@ use estimation::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
 use firmware::hardware::{MOTORS, MotorCommand};
 use firmware::outputs::Outputs;
 use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, PERIOD, Pilot, Pose, Stamped};
+use host_sim::instruments::{Felt, Instruments, SAMPLE};
+use host_sim::reality::RealVehicle;
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};

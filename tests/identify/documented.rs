@@ -1,15 +1,15 @@
 //! The flight and the bench of docs/identify.md: what they tell, and what they are refused for.
 
-use super::super::bench::{self, Bench};
-use super::super::flight_log::FlightLog;
-use super::super::quantities::Quantities;
-use super::super::trials::{MANOEUVRE, fly};
-use super::super::{identify, telling};
 use super::parse;
+use host_sim::identify::bench::{self, Bench};
+use host_sim::identify::flight_log::FlightLog;
+use host_sim::identify::quantities::Quantities;
+use host_sim::identify::{identify, telling};
 use rayon::prelude::*;
 use std::sync::LazyLock;
+use verification::identify_trials::{MANOEUVRE, fly};
 
-const PAGE: &str = include_str!("../../../../docs/identify.md");
+const PAGE: &str = include_str!("../../docs/identify.md");
 
 static FLOWN: LazyLock<FlightLog> = LazyLock::new(|| FlightLog::from_csv(&fly(MANOEUVRE).unwrap()).unwrap());
 

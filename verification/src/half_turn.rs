@@ -8,11 +8,11 @@
 //!   makes the law push back to half a turn: the worst noise of that size.
 //! - [`Trial::noisy`]: the same, but the error is drawn anew each tick, normal.
 
-use crate::controller::Controller;
-use crate::vehicle::SimulatedVehicle;
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
+use host_sim::controller::Controller;
+use host_sim::vehicle::SimulatedVehicle;
 use nalgebra::{Quaternion, Vector3};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -123,55 +123,6 @@ fn about_x(angle: f64) -> Quaternion<f64> {
     Quaternion::new(cos, sin, 0.0, 0.0)
 }
 
-/// Gains of [quaternion feedback](super::quaternion_feedback) that push as hard at half a turn as Table I, and damp as
+/// Gains of [quaternion feedback](host_sim::rivals::quaternion_feedback) that push as hard at half a turn as Table I, and damp as
 /// well.
 pub const LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flight::law;
-    use crate::rivals::continuous::Continuous;
-    use crate::rivals::memoryless::Memoryless;
-    use crate::rivals::pilot::{RivalPilot, model};
-    use crate::rivals::quaternion_feedback::QuaternionFeedback;
-    use crate::rivals::rival::Rival;
-    use controller_core::controller::Memory;
-    use controller_core::law::Law;
-    use controller_core::path_lifting::Lift;
-    use controller_core::position::FilterState;
-
-    fn rival(scenario: &Scenario, build: impl FnOnce(QuaternionFeedback) -> Box<dyn Rival>) -> Controller {
-        let feedback = QuaternionFeedback::new(model(scenario), LIKE_TABLE_1);
-        Controller::Rival(Box::new(RivalPilot::new(scenario, build(feedback))))
-    }
-
-    #[test]
-    fn the_continuous_law_turns_the_long_way_and_ours_does_not() {
-        let paper = Scenario::paper().unwrap();
-        let trial = Trial::unwinding();
-        let long = trial.fly(&paper, rival(&paper, |law| Box::new(Continuous::after_a_turn(law)))).unwrap();
-        let short = trial.fly(&paper, rival(&paper, |law| Box::new(Continuous::new(law)))).unwrap();
-        // Ours in the worst memory: that of the other side of the sphere.
-        let mut wound = law(&paper).unwrap();
-        if let Law::Paper(controller) = &mut wound {
-            let memory = Quaternion::new(-1.0, 0.0, 0.0, 0.0);
-            controller.restore(Memory { filter: FilterState::ZERO, lift: Some(Lift { memory, sign: 1.0 }) });
-        }
-        let ours = trial.fly(&paper, Controller::Ours(wound)).unwrap();
-        println!("{:.1} {:.1} {:.1}", long.turned.to_degrees(), short.turned.to_degrees(), ours.turned.to_degrees());
-        assert!(long.turned.to_degrees() > 320.0);
-        assert!(short.turned.to_degrees() < 90.0 && ours.turned.to_degrees() < 90.0);
-    }
-
-    #[test]
-    fn noise_holds_the_memoryless_law_at_half_a_turn_and_ours_leaves() {
-        let paper = Scenario::paper().unwrap();
-        let trial = Trial::held(2_f64.to_radians());
-        let held = trial.fly(&paper, rival(&paper, |law| Box::new(Memoryless(law)))).unwrap();
-        let ours = trial.fly(&paper, Controller::Ours(law(&paper).unwrap())).unwrap();
-        println!("{} {} {} {}", held.left_after, held.reversals, ours.left_after, ours.reversals);
-        assert!(held.left_after >= 5.0 && held.reversals > 50, "{} {}", held.left_after, held.reversals);
-        assert!(ours.left_after < 0.5 && ours.reversals < 5, "{} {}", ours.left_after, ours.reversals);
-    }
-}
