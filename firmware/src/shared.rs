@@ -15,6 +15,7 @@
 //! | radio | [`Shared::ground_station`], [`Shared::setpoint`], [`Shared::requests`] | control | as the link's |
 //! | control | [`Shared::answers`] | link (COMMAND_ACK) | until sent |
 //! | control | [`Shared::commander`]: who armed | link | while it is armed |
+//! | control | [`Shared::flier`]: whose setpoints are flown | link | a tick |
 //! | link | [`Shared::origin`] | link, its other half | until another comes |
 //! | status | [`Shared::voltage`] | control, link | 1 s |
 //! | control | [`Shared::report`] | link, status | one report a tick |
@@ -139,6 +140,9 @@ pub struct Shared<M: RawMutex> {
     /// Raised by a disarm command with force, taken by control; no full queue can lose it. Raise it with
     /// [`Self::request_disarm`].
     pub disarm: Flag,
+    /// Whose setpoints are flown, or will be once they come, by system and component; none where nobody on the link has
+    /// asked for that.
+    pub flier: Latest<M, Option<(u8, u8)>>,
     /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
     pub commander: Latest<M, Option<(u8, u8)>>,
     /// Answers to requests. Put them in with [`Self::answer`].
@@ -204,6 +208,7 @@ impl<M: RawMutex> Shared<M> {
             sticks: Latest::new(),
             disarm: Flag::new(),
             commander: Latest::new(),
+            flier: Latest::new(),
             answers: Queue::new(),
             origin: Latest::new(),
             voltage: Latest::new(),
@@ -239,10 +244,15 @@ impl<M: RawMutex> Shared<M> {
         self.lost_increments.load(Ordering::Relaxed)
     }
 
-    /// Asks control for something, in place of what the link, or the radio, asked for of that kind: that is answered.
+    /// Asks control for something, in place of what the link, or the radio, asked for of that kind. That is answered:
+    /// as this is, if it is the same.
     pub fn request(&self, asked: Asked) {
-        if let Some(before) = self.requests.put(asked) {
-            self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+        let Some(before) = self.requests.put(asked) else { return };
+        match (before.order, asked.order) {
+            (Some(order), Some(of)) if (before.request, before.setpoints) == (asked.request, asked.setpoints) => {
+                self.reply(Reply::Likewise { order, of });
+            }
+            _ => self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
         }
     }
 
@@ -267,12 +277,10 @@ impl<M: RawMutex> Shared<M> {
         );
     }
 
-    /// Answers a request as often as it came.
+    /// Answers a request that came by a command.
     fn acknowledge(&self, asked: &Asked, result: MavResult) {
         let Some(order) = asked.order else { return };
-        for _ in 0..asked.times {
-            let _ = self.answers.put(Reply::Command(order.answered(result)));
-        }
+        let _ = self.answers.put(Reply::Command(order.answered(result)));
         self.outgoing.signal(());
     }
 

@@ -176,6 +176,7 @@ impl<'m> Pilot<'m> {
             is_airborne: self.is_airborne(),
             may_fall,
             setpoint,
+            wants_setpoints: self.mode == Mode::Flying || self.wanted_since.is_some(),
             estimated: estimate.state,
             health: estimate.health,
             pose: estimate.pose,
