@@ -115,9 +115,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
         match asked {
             Some(Asked { request: Request::FlySetpoints, setpoints, .. }) if outcome.answer == Some(Ok(())) => {
-                self.shared.flier.put(setpoints, now);
+                self.shared.flier.set(setpoints);
             }
-            _ if !outcome.wants_setpoints => self.shared.flier.put(None, now),
+            _ if !outcome.wants_setpoints => self.shared.flier.set(None),
             _ => {}
         }
         self.tell(&outcome, asked);

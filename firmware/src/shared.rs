@@ -45,6 +45,7 @@
 mod card;
 mod event;
 mod flag;
+mod flier;
 mod lately;
 mod latest;
 mod library;
@@ -56,6 +57,7 @@ mod requests;
 pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
+pub use flier::Flier;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
@@ -142,7 +144,7 @@ pub struct Shared<M: RawMutex> {
     pub disarm: Flag,
     /// Whose setpoints are flown, or will be once they come, by system and component; none where nobody on the link has
     /// asked for that.
-    pub flier: Latest<M, Option<(u8, u8)>>,
+    pub flier: Flier,
     /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
     pub commander: Latest<M, Option<(u8, u8)>>,
     /// Answers to requests. Put them in with [`Self::answer`].
@@ -208,7 +210,7 @@ impl<M: RawMutex> Shared<M> {
             sticks: Latest::new(),
             disarm: Flag::new(),
             commander: Latest::new(),
-            flier: Latest::new(),
+            flier: Flier::new(),
             answers: Queue::new(),
             origin: Latest::new(),
             voltage: Latest::new(),
@@ -249,7 +251,7 @@ impl<M: RawMutex> Shared<M> {
     pub fn request(&self, asked: Asked) {
         let Some(before) = self.requests.put(asked) else { return };
         match (before.order, asked.order) {
-            (Some(order), Some(of)) if (before.request, before.setpoints) == (asked.request, asked.setpoints) => {
+            (Some(order), Some(of)) if requests::is_same(&before, &asked) => {
                 self.reply(Reply::Likewise { order, of });
             }
             _ => self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),

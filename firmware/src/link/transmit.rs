@@ -19,7 +19,6 @@ use crate::shared::{Event, MissionList, Reply, Severity, Shared};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
-use heapless::Deque;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavResult,
@@ -39,12 +38,16 @@ const ANSWERED: usize = 8;
 const OWED: usize = 6;
 
 /// A command that is answered as another is.
+#[derive(Clone, Copy)]
 struct Owed {
     order: Order,
     of: Order,
-    /// How often.
+    /// How often; 0 for a free place.
     times: u8,
 }
+
+/// No command: nobody sends this one.
+const NONE: Order = Order { command: 0, sender: (0, 0), frame: (0, 0) };
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.
@@ -78,9 +81,11 @@ struct Speaker<'a, M: RawMutex> {
     /// Lost events that were told of.
     told: u32,
     /// The last answers to commands, one of each frame.
-    answered: Deque<Acknowledgement, ANSWERED>,
+    answered: [Acknowledgement; ANSWERED],
+    /// Where the next is put, modulo their number.
+    next_answer: usize,
     /// What is answered by one of them, now or once it is there.
-    owed: Deque<Owed, OWED>,
+    owed: [Owed; OWED],
 }
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
@@ -92,8 +97,9 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             download: Download::new(),
             writer: Writer::new(),
             told: 0,
-            answered: Deque::new(),
-            owed: Deque::new(),
+            answered: [const { NONE.answered(MavResult::MAV_RESULT_FAILED) }; _],
+            next_answer: 0,
+            owed: [Owed { order: NONE, of: NONE, times: 0 }; _],
         }
     }
 
@@ -206,11 +212,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Answers a command and remembers what was answered.
     fn acknowledge(&mut self, acknowledgement: Acknowledgement) {
         self.say(&acknowledgement);
-        let order = acknowledgement.order;
-        if let Some(before) = self.answered.iter_mut().find(|before| before.order == order) {
-            *before = acknowledgement;
-        } else {
-            push(&mut self.answered, acknowledgement);
+        let before = self.answered.iter().position(|before| before.order == acknowledgement.order);
+        let place = before.unwrap_or_else(|| {
+            self.next_answer = (self.next_answer + 1) % ANSWERED;
+            self.next_answer
+        });
+        if let Some(place) = self.answered.get_mut(place) {
+            *place = acknowledgement;
         }
     }
 
@@ -219,9 +227,13 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         match reply {
             Reply::Command(acknowledgement) => self.acknowledge(acknowledgement),
             Reply::Likewise { order, of } => {
-                match self.owed.iter_mut().find(|owed| (owed.order, owed.of) == (order, of)) {
-                    Some(owed) => owed.times = owed.times.saturating_add(1),
-                    None => push(&mut self.owed, Owed { order, of, times: 1 }),
+                // The same once more, or else a free place, or that of who asks least.
+                let fits = |owed: &&mut Owed| {
+                    if (owed.order, owed.of) == (order, of) { 0 } else { owed.times.saturating_add(1) }
+                };
+                if let Some(owed) = self.owed.iter_mut().min_by_key(fits) {
+                    let times = if (owed.order, owed.of) == (order, of) { owed.times } else { 0 };
+                    *owed = Owed { order, of, times: times.saturating_add(1) };
                 }
                 return self.owed();
             }
@@ -282,13 +294,4 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     fn parameter(&mut self, name: Name) {
         self.say(&vehicle::parameter(name, self.shared.parameters.get(name)));
     }
-}
-
-/// Puts a value behind the others, in place of the first where there is no room.
-fn push<T, const ROOM: usize>(deque: &mut Deque<T, ROOM>, value: T) {
-    if deque.is_full() {
-        deque.pop_front();
-    }
-    // There is room for it now.
-    let _ = deque.push_back(value);
 }

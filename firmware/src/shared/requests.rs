@@ -7,6 +7,7 @@
 use super::reply::Asked;
 use controller_core::flight::Request;
 use core::cell::RefCell;
+use core::mem::discriminant;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Deque;
@@ -64,6 +65,16 @@ fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
 /// Whether it makes room for others.
 fn is_lesser(asked: &Asked) -> bool {
     asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
+}
+
+/// Whether two requests ask for the same, of those that are asked for again: not points and motors.
+pub(super) fn is_same(one: &Asked, other: &Asked) -> bool {
+    let is_alike = match (&one.request, &other.request) {
+        (Request::TakeOff(one), Request::TakeOff(other)) => one == other,
+        (Request::GoTo(_) | Request::MotorTest(_) | Request::MotorSetting(_), _) => false,
+        (one, other) => discriminant(one) == discriminant(other),
+    };
+    is_alike && one.setpoints == other.setpoints
 }
 
 /// What replaces what.

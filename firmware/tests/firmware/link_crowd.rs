@@ -294,7 +294,7 @@ fn offboard(asker: (u8, u8), streams: &[(u8, u8)]) -> (bool, Vec<f32>, Vec<Strin
         }
     }
     taken.dedup();
-    let flown = shared.flier.get().is_some_and(|flier| flier.value.is_some());
+    let flown = shared.flier.get().is_some();
     (flown, taken, said)
 }
 
@@ -318,7 +318,7 @@ fn nobody_takes_a_flight_by_setpoints_over_by_asking_in_vain() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let flier = Some((255, 190));
-    shared.flier.put(flier, 0);
+    shared.flier.set(flier);
     // Somebody else streams, and asks; until control has granted it nothing changes.
     fed.bytes(&from(9, 9, 1, &target(9.0)), 1_000);
     fed.bytes(&from(9, 9, 2, &mode(6.0, 0.0)), 2_000);

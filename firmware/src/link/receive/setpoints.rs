@@ -6,7 +6,7 @@
 
 use super::Receiver;
 use crate::link::frame::Frame;
-use crate::link::setpoint::{Here, setpoint};
+use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
 use crate::radio::SILENCE as RADIO_SILENCE;
 use controller_core::flight::{SETPOINT_AGE_MAX, Stamped};
 use controller_core::governor::Setpoint;
@@ -42,14 +42,11 @@ impl Default for Setpoints {
 impl Setpoints {
     /// Hears a sender, in place of the one that has been silent for longest.
     fn hear(&mut self, sender: Sender, now: u64) {
-        if let Some(place) = self.senders.iter_mut().min_by_key(|known| (known.value != sender, known.time)) {
+        if let Some(place) =
+            self.senders.iter_mut().min_by_key(|known| if known.value == sender { 0 } else { known.time })
+        {
             *place = Stamped { value: sender, time: now };
         }
-    }
-
-    /// Who sends at `now`, us.
-    fn senders(&self, now: u64) -> impl Iterator<Item = Sender> {
-        self.senders.iter().filter(move |sender| counts(sender, now)).map(|sender| sender.value)
     }
 }
 
@@ -59,43 +56,35 @@ fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
-            return;
+        if self.is_addressed(message.target_system, message.target_component)
+            && let Err(refusal) = self.take_setpoint(frame, message)
+        {
+            self.refused();
+            self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
         }
-        let state = self.shared.report.get().and_then(|report| report.value.state);
-        let value = match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
-            Ok(value) => value,
-            Err(refusal) => {
-                self.refused();
-                return self.setpoint_refused.warn(
-                    self.shared,
-                    frame.time,
-                    format_args!("Setpoint refused: {refusal}"),
-                );
-            }
-        };
-        let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
-        self.setpoints.hear(sender, time);
-        let words = if self.shared.sticks.get().is_some_and(|sticks| sticks.value) {
-            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
-            self.setpoints.kept = Some((sender, Stamped { value, time }));
-            "Setpoint refused: the sticks fly"
-        } else if self.is_anothers(sender, time) {
-            "Setpoint refused: another sender's are flown"
-        } else {
-            self.setpoints.taken = Stamped { value: sender, time };
-            return self.shared.setpoint.put(value, time);
-        };
-        self.refused();
-        self.setpoint_refused.warn(self.shared, time, words);
     }
 
-    /// Whether setpoints are somebody else's to send.
-    fn is_anothers(&self, sender: Sender, now: u64) -> bool {
-        match self.shared.flier.get().and_then(|flier| flier.value) {
-            Some(flier) => flier != sender,
-            None => self.setpoints.taken.value != sender && counts(&self.setpoints.taken, now),
+    fn take_setpoint(
+        &mut self,
+        frame: &Frame<'_>,
+        message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
+    ) -> Result<(), SetpointRefusal> {
+        let state = self.shared.report.get().and_then(|report| report.value.state);
+        let value = setpoint(message, state.as_ref().and_then(Here::of).as_ref())?;
+        let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
+        self.setpoints.hear(sender, time);
+        if self.shared.sticks.get().is_some_and(|sticks| sticks.value) {
+            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
+            self.setpoints.kept = Some((sender, Stamped { value, time }));
+            return Err(SetpointRefusal::Sticks);
         }
+        let taken = Some(self.setpoints.taken).filter(|taken| counts(taken, time)).map(|taken| taken.value);
+        if self.shared.flier.get().or(taken).is_some_and(|flier| flier != sender) {
+            return Err(SetpointRefusal::Others);
+        }
+        self.setpoints.taken = Stamped { value: sender, time };
+        self.shared.setpoint.put(value, time);
+        Ok(())
     }
 
     /// Somebody asks to fly setpoints at `now`, us: whose they will be. Sticks that have fallen silent stand back, and
@@ -119,12 +108,18 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// Whose setpoints are flown if this sender asks for it; of who sends none yet its own, which may come.
     fn whose(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
-        let mut senders = self.setpoints.senders(now);
-        match (senders.next(), senders.next()) {
-            _ if self.setpoints.senders(now).any(|sender| sender == asker) => Ok(asker),
-            (None, _) => self.unflown(now).map_or(Ok(asker), Err),
-            (Some(only), None) if only.0 == asker.0 => Ok(only),
-            _ => Err("another sender's setpoints"),
+        let mut only = None;
+        for Stamped { value, .. } in self.setpoints.senders.iter().filter(|sender| counts(sender, now)) {
+            if *value == asker {
+                return Ok(asker);
+            }
+            // Of two neither is.
+            only = Some(if only.is_none() { *value } else { NOBODY.value });
+        }
+        match only {
+            None => self.unflown(now).map_or(Ok(asker), Err),
+            Some(only) if only.0 == asker.0 => Ok(only),
+            Some(_) => Err("another sender's setpoints"),
         }
     }
 }
