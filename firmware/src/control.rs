@@ -18,7 +18,7 @@ use crate::parameters::table::Name;
 use crate::shared::{Asked, Event, INCREMENTS, POSES, Queue, Report, Shared, Timing};
 use controller_core::error::InputError;
 use controller_core::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Request, Transition};
+use controller_core::flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
@@ -113,12 +113,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander.put(order.map(|order| order.sender), now);
         }
-        match asked {
-            Some(Asked { request: Request::FlySetpoints, setpoints, .. }) if outcome.answer == Some(Ok(())) => {
-                self.shared.flier.set(setpoints);
-            }
-            _ if !outcome.wants_setpoints => self.shared.flier.set(None),
-            _ => {}
+        if !outcome.wants_setpoints {
+            self.shared.flier.set(None);
         }
         self.tell(&outcome, asked);
         if has_armed && self.shared.pose_delay_unknown.is_raised() {

@@ -67,12 +67,13 @@ pub use requests::{REQUESTS, Requests};
 
 use self::lately::Lately;
 use crate::last_words::LastWords;
+use crate::link::acknowledgement::Order;
 use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
 use controller_core::estimator::{Increment, PoseMeasurement};
-use controller_core::flight::{ImuSample, Mode, Refusal, Stamped};
+use controller_core::flight::{ImuSample, Mode, Refusal, Request, Stamped};
 use controller_core::governor::Setpoint;
 use controller_core::imu::ImuFault;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -249,12 +250,10 @@ impl<M: RawMutex> Shared<M> {
     /// Asks control for something, in place of what the link, or the radio, asked for of that kind. That is answered:
     /// as this is, if it is the same.
     pub fn request(&self, asked: Asked) {
-        let Some(before) = self.requests.put(asked) else { return };
-        match (before.order, asked.order) {
-            (Some(order), Some(of)) if requests::is_same(&before, &asked) => {
-                self.reply(Reply::Likewise { order, of });
-            }
-            _ => self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
+        match (self.requests.put(asked), asked.order) {
+            (Some((order, true)), Some(of)) => self.reply(Reply::Likewise { order, of: of.frame }),
+            (Some((order, _)), _) => self.acknowledge(order, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
+            _ => {}
         }
     }
 
@@ -267,21 +266,24 @@ impl<M: RawMutex> Shared<M> {
         self.disarm.raise();
     }
 
-    /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its
+    /// Answers a request that came by a command, and announces a refusal; setpoints that are granted are flown from now
+    /// on. An answer that finds no room is dropped: its
     /// sender asks again for want of one.
     pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
-        if let Err(refusal) = result {
-            self.announce(Event::Refused(refusal));
+        match result {
+            Err(refusal) => self.announce(Event::Refused(refusal)),
+            Ok(()) if matches!(asked.request, Request::FlySetpoints) => self.flier.set(asked.setpoints),
+            Ok(()) => {}
         }
+        let Some(order) = asked.order else { return };
         self.acknowledge(
-            asked,
+            order,
             if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED },
         );
     }
 
-    /// Answers a request that came by a command.
-    fn acknowledge(&self, asked: &Asked, result: MavResult) {
-        let Some(order) = asked.order else { return };
+    /// Answers a command.
+    fn acknowledge(&self, order: Order, result: MavResult) {
         let _ = self.answers.put(Reply::Command(order.answered(result)));
         self.outgoing.signal(());
     }

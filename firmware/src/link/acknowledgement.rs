@@ -15,15 +15,16 @@ pub struct Order {
     pub command: u16,
     /// Who sent it: system and component.
     pub sender: (u8, u8),
-    /// In which frame: its sequence number and checksum.
-    pub frame: (u8, u16),
+    /// In which frame: its system, its sequence number, and its checksum over all of it.
+    pub frame: u32,
 }
 
 impl Order {
     /// The one in a frame.
     pub(super) const fn of(command: u16, frame: &Frame<'_>) -> Self {
         let Frame { header: Header { system, component, sequence }, checksum, .. } = *frame;
-        Self { command, sender: (system, component), frame: (sequence, checksum) }
+        let [high, low] = checksum.to_be_bytes();
+        Self { command, sender: (system, component), frame: u32::from_be_bytes([system, sequence, high, low]) }
     }
 
     /// The answer to it.
@@ -83,7 +84,7 @@ impl MessageData for Acknowledgement {
         let COMMAND_ACK_DATA { result, .. } = COMMAND_ACK_DATA::deser(version, &[low, high, byte(2)])?;
         let command = u16::from_le_bytes([byte(0), byte(1)]);
         // Which frame, an answer does not say.
-        let order = Order { command, sender: (byte(8), byte(9)), frame: (0, 0) };
+        let order = Order { command, sender: (byte(8), byte(9)), frame: 0 };
         Ok(order.answered(result))
     }
 }

@@ -41,13 +41,13 @@ const OWED: usize = 6;
 #[derive(Clone, Copy)]
 struct Owed {
     order: Order,
-    of: Order,
+    of: u32,
     /// How often; 0 for a free place.
     times: u8,
 }
 
 /// No command: nobody sends this one.
-const NONE: Order = Order { command: 0, sender: (0, 0), frame: (0, 0) };
+const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.
@@ -97,9 +97,9 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             download: Download::new(),
             writer: Writer::new(),
             told: 0,
-            answered: [const { NONE.answered(MavResult::MAV_RESULT_FAILED) }; _],
+            answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
             next_answer: 0,
-            owed: [Owed { order: NONE, of: NONE, times: 0 }; _],
+            owed: [Owed { order: NONE, of: 0, times: 0 }; _],
         }
     }
 
@@ -202,7 +202,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     fn owed(&mut self) -> bool {
         let answered = &self.answered;
         let found = self.owed.iter_mut().filter(|owed| owed.times > 0).find_map(|owed| {
-            let answer = answered.iter().find(|answer| answer.order == owed.of)?;
+            let answer = answered.iter().find(|answer| answer.order.frame == owed.of)?;
             owed.times -= 1;
             Some(owed.order.answered(answer.result))
         });
@@ -212,7 +212,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Answers a command and remembers what was answered.
     fn acknowledge(&mut self, acknowledgement: Acknowledgement) {
         self.say(&acknowledgement);
-        let before = self.answered.iter().position(|before| before.order == acknowledgement.order);
+        let before = self.answered.iter().position(|before| before.order.frame == acknowledgement.order.frame);
         let place = before.unwrap_or_else(|| {
             self.next_answer = (self.next_answer + 1) % ANSWERED;
             self.next_answer
@@ -227,12 +227,12 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         match reply {
             Reply::Command(acknowledgement) => self.acknowledge(acknowledgement),
             Reply::Likewise { order, of } => {
+                let is_same = |owed: &Owed| (owed.order.frame, owed.of) == (order.frame, of);
                 // The same once more, or else a free place, or that of who asks least.
-                let fits = |owed: &&mut Owed| {
-                    if (owed.order, owed.of) == (order, of) { 0 } else { owed.times.saturating_add(1) }
-                };
-                if let Some(owed) = self.owed.iter_mut().min_by_key(fits) {
-                    let times = if (owed.order, owed.of) == (order, of) { owed.times } else { 0 };
+                let place =
+                    self.owed.iter_mut().min_by_key(|owed| if is_same(owed) { 0 } else { 1 + u16::from(owed.times) });
+                if let Some(owed) = place {
+                    let times = if is_same(owed) { owed.times } else { 0 };
                     *owed = Owed { order, of, times: times.saturating_add(1) };
                 }
                 return self.owed();

@@ -57,8 +57,8 @@ pub enum Reply {
     Likewise {
         /// What is answered.
         order: Order,
-        /// And by whose answer.
-        of: Order,
+        /// And by whose answer: that to this frame, as [`Order::frame`] has it.
+        of: u32,
     },
     /// PING, sent back.
     Ping(Ping),

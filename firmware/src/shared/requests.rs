@@ -5,6 +5,7 @@
 //! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
+use crate::link::acknowledgement::Order;
 use controller_core::flight::Request;
 use core::cell::RefCell;
 use core::mem::discriminant;
@@ -26,8 +27,8 @@ impl<M: RawMutex> Requests<M> {
     }
 
     /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no
-    /// room, to be answered.
-    pub(super) fn put(&self, asked: Asked) -> Option<Asked> {
+    /// room: the command by which that came, to be answered, and whether it was the same.
+    pub(super) fn put(&self, asked: Asked) -> Option<(Order, bool)> {
         let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {
             let mut waiting = waiting.try_borrow_mut().ok()?;
@@ -36,7 +37,7 @@ impl<M: RawMutex> Requests<M> {
             let before = place.and_then(|place| remove(&mut waiting, place));
             // There is room now.
             let _ = waiting.push_back(asked);
-            before
+            before.and_then(|before| Some((before.order?, is_same(&before, &asked))))
         })
     }
 
@@ -68,7 +69,7 @@ fn is_lesser(asked: &Asked) -> bool {
 }
 
 /// Whether two requests ask for the same, of those that are asked for again: not points and motors.
-pub(super) fn is_same(one: &Asked, other: &Asked) -> bool {
+fn is_same(one: &Asked, other: &Asked) -> bool {
     let is_alike = match (&one.request, &other.request) {
         (Request::TakeOff(one), Request::TakeOff(other)) => one == other,
         (Request::GoTo(_) | Request::MotorTest(_) | Request::MotorSetting(_), _) => false,

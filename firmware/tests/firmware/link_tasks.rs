@@ -195,7 +195,7 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    let by = |command: u16, sender: (u8, u8)| Order { command, sender, frame: (0, 0) };
+    let by = |command: u16, sender: (u8, u8)| Order { command, sender, frame: 0 };
     let asked = |sender| Asked { request: Request::Arm, order: Some(by(command as u16, sender)), setpoints: None };
     shared.answer(&asked((255, 190)), Ok(()));
     shared.answer(&asked((7, 1)), Err(Refusal::PosesUnsettled));

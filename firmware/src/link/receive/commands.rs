@@ -44,34 +44,41 @@ impl<M: RawMutex> Receiver<'_, M> {
     where
         for<'m> Call: From<&'m D>,
     {
-        let Some(message) = message else {
-            let unknown = command_of(frame.message, frame.payload);
-            match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
-                Some((command, _)) => {
-                    let order = Order::of(command, frame);
-                    self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
-                }
-                None => self.refused(),
-            }
-            return;
-        };
+        let Some(message) = message else { return self.unknown(frame) };
         let (system, component) = message.target();
-        if !self.is_addressed(system, component) {
-            return;
+        if self.is_addressed(system, component) {
+            self.call(frame, &Call::from(message));
         }
-        let call = Call::from(message);
+    }
+
+    /// Answers a command that the dialect does not have.
+    #[inline(never)]
+    fn unknown(&mut self, frame: &Frame<'_>) {
+        let unknown = command_of(frame.message, frame.payload);
+        match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
+            Some((command, _)) => {
+                let order = Order::of(command, frame);
+                self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
+            }
+            None => self.refused(),
+        }
+    }
+
+    /// Acts on a command once, and has it answered.
+    #[inline(never)]
+    fn call(&mut self, frame: &Frame<'_>, call: &Call) {
         let (order, armed) = (Order::of(call.command as u16, frame), self.shared.commander.get());
         let delivery = self.repetitions.look(frame, order.command);
         if delivery != Delivery::New {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             self.shared.reply(match delivery {
                 Delivery::Overtaken => Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED)),
-                _ => Reply::Likewise { order, of: order },
+                _ => Reply::Likewise { order, of: order.frame },
             });
             return;
         }
-        let result = if !self.shared.is_armed() || self.commander.may(&call, order.sender, armed, frame.time) {
-            match self.act(&call, order, frame.time) {
+        let result = if !self.shared.is_armed() || self.commander.may(call, order.sender, armed, frame.time) {
+            match self.act(call, order, frame.time) {
                 Some(result) => result,
                 None => return,
             }

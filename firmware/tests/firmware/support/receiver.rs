@@ -68,12 +68,12 @@ pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
 
 /// The same, as whoever answers it knows it: the ground station's, in [`whichever`] frame.
 pub const fn ordered(command: MavCmd) -> Order {
-    Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id), frame: (0, 0) }
+    Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id), frame: 0 }
 }
 
 /// An order, whichever frame it came in.
 pub const fn whichever(order: Order) -> Order {
-    Order { frame: (0, 0), ..order }
+    Order { frame: 0, ..order }
 }
 
 /// A reply, whichever frame asked for it.
