@@ -82,10 +82,11 @@ struct Speaker<'a, M: RawMutex> {
     told: u32,
     /// The last answers to commands, one of each frame.
     answered: [Acknowledgement; ANSWERED],
-    /// Where the next is put, modulo their number.
+    /// Where the last was put; the next takes the place of the oldest.
     next_answer: usize,
     /// What is answered by one of them, now or once it is there.
     owed: [Owed; OWED],
+    next_owed: usize,
 }
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
@@ -100,6 +101,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
             next_answer: 0,
             owed: [Owed { order: NONE, of: 0, times: 0 }; _],
+            next_owed: 0,
         }
     }
 
@@ -227,13 +229,14 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         match reply {
             Reply::Command(acknowledgement) => self.acknowledge(acknowledgement),
             Reply::Likewise { order, of } => {
-                let is_same = |owed: &Owed| (owed.order.frame, owed.of) == (order.frame, of);
-                // The same once more, or else a free place, or that of who asks least.
-                let place =
-                    self.owed.iter_mut().min_by_key(|owed| if is_same(owed) { 0 } else { 1 + u16::from(owed.times) });
-                if let Some(owed) = place {
-                    let times = if is_same(owed) { owed.times } else { 0 };
-                    *owed = Owed { order, of, times: times.saturating_add(1) };
+                match self.owed.iter_mut().find(|owed| (owed.order.frame, owed.of) == (order.frame, of)) {
+                    Some(owed) => owed.times = owed.times.saturating_add(1),
+                    None => {
+                        self.next_owed = (self.next_owed + 1) % OWED;
+                        if let Some(place) = self.owed.get_mut(self.next_owed) {
+                            *place = Owed { order, of, times: 1 };
+                        }
+                    }
                 }
                 return self.owed();
             }

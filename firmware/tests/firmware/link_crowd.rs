@@ -154,6 +154,14 @@ fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
             assert_eq!(results, vec![(message.command as u16, result); count], "{message:?}");
         }
     }
+    // Of equal orders that are not copies as many as there is room for, and that keeps nobody out afterwards.
+    let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
+    let many = |first: u8| (first..first + 12).flat_map(|sequence| v2(sequence, &land)).collect::<Vec<_>>();
+    let bursts = [0, 1, 2_u8].map(|burst| (3_000_000 + 20_000 * u64::from(burst), many(12 * burst)));
+    let later = (3_060_000, v2(50, &arm()).repeat(2));
+    let results = acknowledged(&[&bursts[..], &[later]].concat());
+    assert_eq!(results[..21], [(MavCmd::MAV_CMD_NAV_LAND as u16, ACCEPTED); 21]);
+    assert_eq!(results[21..], [(ARM_DISARM as u16, ACCEPTED); 2]);
     // Nobody calibrates on this desk: what is never answered is not made up.
     assert_eq!(acknowledged(&[(3_000_000, v2(1, &nothing).repeat(3))]), []);
 }
