@@ -112,6 +112,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander().put(order.map(|order| order.sender), now);
         }
+        if !outcome.wants_setpoints {
+            self.shared.flier().set(None);
+        }
         self.tell(&outcome, asked);
         if has_armed && self.shared.pose_delay_unknown().is_raised() {
             self.shared.announce(Event::PoseDelayUnknown);

@@ -201,6 +201,6 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     }
 
     fn ask(&self, request: Request) {
-        self.shared.request(Asked { request, order: None, times: 1 });
+        self.shared.request(Asked { request, order: None, setpoints: None });
     }
 }

@@ -25,6 +25,7 @@ mod card;
 mod count;
 mod event;
 mod flag;
+mod flier;
 mod lately;
 mod latest;
 mod library;
@@ -39,6 +40,7 @@ pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use count::Count;
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
+pub use flier::Flier;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
@@ -48,6 +50,7 @@ pub use requests::{REQUESTS, Requests};
 
 use self::lately::Lately;
 use crate::last_words::LastWords;
+use crate::link::acknowledgement::Order;
 use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
@@ -57,7 +60,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use estimation::estimator::{Increment, PoseMeasurement};
 use estimation::imu::ImuFault;
-use flight::{ImuSample, Mode, Refusal, Stamped};
+use flight::{ImuSample, Mode, Refusal, Request, Stamped};
 use mavlink::dialects::common::MavResult;
 use table::{offers, values, views};
 
@@ -146,6 +149,9 @@ values! {
     pub report: Latest<M, Report> { Write: ControlView; Read: RadioView, ReceiveView, TransmitView, StatusView }
     /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
     pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView }
+    /// Whose setpoints are flown, or will be once they come, by system and component; none where nobody on the link has
+    /// asked for that.
+    pub flier: Flier { Write: ControlView; Read: ReceiveView }
     /// Answers to requests. Put in with [`Values::answer`].
     pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
     /// What the receiving half of the link gives the sending half to say. Put in with [`Values::reply`].
@@ -237,10 +243,13 @@ impl<M: RawMutex> Values<M> {
         }
     }
 
-    /// Asks control for something, in place of what the link, or the radio, asked for of that kind: that is answered.
+    /// Asks control for something, in place of what the link, or the radio, asked for of that kind. That is answered:
+    /// as this is, if it is the same.
     pub fn request(&self, asked: Asked) {
-        if let Some(before) = self.requests.put(asked) {
-            self.acknowledge(&before, MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+        match (self.requests.put(asked), asked.order) {
+            (Some((order, true)), Some(of)) => self.reply(Reply::Likewise { order, of: of.frame }),
+            (Some((order, _)), _) => self.acknowledge(order, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
+            _ => {}
         }
     }
 
@@ -253,24 +262,25 @@ impl<M: RawMutex> Values<M> {
         self.disarm.raise();
     }
 
-    /// Answers a request that came by a command, and announces a refusal. An answer that finds no room is dropped: its
+    /// Answers a request that came by a command, and announces a refusal; setpoints that are granted are flown from now
+    /// on. An answer that finds no room is dropped: its
     /// sender asks again for want of one.
     pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
-        if let Err(refusal) = result {
-            self.announce(Event::Refused(refusal));
+        match result {
+            Err(refusal) => self.announce(Event::Refused(refusal)),
+            Ok(()) if matches!(asked.request, Request::FlySetpoints) => self.flier.set(asked.setpoints),
+            Ok(()) => {}
         }
+        let Some(order) = asked.order else { return };
         self.acknowledge(
-            asked,
+            order,
             if result.is_ok() { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_DENIED },
         );
     }
 
-    /// Answers a request as often as it came.
-    fn acknowledge(&self, asked: &Asked, result: MavResult) {
-        let Some(order) = asked.order else { return };
-        for _ in 0..asked.times {
-            let _ = self.answers.put(Reply::Command(order.answered(result)));
-        }
+    /// Answers a command.
+    fn acknowledge(&self, order: Order, result: MavResult) {
+        let _ = self.answers.put(Reply::Command(order.answered(result)));
         self.outgoing.signal(());
     }
 

@@ -115,6 +115,8 @@ pub struct Outcome {
     /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited
     /// for.
     pub setpoint: Option<Result<(), Refusal>>,
+    /// Whether setpoints are flown, or will be once they come.
+    pub wants_setpoints: bool,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
     /// What it is worth.

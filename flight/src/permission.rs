@@ -38,6 +38,15 @@ pub(super) fn to_turn_motors(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
+/// Taking off: from the ground, with motors that idle.
+pub(super) fn to_take_off(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Idling => Ok(()),
+        Mode::TakingOff => Err(Refusal::TakingOff),
+        _ => Err(if mode.flies() { Refusal::Flies } else { Refusal::NotIdling }),
+    }
+}
+
 /// Holding, or flying to a point: in the air, with an estimate, unless the vehicle must land.
 pub(super) fn to_hold(mode: Mode, must_land: bool) -> Result<(), Refusal> {
     match mode {

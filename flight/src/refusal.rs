@@ -75,6 +75,10 @@ pub enum Refusal {
     InTheAir,
     /// Only an armed vehicle on the ground takes off.
     NotIdling,
+    /// It takes off already, to another height.
+    TakingOff,
+    /// It has taken off.
+    Flies,
     /// Only in the air there is somewhere to hold or land.
     NotInTheAir,
     /// A landing goes on until a hold request.
@@ -137,6 +141,8 @@ impl fmt::Display for Refusal {
             Self::BatteryMissing => "Refused: battery to be watched is not measured",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",
             Self::NotIdling => "Refused: arm on the ground first",
+            Self::TakingOff => "Refused: taking off to another height",
+            Self::Flies => "Refused: it has taken off",
             Self::NotInTheAir => "Refused: not in the air",
             Self::Landing => "Refused: it lands; let it hold first",
             Self::WithoutPose => "Refused: without a pose it can only go down",

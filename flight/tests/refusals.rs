@@ -71,7 +71,10 @@ fn what_cannot_be_done_on_the_ground_is_refused_there() {
 fn what_cannot_be_done_in_the_air_is_refused_there() {
     let mut flight = Flight::armed();
     flight.ticks(300);
-    assert_eq!(flight.answer(Request::TakeOff(None)), Err(Refusal::NotIdling));
+    assert_eq!(flight.answer(Request::TakeOff(None)), Err(Refusal::Flies));
+    for height in [-5.0, f32::INFINITY, 1e9] {
+        assert_eq!(flight.answer(Request::TakeOff(Some(height))), Err(Refusal::TakeOffHeight));
+    }
     assert_eq!(flight.answer(Request::GoTo(go_to(0.0, 200.0, 2.0))), Err(Refusal::OutsideFence));
     // A critical battery lands, and nobody takes that back.
     flight.inputs.battery = Battery::Critical;

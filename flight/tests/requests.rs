@@ -205,9 +205,12 @@ fn asking_again_for_what_is_so_is_granted_and_changes_nothing() {
     for height in [Some(3.0), Some(3.0), None] {
         let outcome = ask(&mut flight, Request::TakeOff(height));
         // Another height is another flight.
-        let answer = if height.is_some() { Ok(()) } else { Err(Refusal::NotIdling) };
+        let answer = if height.is_some() { Ok(()) } else { Err(Refusal::TakingOff) };
         assert_eq!((outcome.answer, outcome.mode), (Some(answer), Mode::TakingOff), "{height:?}");
         flight.ticks(150);
+    }
+    for height in [-5.0, f32::INFINITY, 1e9] {
+        assert_eq!(ask(&mut flight, Request::TakeOff(Some(height))).answer, Some(Err(Refusal::TakeOffHeight)));
     }
     assert_eq!(ask(&mut flight, Request::Arm).answer, Some(Ok(())));
     assert_eq!(flight.ticks(2_000).mode, Mode::Holding);

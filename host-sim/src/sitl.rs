@@ -209,6 +209,9 @@ impl Sitl {
         sitl.start().map_err(|error| in_file(error.to_string()))?;
         if let Some(key) = session.signing_key {
             sitl.shared.set_signing(Some(key), key::now(), 0);
+        }
+        // Also with one that was kept from an earlier session.
+        if let Some(key) = sitl.shared.signing.key() {
             sitl.world.sign(key, key::now());
         }
         Ok((sitl, warning))

@@ -1,4 +1,5 @@
-//! Text files that people give: read whole, and no further than a file of theirs can reasonably be long.
+//! Files that people give: read whole, and no further than a file of theirs can reasonably be long. What is no file is
+//! not waited for.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -10,19 +11,33 @@ pub const LONGEST: u64 = 4 << 20;
 /// The text of `path`.
 ///
 /// # Errors
-/// If it cannot be read, is no UTF-8, or is longer than [`LONGEST`]: a device without an end is not read to exhaustion.
+/// If it cannot be read, is no UTF-8, or is longer than [`LONGEST`].
 pub fn read(path: &Path) -> io::Result<String> {
     String::from_utf8(bytes(path, LONGEST)?)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
+/// Where what the program was started with is, a pipe or a device as well: standard input, and a shell's `<(...)`.
+const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
+
+/// Opens a file for reading. Opening a pipe waits until somebody writes to it, and reading a device may never end.
+///
+/// # Errors
+/// If there is none, or it is something else, unless it was opened already by who started the program.
+pub fn open(path: &Path) -> io::Result<File> {
+    if !GIVEN.iter().any(|given| path.starts_with(given)) && !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"));
+    }
+    File::open(path)
+}
+
 /// The bytes of `path`.
 ///
 /// # Errors
-/// If it cannot be read, or is longer than `longest` bytes.
+/// If it cannot be opened or read, or is longer than `longest` bytes.
 pub fn bytes(path: &Path, longest: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(longest + 1).read_to_end(&mut bytes)?;
+    open(path)?.take(longest + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > longest {
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("longer than {longest} bytes")));
     }
@@ -34,15 +49,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_of_the_greatest_length_is_read_and_a_longer_one_or_a_device_without_end_refused() {
+    fn a_file_of_the_greatest_length_is_read_and_a_longer_one_refused() {
         let path = std::env::temp_dir().join(format!("scenario-text-{}", std::process::id()));
         for (length, fits) in [(LONGEST, true), (LONGEST + 1, false)] {
             std::fs::write(&path, vec![b'#'; length as usize]).unwrap();
             assert_eq!(read(&path).map(|text| text.len() as u64).ok(), fits.then_some(length));
         }
         std::fs::remove_file(&path).unwrap();
-        if Path::new("/dev/zero").exists() {
-            assert_eq!(read(Path::new("/dev/zero")).unwrap_err().kind(), io::ErrorKind::FileTooLarge);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_neither_waited_for_nor_read_to_exhaustion() {
+        let pipe = std::env::temp_dir().join(format!("scenario-text-pipe-{}", std::process::id()));
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for path in [pipe.as_path(), Path::new("/dev/zero"), Path::new("/")] {
+            let error = bytes(path, 1 << 30).unwrap_err();
+            assert_eq!(
+                (error.kind(), error.to_string()),
+                (io::ErrorKind::InvalidInput, "is no regular file".to_owned())
+            );
         }
+        std::fs::remove_file(&pipe).unwrap();
     }
 }

@@ -16,7 +16,8 @@ use cortex_m::peripheral::SCB;
 // off) and without a float. No interrupt until `begin_anew` has ended those that are armed, none masked by priority; the
 // floating-point unit saves registers by itself and lazily (FPCCR), none are left to be saved, an interrupt begins with
 // the default rounding (FPDSCR); the main stack; no float is in use (CONTROL.FPCA). On a Cortex-M7, whose part number is
-// 0xC27, both tightly coupled memories are on (ITCMCR, DTCMCR).
+// 0xC27, both tightly coupled memories are on (ITCMCR, DTCMCR), and the instruction cache holds nothing (ICIALLU): a
+// bootloader may have left it on, with what was in flash before it wrote there.
 core::arch::global_asm!(
     ".section .text.__pre_init, \"ax\"",
     ".global __pre_init",
@@ -43,6 +44,7 @@ core::arch::global_asm!(
     "ldr r2, [r1, #0x60]",
     "orr r2, r2, #1",
     "str r2, [r1, #0x60]",
+    "str r0, [r1, #0x1C]",
     "1:",
     "mrs r0, CONTROL",
     "bic r0, r0, #6",
@@ -100,7 +102,8 @@ pub fn begin_anew(quiet: impl FnOnce(&mut Peripherals)) -> Peripherals {
 /// A Cortex-M7's part number, and where the identification register has it.
 const CORTEX_M7: u32 = 0xC27;
 
-/// Turns the instruction cache on, where the core has one; whether it is as it should be then.
+/// Turns the instruction cache on, where the core has one; whether it is as it should be then. One that is on already
+/// was emptied by the first instructions.
 #[must_use]
 pub fn cache_instructions(core: &mut Peripherals) -> bool {
     let has_cache = core.CPUID.base.read() >> 4 & 0xFFF == CORTEX_M7;

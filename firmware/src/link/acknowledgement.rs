@@ -3,6 +3,7 @@
 //!
 //! More than one may command. Whose command was granted and whose was refused is told apart by whom the answer is for.
 
+use super::frame::{Frame, Header};
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavMessage, MavResult};
 use mavlink::{MavlinkVersion, error::ParserError};
@@ -14,9 +15,18 @@ pub struct Order {
     pub command: u16,
     /// Who sent it: system and component.
     pub sender: (u8, u8),
+    /// In which frame: its system, its sequence number, and its checksum over all of it.
+    pub frame: u32,
 }
 
 impl Order {
+    /// The one in a frame.
+    pub(super) const fn of(command: u16, frame: &Frame<'_>) -> Self {
+        let Frame { header: Header { system, component, sequence }, checksum, .. } = *frame;
+        let [high, low] = checksum.to_be_bytes();
+        Self { command, sender: (system, component), frame: u32::from_be_bytes([system, sequence, high, low]) }
+    }
+
     /// The answer to it.
     #[must_use]
     pub const fn answered(self, result: MavResult) -> Acknowledgement {
@@ -72,7 +82,9 @@ impl MessageData for Acknowledgement {
         // The crate's type reads the result, of a command that it knows.
         let [low, high] = (MavCmd::MAV_CMD_NAV_WAYPOINT as u16).to_le_bytes();
         let COMMAND_ACK_DATA { result, .. } = COMMAND_ACK_DATA::deser(version, &[low, high, byte(2)])?;
-        let order = Order { command: u16::from_le_bytes([byte(0), byte(1)]), sender: (byte(8), byte(9)) };
+        let command = u16::from_le_bytes([byte(0), byte(1)]);
+        // Which frame, an answer does not say.
+        let order = Order { command, sender: (byte(8), byte(9)), frame: 0 };
         Ok(order.answered(result))
     }
 }

@@ -16,7 +16,7 @@
 //! like jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless.
 //! Velocities and body rates must be finite too, though the IMU's are flown. Of the covariance the greatest variances
 //! of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender left it
-//! out).
+//! out). Who says that they are infinite says that it knows of no pose, and is refused.
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
@@ -258,7 +258,7 @@ pub(crate) fn odometry(frame: &Frame<'_>, message: &ODOMETRY_DATA) -> Result<Pos
         _ => return Err(PoseRefusal::Frame),
     };
     let measured = PoseMeasurement::with_velocity(&pose([x, y, z], q, velocity)?);
-    let measured = deviations(measured, &message.pose_covariance);
+    let measured = deviations(measured, &message.pose_covariance)?;
     // Zeros at the end are cut off, and older senders do not know these fields.
     let extension = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
     Ok(measured.quality(extension(QUALITY).cast_signed()).reset_counter(extension(RESET_COUNTER)))
@@ -278,15 +278,21 @@ fn vision(frame: &Frame<'_>, message: &VISION_POSITION_ESTIMATE_DATA) -> Result<
         let place = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 4 * index;
         f32::from_le_bytes([0, 1, 2, 3].map(|byte| extension(place + byte)))
     };
-    let measured = deviations(measured, &core::array::from_fn(number));
+    let measured = deviations(measured, &core::array::from_fn(number))?;
     Ok(measured.reset_counter(extension(VISION_RESET_COUNTER)))
 }
 
 /// With what a covariance says, if it does.
-fn deviations(measured: PoseMeasurement, covariance: &[f32; 21]) -> PoseMeasurement {
+///
+/// # Errors
+/// [`PoseRefusal::Numbers`] if any variance is infinite.
+fn deviations(measured: PoseMeasurement, covariance: &[f32; 21]) -> Result<PoseMeasurement, PoseRefusal> {
     // The diagonal of the upper triangle, row by row: x, y, z, roll, pitch, yaw.
     let [xx, .., yy, _, _, _, _, zz, _, _, _, rr, _, _, pp, _, hh] = *covariance;
-    measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh]))
+    if [xx, yy, zz, rr, pp, hh].iter().any(|variance| variance.is_infinite()) {
+        return Err(PoseRefusal::Numbers(PoseError::NotFinite("covariance")));
+    }
+    Ok(measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh])))
 }
 
 /// The root of the greatest of three variances; NaN if any of them says nothing.

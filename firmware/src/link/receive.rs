@@ -11,18 +11,14 @@ use super::commander::Commander;
 use super::frame::{Frame, Parser};
 use super::pose::{Poses, is_pose};
 use super::set_mode::SetMode;
-use super::setpoint::{Here, setpoint};
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::radio::SILENCE as RADIO_SILENCE;
 use crate::shared::{Event, Ping, ReceiveView, Reply, Severity, Traffic};
-use controller_core::governor::Setpoint;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
-use flight::{SETPOINT_AGE_MAX, Stamped};
 use foreign::Foreign;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
@@ -31,12 +27,14 @@ use mavlink::dialects::common::{
     MISSION_REQUEST_LIST_DATA, MavType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
     SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SETUP_SIGNING_DATA, TIMESYNC_DATA,
 };
+use setpoints::Setpoints;
 
 mod commands;
 mod foreign;
 mod parameters;
 mod places;
 mod recordings;
+mod setpoints;
 mod signatures;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
@@ -111,10 +109,7 @@ pub struct Receiver<'a, M: RawMutex> {
     /// When the time may be told again, us.
     next_time_told: u64,
     traffic: Traffic,
-    /// The last setpoint that was refused because the sticks fly.
-    kept: Option<Stamped<Setpoint>>,
-    /// Whose setpoints are flown, system and component, and when the last came, us.
-    owner: Option<Stamped<(u8, u8)>>,
+    setpoints: Setpoints,
     foreign: Foreign,
 }
 
@@ -135,8 +130,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             signature_refused: Occasionally::default(),
             next_time_told: 0,
             traffic: Traffic::default(),
-            kept: None,
-            owner: None,
+            setpoints: Setpoints::default(),
             foreign: Foreign::default(),
         }
     }
@@ -243,48 +237,6 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 self.refused();
                 self.pose_refused.warn(self.shared, frame.time, format_args!("Pose refused: {refusal}"));
             }
-        }
-    }
-
-    fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
-            return;
-        }
-        let state = self.shared.report().get().and_then(|report| report.value.state);
-        match setpoint(message, state.as_ref().and_then(Here::of).as_ref()) {
-            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
-            Ok(value) if self.shared.sticks().get().is_some_and(|sticks| sticks.value) => {
-                self.kept = Some(Stamped { value, time: frame.time });
-                self.refused();
-                self.setpoint_refused.warn(self.shared, frame.time, "Setpoint refused: the sticks fly");
-            }
-            Ok(setpoint) => {
-                let value = (frame.header.system, frame.header.component);
-                if self.owner.is_some_and(|owner| owner.value != value && owner.age(frame.time) <= SETPOINT_AGE_MAX) {
-                    self.refused();
-                    let words = "Setpoint refused: another sender's are flown";
-                    return self.setpoint_refused.warn(self.shared, frame.time, words);
-                }
-                self.owner = Some(Stamped { value, time: frame.time });
-                self.shared.setpoint().put(setpoint, frame.time);
-            }
-            Err(refusal) => {
-                self.refused();
-                self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
-            }
-        }
-    }
-
-    /// Somebody asks to fly setpoints at `now`, us: sticks that have fallen silent stand back, and what was sent
-    /// meanwhile counts.
-    fn take_over(&mut self, now: u64) {
-        let sticks = self.shared.sticks().get();
-        if sticks.is_none_or(|sticks| !sticks.value || sticks.age(now) <= RADIO_SILENCE) {
-            return;
-        }
-        self.shared.sticks().put(false, now);
-        if let Some(kept) = self.kept.take().filter(|kept| kept.age(now) <= SETPOINT_AGE_MAX) {
-            self.shared.setpoint().put(kept.value, kept.time);
         }
     }
 

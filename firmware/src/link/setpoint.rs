@@ -37,6 +37,10 @@ pub enum SetpointRefusal {
     Mask,
     /// A frame that is not understood, or one of a vehicle that does not know where it is.
     Frame,
+    /// A radio's sticks fly.
+    Sticks,
+    /// It is not this sender whose setpoints are flown.
+    Others,
 }
 
 impl fmt::Display for SetpointRefusal {
@@ -45,6 +49,8 @@ impl fmt::Display for SetpointRefusal {
             Self::NotFinite => "a field is not finite",
             Self::Mask => "type mask not supported",
             Self::Frame => "frame not understood",
+            Self::Sticks => "the sticks fly",
+            Self::Others => "another sender's are flown",
         })
     }
 }

@@ -4,7 +4,9 @@
 //! over a key that both ends share and the frame up to there. Once there is a key, every frame out is signed, and a
 //! frame in counts only if its signature is right and its stamp is above that of the frame before it. Stamps rise for
 //! each stream (link, system, component) by itself. The vehicle's own clock of stamps has no calendar: it begins where
-//! it was left off, goes on with the time, and jumps to every accepted stamp that is ahead of it.
+//! it was left off, goes on with the time, and jumps to every accepted stamp that is ahead of it. One that is further
+//! ahead than [`LEAP`] is accepted only as the first since the start, and none from [`LATEST`] on: somebody whose clock
+//! is broken would deafen the vehicle to everybody else, or use up the 48 bits.
 //!
 //! A frame that was accepted once is refused for ever after, also from a stream that was forgotten for want of room and
 //! after a restart: stamps at or below a floor are refused from streams that are not known. The floor is the newest
@@ -31,6 +33,12 @@ pub type Stamp = u64;
 
 /// A minute. A stream that is not known is refused if it is further behind the vehicle's clock.
 const MINUTE: Stamp = 6_000_000;
+
+/// A year. So much longer than a vehicle is put away nobody's clock is ahead of it, once somebody's has been heard.
+pub const LEAP: Stamp = 525_600 * MINUTE;
+
+/// The year 2100. 48 bits last four years longer.
+pub const LATEST: Stamp = 31_046 * 1_440 * MINUTE;
 
 /// How far ahead of the clock the kept floor is put: no flight is longer.
 pub const AHEAD: Stamp = 60 * MINUTE;
@@ -96,6 +104,8 @@ pub enum Refusal {
     Forged,
     /// Its stamp is not above what its stream, or the vehicle, has heard before.
     Replayed,
+    /// Its stamp is too far ahead: its sender's clock is wrong.
+    Ahead,
 }
 
 impl fmt::Display for Refusal {
@@ -104,6 +114,7 @@ impl fmt::Display for Refusal {
             Self::Unsigned => "Refused: not signed",
             Self::Forged => "Refused: signed with another key",
             Self::Replayed => "Refused: its time stamp was heard before",
+            Self::Ahead => "Refused: its time stamp is too far ahead",
         })
     }
 }
@@ -122,6 +133,8 @@ struct State {
     /// The clock: this stamp, at this time, us.
     newest: Stamp,
     since: u64,
+    /// Whether somebody's clock was heard since the start.
+    is_set: bool,
     streams: [Stream; STREAMS],
     floor: Stamp,
     /// What flash says that the floor is after a boot.
@@ -133,7 +146,7 @@ struct State {
 impl State {
     const fn new() -> Self {
         let streams = [Stream { id: [0; 3], newest: 0 }; STREAMS];
-        Self { key: None, newest: 0, since: 0, streams, floor: 0, kept: 0, changed: false }
+        Self { key: None, newest: 0, since: 0, is_set: false, streams, floor: 0, kept: 0, changed: false }
     }
 
     #[inline(never)]
@@ -148,18 +161,21 @@ impl State {
         }
     }
 
-    /// Whether a stamp is new; it is not any more afterwards.
-    fn admit(&mut self, id: [u8; 3], stamp: Stamp, now: u64) -> bool {
+    /// Takes a stamp that is new; it is not any more afterwards.
+    fn admit(&mut self, id: [u8; 3], stamp: Stamp, now: u64) -> Result<(), Refusal> {
         let clock = self.clock(now);
+        if stamp >= LATEST || self.is_set && stamp > clock.saturating_add(LEAP) {
+            return Err(Refusal::Ahead);
+        }
         let is_known = |stream: &&mut Stream| stream.id == id && stream.newest > 0;
         if let Some(stream) = self.streams.iter_mut().find(is_known) {
             if stamp <= stream.newest {
-                return false;
+                return Err(Refusal::Replayed);
             }
             stream.newest = stamp;
         } else {
             if stamp <= self.floor || stamp.saturating_add(MINUTE) < clock {
-                return false;
+                return Err(Refusal::Replayed);
             }
             // A free place, or that of the stream that is furthest behind.
             if let Some(stream) = self.streams.iter_mut().min_by_key(|stream| stream.newest) {
@@ -167,8 +183,9 @@ impl State {
                 *stream = Stream { id, newest: stamp };
             }
         }
+        self.is_set = true;
         self.follow(stamp, now);
-        true
+        Ok(())
     }
 }
 
@@ -187,13 +204,16 @@ impl<M: RawMutex> Signing<M> {
         self.0.lock(|state| state.try_borrow_mut().ok().map(|mut state| act(&mut state)))
     }
 
-    fn key(&self) -> Option<Key> {
+    /// The key, if there is one.
+    #[must_use]
+    pub fn key(&self) -> Option<Key> {
         self.with(|state| state.key).flatten()
     }
 
-    /// Takes a key, or none any more, and a stamp below which nothing was signed with it yet. What was heard under the
-    /// same key before stays heard.
+    /// Takes a key, or none any more, and a stamp below which nothing was signed with it yet; one that is too late is
+    /// none. What was heard under the same key before stays heard.
     pub fn set(&self, key: Option<Key>, stamp: Stamp, now: u64) {
+        let stamp = if stamp < LATEST { stamp } else { 0 };
         self.with(|state| {
             if state.key != key {
                 *state = State { key, floor: stamp, changed: true, ..State::new() };
@@ -216,8 +236,7 @@ impl<M: RawMutex> Signing<M> {
             return Err(Refusal::Forged);
         }
         let id = [link, frame.header.system, frame.header.component];
-        let is_new = self.with(|state| state.admit(id, number(stamp), frame.time)).unwrap_or(false);
-        if is_new { Ok(()) } else { Err(Refusal::Replayed) }
+        self.with(|state| state.admit(id, number(stamp), frame.time)).unwrap_or(Err(Refusal::Replayed))
     }
 
     /// Signs a frame that goes out now, us, if there is a key.

@@ -2,7 +2,7 @@
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
-use super::acknowledgement::Acknowledgement;
+use super::acknowledgement::{Acknowledgement, Order};
 use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::origin::Origin;
@@ -19,7 +19,6 @@ use crate::shared::{Event, MissionList, Reply, Severity, TransmitView};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
-use heapless::Deque;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavResult,
@@ -34,8 +33,21 @@ const LIST_INTERVAL: u64 = 20_000;
 /// The greatest age of a report that is still sent, and of a voltage, us.
 const REPORT_AGE_MAX: u64 = 1_000_000;
 
-/// Answers to commands that are remembered, to be given again.
-const ANSWERED: usize = 4;
+/// Answers to commands that are remembered, to be given again; and commands that wait for another's answer.
+const ANSWERED: usize = 8;
+const OWED: usize = 6;
+
+/// A command that is answered as another is.
+#[derive(Clone, Copy)]
+struct Owed {
+    order: Order,
+    of: u32,
+    /// How often; 0 for a free place.
+    times: u8,
+}
+
+/// No command: nobody sends this one.
+const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
 /// from being sent, however slow the line.
@@ -68,8 +80,13 @@ struct Speaker<'a, M: RawMutex> {
     writer: Writer,
     /// Lost events that were told of.
     told: u32,
-    /// The last answers to commands.
-    answered: Deque<Acknowledgement, ANSWERED>,
+    /// The last answers to commands, one of each frame.
+    answered: [Acknowledgement; ANSWERED],
+    /// Where the last was put; the next takes the place of the oldest.
+    next_answer: usize,
+    /// What is answered by one of them, now or once it is there.
+    owed: [Owed; OWED],
+    next_owed: usize,
 }
 
 impl<'a, M: RawMutex> Speaker<'a, M> {
@@ -81,7 +98,10 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             download: Download::new(),
             writer: Writer::new(),
             told: 0,
-            answered: Deque::new(),
+            answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
+            next_answer: 0,
+            owed: [Owed { order: NONE, of: 0, times: 0 }; _],
+            next_owed: 0,
         }
     }
 
@@ -155,6 +175,9 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
+        if self.owed() {
+            return true;
+        }
         if let Some(answer) = shared.answers().take() {
             return self.reply(answer, now);
         }
@@ -168,24 +191,54 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
-        shared.replies().take().is_some_and(|reply| self.reply(reply, now))
+        // Not every one is something to say.
+        while let Some(reply) = shared.replies().take() {
+            if self.reply(reply, now) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Answers a command as the one that it is the same as, if that is answered; whether there was one.
+    fn owed(&mut self) -> bool {
+        let answered = &self.answered;
+        let found = self.owed.iter_mut().filter(|owed| owed.times > 0).find_map(|owed| {
+            let answer = answered.iter().find(|answer| answer.order.frame == owed.of)?;
+            owed.times -= 1;
+            Some(owed.order.answered(answer.result))
+        });
+        found.map(|acknowledgement| self.acknowledge(acknowledgement)).is_some()
+    }
+
+    /// Answers a command and remembers what was answered.
+    fn acknowledge(&mut self, acknowledgement: Acknowledgement) {
+        self.say(&acknowledgement);
+        let before = self.answered.iter().position(|before| before.order.frame == acknowledgement.order.frame);
+        let place = before.unwrap_or_else(|| {
+            self.next_answer = (self.next_answer + 1) % ANSWERED;
+            self.next_answer
+        });
+        if let Some(place) = self.answered.get_mut(place) {
+            *place = acknowledgement;
+        }
     }
 
     /// Writes a reply; a list of parameters is put on the schedule, and so is a message's interval.
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
-            Reply::Command(acknowledgement) => {
-                self.say(&acknowledgement);
-                if self.answered.is_full() {
-                    self.answered.pop_front();
+            Reply::Command(acknowledgement) => self.acknowledge(acknowledgement),
+            Reply::Likewise { order, of } => {
+                match self.owed.iter_mut().find(|owed| (owed.order.frame, owed.of) == (order.frame, of)) {
+                    Some(owed) => owed.times = owed.times.saturating_add(1),
+                    None => {
+                        self.next_owed = (self.next_owed + 1) % OWED;
+                        if let Some(place) = self.owed.get_mut(self.next_owed) {
+                            *place = Owed { order, of, times: 1 };
+                        }
+                    }
                 }
-                // There is room for it now.
-                let _ = self.answered.push_back(acknowledgement);
-            }
-            Reply::Again(order) => {
-                let last = self.answered.iter().rev().find(|answered| answered.order == order).cloned();
-                let system = self.system();
-                return self.writer.write_some(system, last);
+                return self.owed();
             }
             Reply::Ping(ping) => self.say(&ping),
             Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),

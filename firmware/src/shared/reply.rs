@@ -18,8 +18,8 @@ pub struct Asked {
     pub request: Request,
     /// The command it came by, if it came over the link.
     pub order: Option<Order>,
-    /// How often it came before it was taken, and is to be answered.
-    pub times: u8,
+    /// Whose setpoints are to be flown, system and component, where that is asked for over the link.
+    pub setpoints: Option<(u8, u8)>,
 }
 
 /// A calibration to be begun, or the end of the one under way; and the command that asked for it, to be answered.
@@ -52,8 +52,14 @@ pub struct MissionList {
 pub enum Reply {
     /// COMMAND_ACK.
     Command(Acknowledgement),
-    /// COMMAND_ACK, as the last time, if that is not still to come.
-    Again(Order),
+    /// COMMAND_ACK, as of a command that is the same: of the same frame, or of somebody who asks for the same at once.
+    /// What became of that may be still to come.
+    Likewise {
+        /// What is answered.
+        order: Order,
+        /// And by whose answer: that to this frame, as [`Order::frame`] has it.
+        of: u32,
+    },
     /// PING, sent back.
     Ping(Ping),
     /// TIMESYNC: the time of day.

@@ -1,11 +1,13 @@
 //! Requests that wait for control, which takes one a tick.
 //!
 //! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest: nobody who repeats one
-//! keeps another out. Where there is no room, a lesser one of the link makes some. So landing, disarming and the
+//! keeps another out. Who asked for the same a moment before is answered as that one is. Where there is no room, a lesser one of the link makes some. So landing, disarming and the
 //! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
+use crate::link::acknowledgement::Order;
 use core::cell::RefCell;
+use core::mem::discriminant;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Request;
@@ -25,20 +27,17 @@ impl<M: RawMutex> Requests<M> {
     }
 
     /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no
-    /// room, to be answered. Of one sender's command of one kind it is one, to be answered as often.
-    pub(super) fn put(&self, mut asked: Asked) -> Option<Asked> {
+    /// room: the command by which that came, to be answered, and whether it was the same.
+    pub(super) fn put(&self, asked: Asked) -> Option<(Order, bool)> {
         let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {
             let mut waiting = waiting.try_borrow_mut().ok()?;
             let alike = waiting.iter().position(|other| way(other) == way(&asked));
             let place = alike.or_else(|| waiting.iter().position(is_lesser).filter(|_| waiting.is_full()));
-            let mut before = place.and_then(|place| remove(&mut waiting, place));
-            if let Some(same) = before.take_if(|before| alike.is_some() && before.order == asked.order) {
-                asked.times = asked.times.saturating_add(same.times);
-            }
+            let before = place.and_then(|place| remove(&mut waiting, place));
             // There is room now.
             let _ = waiting.push_back(asked);
-            before
+            before.and_then(|before| Some((before.order?, is_same(&before, &asked))))
         })
     }
 
@@ -67,6 +66,16 @@ fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
 /// Whether it makes room for others.
 fn is_lesser(asked: &Asked) -> bool {
     asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
+}
+
+/// Whether two requests ask for the same, of those that are asked for again: not points and motors.
+fn is_same(one: &Asked, other: &Asked) -> bool {
+    let is_alike = match (&one.request, &other.request) {
+        (Request::TakeOff(one), Request::TakeOff(other)) => one == other,
+        (Request::GoTo(_) | Request::MotorTest(_) | Request::MotorSetting(_), _) => false,
+        (one, other) => discriminant(one) == discriminant(other),
+    };
+    is_alike && one.setpoints == other.setpoints
 }
 
 /// What replaces what.

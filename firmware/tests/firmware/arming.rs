@@ -74,7 +74,7 @@ fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mod
         let words = texts(shared);
         said.extend(words.into_iter().filter(|_| now > requests[0].0));
         if let Some(&(_, request)) = requests.iter().find(|(at, _)| *at == now) {
-            shared.request(Asked { request, order: None, times: 1 });
+            shared.request(Asked { request, order: None, setpoints: None });
         }
     });
     (shared.report.get().unwrap().value.mode, said)

@@ -120,7 +120,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
             let order = ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM);
-            shared.request(Asked { request, order: Some(order), times: 1 });
+            shared.request(Asked { request, order: Some(order), setpoints: None });
         }
         if now == 45_000 {
             shared.hil.raise();

@@ -1,7 +1,9 @@
 //! Commands and heartbeats in: what they do, and what is answered.
 
 use crate::support::desk::Desk;
-use crate::support::receiver::{Fed, Local, answer, command, disarm, ordered, replies, report, texts};
+use crate::support::receiver::{
+    Fed, Local, answer, answers, command, disarm, ordered, replies, report, texts, whichever,
+};
 use crate::support::{patched, v1, v2, v2_of_payload};
 use firmware::parameters::table::Name;
 use firmware::shared::{Asked, Reply};
@@ -24,8 +26,8 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
     for bytes in [v1(1, &arm()), v2(1, &arm())] {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
-        let asked = shared.requests.take().unwrap();
-        assert_eq!(asked, Asked { request: Request::Arm, order: Some(ordered(ARM_DISARM)), times: 1 });
+        let Asked { request, order, setpoints } = shared.requests.take().unwrap();
+        assert_eq!((request, order.map(whichever), setpoints), (Request::Arm, Some(ordered(ARM_DISARM)), None));
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
 }
@@ -55,9 +57,15 @@ fn a_disarm_command_cannot_be_lost_nor_undone_by_an_earlier_arm_command() {
     assert!(shared.disarm.take());
     assert!(shared.requests.take().is_none());
     let refused = Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_DENIED));
-    let answers: Vec<_> = std::iter::from_fn(|| shared.answers.take()).collect();
-    assert_eq!(answers, vec![refused; 3]);
-    assert_eq!(replies(&shared), [Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_ACCEPTED))]);
+    assert_eq!(answers(&shared), [refused]);
+    // The other two wait for the answer to the last.
+    let [Reply::Likewise { order: first, of: second }, Reply::Likewise { order, of: last }, ref accepted] =
+        replies(&shared)[..]
+    else {
+        panic!()
+    };
+    assert!(order.frame == second && order.frame != last && [first, order].map(whichever) == [ordered(ARM_DISARM); 2]);
+    assert_eq!(*accepted, Reply::Command(ordered(ARM_DISARM).answered(MavResult::MAV_RESULT_ACCEPTED)));
 }
 
 #[test]
@@ -110,8 +118,7 @@ fn a_client_that_asks_again_and_counts_how_often_is_heard() {
     let mut fed = Fed::new(&shared);
     (0..3).for_each(|confirmation| fed.message(&COMMAND_LONG_DATA { confirmation, ..arm() }, 1_000));
     // Asked once, to be answered three times.
-    assert_eq!(shared.requests.take().map(|asked| asked.times), Some(3));
-    assert_eq!(requests(&shared), 0);
+    assert_eq!((requests(&shared), replies(&shared).len()), (1, 2));
 }
 
 #[test]
@@ -243,8 +250,8 @@ fn the_message_set_mode_means_the_command() {
         let shared = Local::new();
         Fed::new(&shared).bytes(&v2_of_payload(1, 11, EXTRA_CRC, &payload), 0);
         let order = Some(ordered(MavCmd::MAV_CMD_DO_SET_MODE));
-        let asked = request.map(|request| Asked { request, order, times: 1 });
-        assert_eq!(shared.requests.take(), asked, "{payload:?}");
+        let asked = shared.requests.take().map(|asked| (asked.request, asked.order.map(whichever)));
+        assert_eq!(asked, request.map(|request| (request, order)), "{payload:?}");
         let is_refused = request.is_none() && payload[4] == 1;
         assert_eq!((replies(&shared).len(), texts(&shared).len()), (is_refused.into(), is_refused.into()));
     }
@@ -346,7 +353,7 @@ fn a_station_that_was_refused_keeps_nobody_from_stopping_the_motors() {
             // Too early: nobody may arm yet.
             20 => fed.bytes(&from(255, 1, &arm()), now),
             // A radio does, later.
-            250 => shared.request(Asked { request: Request::Arm, order: None, times: 1 }),
+            250 => shared.request(Asked { request: Request::Arm, order: None, setpoints: None }),
             _ => {}
         }
         fed.bytes(&from(255, tick as u8, &command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [0.0; 5])), now);

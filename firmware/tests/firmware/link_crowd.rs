@@ -2,15 +2,16 @@
 
 use crate::support::desk::Desk;
 use crate::support::line::{Live, Outgoing};
-use crate::support::receiver::{Fed, Local, command, disarm, ordered, replies, texts};
+use crate::support::receiver::{Fed, Local, answers, command, disarm, ordered, replies, texts};
 use crate::support::{Simulated, from, sent, v2};
+use controller_core::governor::Motion;
 use core::cell::RefCell;
 use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
 use firmware::shared::{Asked, REQUESTS, Reply};
-use flight::{Mode, Refusal, Request};
+use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavResult, MavType, PositionTargetTypemask,
@@ -52,10 +53,10 @@ fn landing_and_disarming_are_never_crowded_out() {
     for _ in 0..40 {
         lesser().iter().for_each(|message| fed.message(message, 0));
     }
-    while shared.answers.take().is_some() {}
+    let _ = (answers(&shared), replies(&shared));
     fed.message(&command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), 0);
     fed.message(&command(ARM_DISARM, [0.0; 5]), 0);
-    assert!(replies(&shared).is_empty() && shared.answers.take().is_none());
+    assert!(replies(&shared).is_empty() && answers(&shared).is_empty());
     let requests = requests(&shared);
     // Of each kind the latest, in the order of their coming.
     assert!(requests.len() <= 7, "{requests:?}");
@@ -68,7 +69,7 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     let mut fed = Fed::new(&shared);
     lesser().iter().for_each(|message| fed.message(message, 0));
     for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
-        shared.request(Asked { request, order: None, times: 1 });
+        shared.request(Asked { request, order: None, setpoints: None });
     }
     let asked = std::iter::from_fn(|| shared.requests.take()).collect::<Vec<_>>();
     let by_radio = asked.iter().filter(|asked| asked.order.is_none()).count();
@@ -77,7 +78,7 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     let urgent = [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5])];
     urgent.iter().for_each(|message| fed.message(message, 0));
     for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
-        shared.request(Asked { request, order: None, times: 1 });
+        shared.request(Asked { request, order: None, setpoints: None });
     }
     lesser().iter().for_each(|message| fed.message(message, 0));
     assert_eq!(requests(&shared)[..2], [Request::Land, Request::Disarm]);
@@ -90,20 +91,25 @@ fn the_latest_of_a_kind_wins_and_the_one_before_it_is_answered() {
     fed.message(&take_off(3.0), 0);
     fed.bytes(&from(254, 190, 1, &take_off(5.0)), 0);
     let order = ordered(MavCmd::MAV_CMD_NAV_TAKEOFF);
-    let rejected = order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
-    assert_eq!(shared.answers.take(), Some(Reply::Command(rejected)));
+    let rejected = Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED));
+    assert_eq!(answers(&shared), std::slice::from_ref(&rejected));
     assert_eq!(requests(&shared), [Request::TakeOff(Some(5.0))]);
-    // One sender's is asked once and answered as often as it came.
+    // What is asked for again is one; what another takes the place of is not done.
     [2.0, 2.0, 3.0].iter().for_each(|height| fed.message(&take_off(*height), 0));
     let [asked] = asked(&shared)[..] else { panic!() };
     assert_eq!(asked.request, Request::TakeOff(Some(3.0)));
-    shared.answer(&asked, Err(Refusal::NotIdling));
-    let answers = std::iter::from_fn(|| shared.answers.take());
-    assert_eq!(answers.count(), 3);
+    assert!(matches!(replies(&shared)[..], [Reply::Likewise { .. }]));
+    assert_eq!(answers(&shared), [rejected]);
 }
 
-/// What is acknowledged of frames that come at these times, us, on a desk where everything else is well.
+/// What is acknowledged, in the name of the number of its command, of frames that come at these times, us, on a desk
+/// where everything else is well.
 fn acknowledged(frames: &[(u64, Vec<u8>)]) -> Vec<(u16, MavResult)> {
+    answered(frames).into_iter().map(|(command, _, result)| (command, result)).collect()
+}
+
+/// The same, with the system that it is for.
+fn answered(frames: &[(u64, Vec<u8>)]) -> Vec<(u16, u8, MavResult)> {
     let (clock, shared, line, written) = (Simulated::default(), Local::new(), Live::default(), RefCell::default());
     let mut desk = Desk::new(&shared);
     let outgoing = Outgoing { written: &written, at_once: 300 };
@@ -116,7 +122,66 @@ fn acknowledged(frames: &[(u64, Vec<u8>)]) -> Vec<(u16, MavResult)> {
         }
         frames.iter().filter(|(at, _)| *at == now).for_each(|(_, bytes)| line.say(bytes));
     });
-    sent::<Acknowledgement>(&written).into_iter().map(|ack| (ack.order.command, ack.result)).collect()
+    sent::<Acknowledgement>(&written)
+        .into_iter()
+        .map(|ack| (ack.order.command, ack.order.sender.0, ack.result))
+        .collect()
+}
+
+const ACCEPTED: MavResult = MavResult::MAV_RESULT_ACCEPTED;
+const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
+
+#[test]
+fn a_frame_that_comes_twice_at_once_is_answered_by_what_becomes_of_it_and_not_of_one_before() {
+    let taking_off = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
+    // Refused while disarmed; armed; then one frame twice before control has had a look at it.
+    let twice = [v2(3, &take_off(2.0)), v2(3, &take_off(2.0))].concat();
+    let frames = [(2_900_000, v2(1, &take_off(2.0))), (2_950_000, v2(2, &arm())), (3_000_000, twice)];
+    let arming = (ARM_DISARM as u16, ACCEPTED);
+    let results = [(taking_off, DENIED), arming, (taking_off, ACCEPTED), (taking_off, ACCEPTED)];
+    assert_eq!(acknowledged(&frames), results);
+}
+
+#[test]
+fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
+    let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
+    let version = command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [300.0, 0.0, 0.0, 0.0, 0.0]);
+    let nothing = command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 5]);
+    let unknown = command(MavCmd::MAV_CMD_DO_PARACHUTE, [0.0; 5]);
+    for message in [land, version, unknown, arm(), command(ARM_DISARM, [0.0; 5])] {
+        for count in [2, 3, 5, 12] {
+            let results = acknowledged(&[(3_000_000, v2(1, &message).repeat(count))]);
+            let (_, result) = results[0];
+            assert_eq!(results, vec![(message.command as u16, result); count], "{message:?}");
+        }
+    }
+    // Of equal orders that are not copies as many as there is room for, and that keeps nobody out afterwards.
+    let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
+    let many = |first: u8| (first..first + 12).flat_map(|sequence| v2(sequence, &land)).collect::<Vec<_>>();
+    let bursts = [0, 1, 2_u8].map(|burst| (3_000_000 + 20_000 * u64::from(burst), many(12 * burst)));
+    let later = (3_060_000, v2(50, &arm()).repeat(2));
+    let results = acknowledged(&[&bursts[..], &[later]].concat());
+    assert_eq!(results[..21], [(MavCmd::MAV_CMD_NAV_LAND as u16, ACCEPTED); 21]);
+    assert_eq!(results[21..], [(ARM_DISARM as u16, ACCEPTED); 2]);
+    // Nobody calibrates on this desk: what is never answered is not made up.
+    assert_eq!(acknowledged(&[(3_000_000, v2(1, &nothing).repeat(3))]), []);
+}
+
+#[test]
+fn who_asks_for_the_same_at_once_is_answered_the_same() {
+    for message in [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5]), arm()] {
+        let by = |system: u8| from(system, 190, 1, &message);
+        let mut results = answered(&[(3_000_000, [by(255), by(254), by(253)].concat())]);
+        results.sort_by_key(|(_, system, _)| *system);
+        let accepted = [253, 254, 255].map(|system| (message.command as u16, system, ACCEPTED));
+        assert_eq!(results, accepted, "{message:?}");
+    }
+    // Of two heights one is flown.
+    let (low, high) = (from(255, 190, 2, &take_off(2.0)), from(254, 190, 2, &take_off(3.0)));
+    let frames = [(2_950_000, from(255, 190, 1, &arm())), (3_000_000, [low, high].concat())];
+    let taking_off = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
+    let rejected = MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
+    assert_eq!(answered(&frames)[1..], [(taking_off, 255, rejected), (taking_off, 254, ACCEPTED)]);
 }
 
 #[test]
@@ -207,6 +272,70 @@ fn of_two_streams_of_setpoints_one_is_flown_and_the_other_told() {
     assert_eq!(words, vec!["Setpoint refused: another sender's are flown"; 2]);
     // Whose falls silent for a second has no say any more.
     fed.bytes(&from(250, 2, 101, &target(9.0)), 2_980_000);
+    assert!(shared.setpoint.take().is_some());
+}
+
+/// What becomes of OFFBOARD, asked for by a sender in an armed vehicle on the ground while others stream, each its own
+/// place: whether it is granted, whose are taken afterwards, and what is said.
+fn offboard(asker: (u8, u8), streams: &[(u8, u8)]) -> (bool, Vec<f32>, Vec<String>) {
+    let shared = Local::new();
+    let (mut fed, mut desk) = (Fed::new(&shared), Desk::new(&shared));
+    let (mut taken, mut said) = (vec![], vec![]);
+    for tick in 0..400_u64 {
+        shared.ground_station.put((), desk.now);
+        if tick == 260 {
+            let order = from(asker.0, asker.1, 1, &mode(6.0, 0.0));
+            texts(&shared);
+            fed.bytes(&order, desk.now);
+            said = texts(&shared);
+        }
+        desk.tick();
+        if tick == 250 {
+            fed.bytes(&from(asker.0, asker.1, 0, &arm()), desk.now);
+        }
+        for (place, (system, component)) in streams.iter().enumerate() {
+            fed.bytes(&from(*system, *component, tick as u8, &target(place as f32)), desk.now);
+        }
+        if tick > 261 {
+            // North is the law's y.
+            let setpoint = shared.setpoint.get().map(|setpoint| setpoint.value.motion);
+            taken.extend(setpoint.map(|motion| if let Motion::Position(place) = motion { place.y } else { panic!() }));
+        }
+    }
+    taken.dedup();
+    let flown = shared.flier.get().is_some();
+    (flown, taken, said)
+}
+
+#[test]
+fn who_asks_for_offboard_has_its_own_setpoints_flown_whoever_streams_first() {
+    let refused = vec!["No OFFBOARD by another sender's setpoints".to_owned()];
+    let (stranger, station, companion, other) = ((9, 9), (255, 190), (255, 191), (255, 192));
+    assert_eq!(offboard(station, &[stranger, station]), (true, vec![1.0], vec![]));
+    assert_eq!(offboard(station, &[station, stranger]), (true, vec![0.0], vec![]));
+    assert_eq!(offboard(station, &[companion, station]), (true, vec![1.0], vec![]));
+    // None of its own: only those of the one sender there is, of its system.
+    assert_eq!(offboard(station, &[companion]), (true, vec![0.0], vec![]));
+    for streams in [&[stranger][..], &[stranger, companion], &[companion, other]] {
+        let (flown, _, said) = offboard(station, streams);
+        assert_eq!((flown, said), (false, refused.clone()), "{streams:?}");
+    }
+}
+
+#[test]
+fn nobody_takes_a_flight_by_setpoints_over_by_asking_in_vain() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    let flier = Some((255, 190));
+    shared.flier.set(flier);
+    // Somebody else streams, and asks; until control has granted it nothing changes.
+    fed.bytes(&from(9, 9, 1, &target(9.0)), 1_000);
+    fed.bytes(&from(9, 9, 2, &mode(6.0, 0.0)), 2_000);
+    let [asked] = asked(&shared)[..] else { panic!() };
+    assert_eq!(asked.setpoints, Some((9, 9)));
+    fed.bytes(&from(9, 9, 3, &target(9.0)), 3_000);
+    assert!(shared.setpoint.take().is_none());
+    fed.bytes(&from(255, 190, 1, &target(1.0)), 4_000);
     assert!(shared.setpoint.take().is_some());
 }
 

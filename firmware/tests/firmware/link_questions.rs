@@ -31,7 +31,7 @@ fn commands_nobody_knows_are_answered_as_unsupported() {
             payload[30] = target;
             let shared = Local::new();
             Fed::new(&shared).bytes(&v2_of_payload(1, id, crc, &payload), 0);
-            let order = Order { command: 65_000, sender: (255, 190) };
+            let order = Order { command: 65_000, sender: (255, 190), frame: 0 };
             let unsupported = Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED));
             assert_eq!(replies(&shared), vec![unsupported; answers]);
         }

@@ -16,7 +16,7 @@ use crate::support::{Simulated, v1, v2};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
-use firmware::link::signing::{AHEAD, Key, LEAST_AHEAD, Refusal, STREAMS, Signing, Stamp};
+use firmware::link::signing::{AHEAD, Key, LATEST, LEAP, LEAST_AHEAD, Refusal, STREAMS, Signing, Stamp};
 use firmware::link::transmit::transmit;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::Name;
@@ -451,4 +451,39 @@ fn signing_that_was_turned_off_stays_off_after_a_restart() {
     Storage::load(Words::<32>(&chip), again.for_storage());
     Fed::new(&again).message(&disarm(), NOW);
     assert!(is_stopped(&again));
+}
+
+/// A frame with this stamp, whatever it is, of a system that says nothing else.
+fn stamped(system: u32, stamp: Stamp) -> Vec<u8> {
+    Sender::new(system, key(), 0).say(&HEARTBEAT_DATA::DEFAULT, stamp * 10)
+}
+
+#[test]
+fn one_stamp_far_ahead_deafens_nobody() {
+    let signing = Signing::<NoopRawMutex>::new();
+    signing.set(key(), FIRST, 0);
+    let year = LEAP;
+    // Nobody was heard since the start: the first may set the clock, but not beyond what 48 bits last for.
+    for stamp in [LATEST, (1 << 48) - 5_000, (1 << 48) - 1] {
+        assert_eq!(judged(&signing, &stamped(7, stamp), 0), Err(Refusal::Ahead));
+    }
+    assert_eq!(judged(&signing, &stamped(7, FIRST + 9 * year), 0), Ok(()));
+    // After that a clock that is wrong by years is refused, of a stream that is known and of another.
+    let now = FIRST + 9 * year;
+    for (system, stamp) in [(7, now + year + 1), (8, now + 2 * year), (8, LATEST - 1)] {
+        assert_eq!(judged(&signing, &stamped(system, stamp), 0), Err(Refusal::Ahead));
+    }
+    // And those whose clock is right are heard.
+    assert_eq!(judged(&signing, &stamped(9, now + 1), 0), Ok(()));
+    assert_eq!(judged(&signing, &stamped(7, now + 2), 0), Ok(()));
+    assert_eq!(judged(&signing, &stamped(9, now + year), 0), Ok(()));
+    // A key may come with any stamp.
+    signing.set(Key::new([9; 32]), Stamp::MAX, 0);
+    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST);
+    assert_eq!(judged(&signing, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
+    // After a start somebody may set it once more.
+    let started = Signing::<NoopRawMutex>::new();
+    started.restore(&signing.unkept(0).unwrap());
+    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST + 9 * year);
+    assert_eq!(judged(&started, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
 }

@@ -196,13 +196,13 @@ fn the_battery_is_told_while_it_is_known() {
 fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    let by = |command: u16, sender: (u8, u8)| Order { command, sender };
-    let asked = |sender| Asked { request: Request::Arm, order: Some(by(command as u16, sender)), times: 1 };
+    let by = |command: u16, sender: (u8, u8)| Order { command, sender, frame: 0 };
+    let asked = |sender| Asked { request: Request::Arm, order: Some(by(command as u16, sender)), setpoints: None };
     shared.answer(&asked((255, 190)), Ok(()));
     shared.answer(&asked((7, 1)), Err(Refusal::PosesUnsettled));
     shared.answer(&asked((0, 0)), Ok(()));
     // Nobody on the link.
-    shared.answer(&Asked { request: Request::Arm, order: None, times: 1 }, Ok(()));
+    shared.answer(&Asked { request: Request::Arm, order: None, setpoints: None }, Ok(()));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
     shared.replies.put(Reply::Command(by(other as u16, (254, 0)).answered(result))).unwrap();
     shared.replies.put(Reply::Command(by(65_000, (1, 191)).answered(result))).unwrap();
@@ -241,7 +241,7 @@ fn what_is_requested_is_accepted_where_there_is_anything_to_send() {
 }
 
 const ARM: Asked =
-    Asked { request: Request::Arm, order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)), times: 1 };
+    Asked { request: Request::Arm, order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)), setpoints: None };
 
 #[test]
 fn what_is_said_to_an_idle_line_goes_out_at_once() {

@@ -154,7 +154,7 @@ fn nobody_arms_while_somebody_is_busy() {
             for end in [now - 5_000, now] {
                 shared.increment(increment(end));
             }
-            shared.request(Asked { request: Request::Arm, order: None, times: 1 });
+            shared.request(Asked { request: Request::Arm, order: None, setpoints: None });
             control.tick(now);
             texts(&shared)
         };

@@ -115,8 +115,8 @@ impl<'m> Pilot<'m> {
         if self.mode == Mode::TakingOff && self.chain.as_ref().is_ok_and(|chain| chain.rises(height)) {
             return Ok(());
         }
-        require(self.mode == Mode::Idling, Refusal::NotIdling)?;
         require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
+        permission::to_take_off(self.mode)?;
         require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
         self.begin(inputs, estimate)?;
         self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))

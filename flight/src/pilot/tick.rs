@@ -10,6 +10,7 @@
 use super::Pilot;
 use crate::estimate::Estimate;
 use crate::exchange::{Inputs, Outcome};
+use crate::rules::Mode;
 
 impl Pilot<'_> {
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
@@ -50,6 +51,7 @@ impl Pilot<'_> {
             is_airborne: self.is_airborne(),
             may_fall: self.fall.may_fall(),
             setpoint,
+            wants_setpoints: self.mode == Mode::Flying || self.wanted_since.is_some(),
             estimated: estimate.state,
             health: estimate.health,
             pose: estimate.pose,

@@ -36,6 +36,8 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::BatteryMissing,
         Refusal::InTheAir,
         Refusal::NotIdling,
+        Refusal::TakingOff,
+        Refusal::Flies,
         Refusal::NotInTheAir,
         Refusal::Landing,
         Refusal::WithoutPose,

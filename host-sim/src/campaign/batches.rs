@@ -10,8 +10,7 @@ use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, Schema};
 use sha2::{Digest, Sha256};
 use std::cell::Cell;
-use std::fs;
-use std::io::{Cursor, Write};
+use std::io::{Cursor, Read, Write};
 use std::panic;
 use std::path::Path;
 use std::sync::Once;
@@ -40,17 +39,24 @@ pub fn write_sealed(path: &Path, schema: &Schema, batch: &RecordBatch) -> Result
     store(path, &[&bytes, &Sha256::digest(&bytes)])
 }
 
+/// All of a file, however long: this program wrote it.
+fn whole(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    scenario::text::open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// The batches of a result, if they are there and of that SHA-256, where it is known.
 #[must_use]
 pub fn read(path: &Path, expected: Option<&str>) -> Option<Vec<RecordBatch>> {
-    let bytes = fs::read(path).ok()?;
+    let bytes = whole(path).ok()?;
     expected.is_none_or(|expected| sha256(&bytes) == expected).then(|| decoded(&bytes)).flatten()
 }
 
 /// The batches of a part, if they are there and whole.
 #[must_use]
 pub fn read_sealed(path: &Path) -> Option<Vec<RecordBatch>> {
-    let bytes = fs::read(path).ok()?;
+    let bytes = whole(path).ok()?;
     if bytes.ends_with(MAGIC) {
         return decoded(&bytes);
     }

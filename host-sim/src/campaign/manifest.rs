@@ -7,7 +7,6 @@ use crate::flier::{LawChoice, OURS};
 use crate::rivals::kind::Kind;
 use scenario::Scenario;
 use serde_json::{Value, json};
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
@@ -129,7 +128,7 @@ impl Manifest {
     /// If its manifest cannot be read or is malformed.
     pub fn of(directory: &Path) -> Result<Option<Self>, CampaignError> {
         let path = directory.join(MANIFEST);
-        let text = match fs::read_to_string(&path) {
+        let text = match scenario::text::read(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(CampaignError::Input(format!("{}: cannot be read: {error}", path.display()))),

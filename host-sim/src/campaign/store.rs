@@ -127,7 +127,7 @@ impl Store {
     /// If it cannot be read, or is not what was flown.
     pub fn scenario(&self) -> Result<String, CampaignError> {
         let path = self.scenario_file();
-        let text = fs::read_to_string(&path)
+        let text = scenario::text::read(&path)
             .map_err(|error| CampaignError::Input(format!("{}: cannot be read: {error}", path.display())))?;
         if batches::sha256(text.as_bytes()) == self.manifest.scenario {
             return Ok(text);

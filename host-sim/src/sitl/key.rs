@@ -1,25 +1,21 @@
 //! The key that frames are signed with, from a file: 64 hexadecimal digits.
 
 use firmware::link::signing::{KEY, Key, Stamp};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// 2015 began so long after 1970.
 const EPOCH: Duration = Duration::from_secs(1_420_070_400);
 
-/// The longest file that is looked at, bytes: nothing says that it ends.
-const LONGEST: u64 = 256;
+/// The longest file, bytes: a key with some white space.
+const LONGEST: u64 = 4_096;
 
 /// The key in a file.
 ///
 /// # Errors
 /// In words, if the file cannot be read or holds no key. What it holds is not shown.
 pub fn read(path: &Path) -> Result<Key, String> {
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(LONGEST).read_to_end(&mut text))
+    let text = scenario::text::bytes(path, LONGEST)
         .map_err(|error| format!("--signing-key {}: cannot be read: {error}", path.display()))?;
     parsed(text.trim_ascii()).ok_or_else(|| {
         let digits = 2 * KEY;

@@ -256,6 +256,25 @@ fn set_down_at_a_lean_it_keeps_its_pose() {
 }
 
 #[test]
+fn a_key_that_was_kept_is_the_cameras_as_well() {
+    let path = std::env::temp_dir().join(format!("sitl-kept-key-{}", std::process::id()));
+    let key = Key::new([7; _]);
+    let boot = |key| Flown::boot_with(PoseSource::Camera, STUDY, &[], Some(path.clone()), key);
+    // Long enough to be saved.
+    let mut given = boot(key);
+    given.signing.set(key, key::now(), 0);
+    given.pass(6.0);
+    assert_eq!(given.mode(), Mode::Ready, "{:?}", given.sitl.texts);
+    drop(given);
+    let mut kept = boot(None);
+    kept.signing.set(key, key::now() + 2 * AHEAD, 0);
+    kept.pass(6.0);
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(kept.mode(), Mode::Ready, "{:?}", kept.sitl.texts);
+    assert!(!kept.said("Refused: not signed"));
+}
+
+#[test]
 fn parameters_outlast_a_session_and_count_at_the_next_boot() {
     use firmware::parameters::table::Name;
     let file = std::env::temp_dir().join(format!("sitl-parameters-{}", std::process::id()));

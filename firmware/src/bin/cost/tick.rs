@@ -67,7 +67,7 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
             _ => None,
         };
         if let Some(request) = asked {
-            link.request(Asked { request, order: None, times: 1 });
+            link.request(Asked { request, order: None, setpoints: None });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {

@@ -44,35 +44,41 @@ impl<M: RawMutex> Receiver<'_, M> {
     where
         for<'m> Call: From<&'m D>,
     {
-        let sender = (frame.header.system, frame.header.component);
-        let Some(message) = message else {
-            let unknown = command_of(frame.message, frame.payload);
-            match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
-                Some((command, _)) => {
-                    let order = Order { command, sender };
-                    self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
-                }
-                None => self.refused(),
-            }
-            return;
-        };
+        let Some(message) = message else { return self.unknown(frame) };
         let (system, component) = message.target();
-        if !self.is_addressed(system, component) {
-            return;
+        if self.is_addressed(system, component) {
+            self.call(frame, &Call::from(message));
         }
-        let call = Call::from(message);
-        let (order, armed) = (Order { command: call.command as u16, sender }, self.shared.commander().get());
+    }
+
+    /// Answers a command that the dialect does not have.
+    #[inline(never)]
+    fn unknown(&mut self, frame: &Frame<'_>) {
+        let unknown = command_of(frame.message, frame.payload);
+        match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
+            Some((command, _)) => {
+                let order = Order::of(command, frame);
+                self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
+            }
+            None => self.refused(),
+        }
+    }
+
+    /// Acts on a command once, and has it answered.
+    #[inline(never)]
+    fn call(&mut self, frame: &Frame<'_>, call: &Call) {
+        let (order, armed) = (Order::of(call.command as u16, frame), self.shared.commander().get());
         let delivery = self.repetitions.look(frame, order.command);
         if delivery != Delivery::New {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             self.shared.reply(match delivery {
                 Delivery::Overtaken => Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED)),
-                _ => Reply::Again(order),
+                _ => Reply::Likewise { order, of: order.frame },
             });
             return;
         }
-        let result = if !self.shared.is_armed() || self.commander.may(&call, sender, armed, frame.time) {
-            match self.act(&call, order, frame.time) {
+        let result = if !self.shared.is_armed() || self.commander.may(call, order.sender, armed, frame.time) {
+            match self.act(call, order, frame.time) {
                 Some(result) => result,
                 None => return,
             }
@@ -90,15 +96,19 @@ impl<M: RawMutex> Receiver<'_, M> {
         let origin = self.shared.origin().get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
-                if request == Request::FlySetpoints {
-                    if let Some(name) = self.unflown(now) {
-                        let words = format_args!("No OFFBOARD by {name}");
-                        self.shared.announce(Event::new(Severity::Warning, words));
-                        return Some(MavResult::MAV_RESULT_DENIED);
+                let setpoints = if request == Request::FlySetpoints {
+                    match self.take_over(order.sender, now) {
+                        Ok(sender) => Some(sender),
+                        Err(others) => {
+                            let words = format_args!("No OFFBOARD by {others}");
+                            self.shared.announce(Event::new(Severity::Warning, words));
+                            return Some(MavResult::MAV_RESULT_DENIED);
+                        }
                     }
-                    self.take_over(now);
-                }
-                self.shared.request(Asked { request, order: Some(order), times: 1 });
+                } else {
+                    None
+                };
+                self.shared.request(Asked { request, order: Some(order), setpoints });
                 return None;
             }
             Action::ForceDisarm => self.shared.request_disarm(),

@@ -9,19 +9,32 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::{SETPOINT_AGE_MAX, Stamped};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    MANUAL_CONTROL_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavMissionResult, RC_CHANNELS_OVERRIDE_DATA,
-    SET_ACTUATOR_CONTROL_TARGET_DATA, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA,
+    GPS_INPUT_DATA, MANUAL_CONTROL_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA,
+    MISSION_SET_CURRENT_DATA, MISSION_WRITE_PARTIAL_LIST_DATA, MavMissionResult, RC_CHANNELS_OVERRIDE_DATA,
+    REQUEST_DATA_STREAM_DATA, SET_ACTUATOR_CONTROL_TARGET_DATA, SET_ATTITUDE_TARGET_DATA, SET_HOME_POSITION_DATA,
+    SET_POSITION_TARGET_GLOBAL_INT_DATA, VISION_SPEED_ESTIMATE_DATA,
 };
 
-/// Messages that others fly: number, at which byte of the payload the target system is, name. The setpoints first.
-const NOT_FLOWN: [(u32, usize, &str); 5] = [
+/// Messages that others use: number, at which byte of the payload the target system is, name. The setpoints first,
+/// then what else is flown.
+const NOT_USED: [(u32, usize, &str); 12] = [
     (SET_ATTITUDE_TARGET_DATA::ID, 36, SET_ATTITUDE_TARGET_DATA::NAME),
     (SET_POSITION_TARGET_GLOBAL_INT_DATA::ID, 50, SET_POSITION_TARGET_GLOBAL_INT_DATA::NAME),
     (SET_ACTUATOR_CONTROL_TARGET_DATA::ID, 41, SET_ACTUATOR_CONTROL_TARGET_DATA::NAME),
     (MANUAL_CONTROL_DATA::ID, 10, MANUAL_CONTROL_DATA::NAME),
     (RC_CHANNELS_OVERRIDE_DATA::ID, 16, RC_CHANNELS_OVERRIDE_DATA::NAME),
+    (SET_HOME_POSITION_DATA::ID, 52, SET_HOME_POSITION_DATA::NAME),
+    (MISSION_REQUEST_INT_DATA::ID, 2, MISSION_REQUEST_INT_DATA::NAME),
+    (MISSION_SET_CURRENT_DATA::ID, 2, MISSION_SET_CURRENT_DATA::NAME),
+    (MISSION_WRITE_PARTIAL_LIST_DATA::ID, 4, MISSION_WRITE_PARTIAL_LIST_DATA::NAME),
+    (REQUEST_DATA_STREAM_DATA::ID, 2, REQUEST_DATA_STREAM_DATA::NAME),
+    (VISION_SPEED_ESTIMATE_DATA::ID, FOR_ALL, VISION_SPEED_ESTIMATE_DATA::NAME),
+    (GPS_INPUT_DATA::ID, FOR_ALL, GPS_INPUT_DATA::NAME),
 ];
 const SETPOINTS: usize = 3;
+const FLOWN: usize = 5;
+/// Behind every payload: for every system.
+const FOR_ALL: usize = 255;
 
 /// Where a mission item says whom it is for, after seven numbers of four bytes and two of two.
 const TARGET: usize = 32;
@@ -29,8 +42,8 @@ const TARGET: usize = 32;
 /// What came that is not flown.
 #[derive(Debug, Default)]
 pub(super) struct Foreign {
-    /// What was explained, bit by bit as [`NOT_FLOWN`].
-    explained: u8,
+    /// What was explained, bit by bit as [`NOT_USED`].
+    explained: u16,
     /// The last setpoint's name.
     setpoint: Option<Stamped<&'static str>>,
 }
@@ -48,7 +61,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             }
             return;
         }
-        let found = NOT_FLOWN.iter().enumerate().find(|(_, (message, ..))| *message == frame.message);
+        let found = NOT_USED.iter().enumerate().find(|(_, (message, ..))| *message == frame.message);
         let Some((index, &(.., name))) = found.filter(|(_, (_, target, _))| self.is_addressed(byte(*target), 0)) else {
             return;
         };
@@ -58,14 +71,14 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         if self.foreign.explained >> index & 1 == 0 {
             self.foreign.explained |= 1 << index;
-            self.shared.announce(Event::new(Severity::Warning, format_args!("Not flown: {name}")));
+            let what = if index < FLOWN { "flown" } else { "used" };
+            self.shared.announce(Event::new(Severity::Warning, format_args!("Not {what}: {name}")));
         }
     }
 
-    /// The setpoints that come at `now`, us, and cannot be flown, where there are no others.
+    /// The setpoints that come at `now`, us, and cannot be flown.
     pub(super) fn unflown(&self, now: u64) -> Option<&'static str> {
-        let is_flown = self.owner.is_some_and(|owner| owner.age(now) <= SETPOINT_AGE_MAX);
-        let recent = self.foreign.setpoint.filter(|setpoint| !is_flown && setpoint.age(now) <= SETPOINT_AGE_MAX);
+        let recent = self.foreign.setpoint.filter(|setpoint| setpoint.age(now) <= SETPOINT_AGE_MAX);
         recent.map(|setpoint| setpoint.value)
     }
 }

@@ -9,7 +9,6 @@ use crate::shared::{Event, Reply, Severity};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA};
-use mavlink::types::CharArray;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn list_parameters(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_LIST_DATA) {
@@ -25,7 +24,10 @@ impl<M: RawMutex> Receiver<'_, M> {
                 Ok(index) => Name::from_index(index),
                 Err(_) => message.param_id.to_str().ok().and_then(Name::from_name),
             };
-            self.reply_with_parameter(name, frame.time, &message.param_id);
+            match message.param_index {
+                index @ 0.. => self.reply_with_parameter(name, frame.time, index),
+                _ => self.reply_with_parameter(name, frame.time, message.param_id.to_str().unwrap_or("")),
+            }
         }
     }
 
@@ -35,19 +37,18 @@ impl<M: RawMutex> Receiver<'_, M> {
             if let Some(name) = name {
                 self.set(name, message.param_value, message.param_type);
             }
-            self.reply_with_parameter(name, frame.time, &message.param_id);
+            self.reply_with_parameter(name, frame.time, message.param_id.to_str().unwrap_or(""));
         }
     }
 
     /// Its value, as it is now, answers every question about a parameter. Of one that is not there nothing can be sent:
     /// who asks is told at `now`, us.
-    pub(super) fn reply_with_parameter(&mut self, name: Option<Name>, now: u64, asked: &CharArray<16>) {
+    pub(super) fn reply_with_parameter(&mut self, name: Option<Name>, now: u64, asked: impl Display) {
         match name {
             Some(name) => self.shared.reply(Reply::Parameter(name)),
             None => {
                 self.refused();
-                let words = format_args!("No parameter {}", asked.to_str().unwrap_or(""));
-                self.parameter_refused.warn(self.shared, now, words);
+                self.parameter_refused.warn(self.shared, now, format_args!("No parameter {asked}"));
             }
         }
     }

@@ -66,9 +66,28 @@ pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
     COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
 }
 
-/// The same, as whoever answers it knows it: the ground station's.
+/// The same, as whoever answers it knows it: the ground station's, in [`whichever`] frame.
 pub const fn ordered(command: MavCmd) -> Order {
-    Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id) }
+    Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id), frame: 0 }
+}
+
+/// An order, whichever frame it came in.
+pub const fn whichever(order: Order) -> Order {
+    Order { frame: 0, ..order }
+}
+
+/// A reply, whichever frame asked for it.
+fn answering_whichever(reply: Reply) -> Reply {
+    match reply {
+        Reply::Command(Acknowledgement { order, result }) => Reply::Command(whichever(order).answered(result)),
+        Reply::Requested(kind, order) => Reply::Requested(kind, whichever(order)),
+        other => other,
+    }
+}
+
+/// Control's answers that wait, taken away.
+pub fn answers(shared: &Local) -> Vec<Reply> {
+    std::iter::from_fn(|| shared.answers.take()).map(answering_whichever).collect()
 }
 
 /// A disarm command with force.
@@ -78,7 +97,7 @@ pub fn disarm() -> COMMAND_LONG_DATA {
 
 /// The replies that wait, taken away.
 pub fn replies(shared: &Local) -> Vec<Reply> {
-    std::iter::from_fn(|| shared.replies.take()).collect()
+    std::iter::from_fn(|| shared.replies.take()).map(answering_whichever).collect()
 }
 
 /// The answer to a command that is not put to control.

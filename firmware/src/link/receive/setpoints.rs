@@ -1,0 +1,125 @@
+//! Setpoints in, and whose are flown: of who asked for that, and while nobody on the link has, of who sends first.
+//!
+//! A sender's setpoints count while it has sent one that can be flown within [`SETPOINT_AGE_MAX`]. Who asks for OFFBOARD
+//! has its own flown from when control has granted it. If it sends none, they may be those of another component of its
+//! system, which has to be the only sender; of anybody else's setpoints it is refused.
+
+use super::Receiver;
+use crate::link::frame::Frame;
+use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
+use crate::radio::SILENCE as RADIO_SILENCE;
+use controller_core::governor::Setpoint;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::{SETPOINT_AGE_MAX, Stamped};
+use mavlink::dialects::common::SET_POSITION_TARGET_LOCAL_NED_DATA;
+
+/// Senders that are known at a time.
+const SENDERS: usize = 4;
+
+/// Who sends: system and component.
+type Sender = (u8, u8);
+
+/// A place for a sender. No system has this number.
+const NOBODY: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
+
+/// Who sends setpoints that can be flown.
+#[derive(Debug)]
+pub(super) struct Setpoints {
+    /// Each sender, and when its last came, us.
+    senders: [Stamped<Sender>; SENDERS],
+    /// Whose are taken while nobody on the link has asked, and when the last came, us.
+    taken: Stamped<Sender>,
+    /// The last that was refused because the sticks fly, and whose it was.
+    kept: Option<(Sender, Stamped<Setpoint>)>,
+}
+
+impl Default for Setpoints {
+    fn default() -> Self {
+        Self { senders: [NOBODY; SENDERS], taken: NOBODY, kept: None }
+    }
+}
+
+impl Setpoints {
+    /// Hears a sender, in place of the one that has been silent for longest.
+    fn hear(&mut self, sender: Sender, now: u64) {
+        if let Some(place) =
+            self.senders.iter_mut().min_by_key(|known| if known.value == sender { 0 } else { known.time })
+        {
+            *place = Stamped { value: sender, time: now };
+        }
+    }
+}
+
+fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
+    sender.value != NOBODY.value && sender.age(now) <= SETPOINT_AGE_MAX
+}
+
+impl<M: RawMutex> Receiver<'_, M> {
+    pub(super) fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
+        if self.is_addressed(message.target_system, message.target_component)
+            && let Err(refusal) = self.take_setpoint(frame, message)
+        {
+            self.refused();
+            self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
+        }
+    }
+
+    fn take_setpoint(
+        &mut self,
+        frame: &Frame<'_>,
+        message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
+    ) -> Result<(), SetpointRefusal> {
+        let state = self.shared.report().get().and_then(|report| report.value.state);
+        let value = setpoint(message, state.as_ref().and_then(Here::of).as_ref())?;
+        let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
+        self.setpoints.hear(sender, time);
+        if self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
+            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
+            self.setpoints.kept = Some((sender, Stamped { value, time }));
+            return Err(SetpointRefusal::Sticks);
+        }
+        let taken = Some(self.setpoints.taken).filter(|taken| counts(taken, time)).map(|taken| taken.value);
+        if self.shared.flier().get().or(taken).is_some_and(|flier| flier != sender) {
+            return Err(SetpointRefusal::Others);
+        }
+        self.setpoints.taken = Stamped { value: sender, time };
+        self.shared.setpoint().put(value, time);
+        Ok(())
+    }
+
+    /// Somebody asks to fly setpoints at `now`, us: whose they will be. Sticks that have fallen silent stand back, and
+    /// what was sent meanwhile counts.
+    ///
+    /// # Errors
+    /// What comes instead, in words.
+    pub(super) fn take_over(&mut self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
+        let sender = self.whose(asker, now)?;
+        self.setpoints.taken = Stamped { value: sender, time: now };
+        let sticks = self.shared.sticks().get();
+        if sticks.is_some_and(|sticks| sticks.value && sticks.age(now) > RADIO_SILENCE) {
+            self.shared.sticks().put(false, now);
+            let is_fresh = |kept: &(Sender, Stamped<Setpoint>)| kept.0 == sender && kept.1.age(now) <= SETPOINT_AGE_MAX;
+            if let Some((_, kept)) = self.setpoints.kept.take().filter(is_fresh) {
+                self.shared.setpoint().put(kept.value, kept.time);
+            }
+        }
+        Ok(sender)
+    }
+
+    /// Whose setpoints are flown if this sender asks for it; of who sends none yet its own, which may come.
+    fn whose(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
+        let mut only = None;
+        for Stamped { value, .. } in self.setpoints.senders.iter().filter(|sender| counts(sender, now)) {
+            if *value == asker {
+                return Ok(asker);
+            }
+            // Of two neither is.
+            only = Some(if only.is_none() { *value } else { NOBODY.value });
+        }
+        match only {
+            None => self.unflown(now).map_or(Ok(asker), Err),
+            Some(only) if only.0 == asker.0 => Ok(only),
+            Some(_) => Err("another sender's setpoints"),
+        }
+    }
+}
