@@ -92,7 +92,7 @@ fn the_latest_of_a_kind_wins_and_the_one_before_it_is_answered() {
     fed.bytes(&from(254, 190, 1, &take_off(5.0)), 0);
     let order = ordered(MavCmd::MAV_CMD_NAV_TAKEOFF);
     let rejected = Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED));
-    assert_eq!(answers(&shared), [rejected.clone()]);
+    assert_eq!(answers(&shared), vec![rejected.clone()]);
     assert_eq!(requests(&shared), [Request::TakeOff(Some(5.0))]);
     // What is asked for again is one; what another takes the place of is not done.
     [2.0, 2.0, 3.0].iter().for_each(|height| fed.message(&take_off(*height), 0));
