@@ -4,13 +4,11 @@
 //! panic, fault -> memory that no start clears -> reset -> shared last_words -> STATUSTEXT, card, log
 //! ```
 //!
-//! A board's last acts put them there ([`crate::ending`]), and its next start takes them away. They are told to the first
-//! ground station that is heard, to the card once it is ready, and every [`AGAIN`] until somebody arms.
+//! A board's last acts put them there ([`crate::ending`]), and its next start takes them away.
+//! [`RestartReport`](crate::status::RestartReport) says them.
 
-use crate::shared::{CardState, Event, Severity, StatusView, TEXT_MAX};
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
-use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::calculate_crc;
 
 /// Bytes of the words.
@@ -21,9 +19,6 @@ pub const SIZE: usize = 160;
 
 /// What the checksum begins with, so that zeros are no words.
 const SEED: u8 = b'W';
-
-/// Time until they are told again, us.
-pub const AGAIN: u64 = 60_000_000;
 
 /// The end of a source file's path that is told.
 const PATH: usize = 40;
@@ -91,37 +86,5 @@ impl Write for LastWords {
             self.length += end as u8;
         }
         if end < words.len() { Err(fmt::Error) } else { Ok(()) }
-    }
-}
-
-/// When and to whom they are told.
-#[derive(Debug, Default)]
-pub struct Teller {
-    /// Who listened when they were told last: a ground station, the card.
-    listened: [bool; 2],
-    /// When they are due again, us.
-    due: u64,
-    is_over: bool,
-}
-
-impl Teller {
-    /// Looks at `now`, us, whether it is time to tell them.
-    pub fn look<M: RawMutex>(&mut self, shared: StatusView<'_, M>, now: u64) {
-        self.is_over |= shared.is_armed();
-        let Some(words) = shared.last_words().get().filter(|_| !self.is_over) else { return };
-        let listening = [shared.ground_station().get().is_some(), shared.card().state() == CardState::Ready];
-        let is_new = listening.iter().zip(&self.listened).any(|(now, before)| *now && !before);
-        if !is_new && now < self.due {
-            return;
-        }
-        *self = Self { listened: listening, due: now.saturating_add(AGAIN), is_over: false };
-        let mut rest = words.value.as_str();
-        let mut head = "Restarted: ";
-        while !rest.is_empty() {
-            // Cut at a whole character, as a text is.
-            let length = rest.floor_char_boundary(TEXT_MAX - head.len());
-            shared.announce(Event::new(Severity::Critical, format_args!("{head}{rest}")));
-            (rest, head) = (rest.get(length..).unwrap_or(""), "");
-        }
     }
 }

@@ -12,9 +12,9 @@
 
 mod euler;
 mod log;
+mod restart_report;
 
 use crate::hardware::{Battery, Clock, Light};
-use crate::last_words::Teller;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Severity, StatusView};
 use embassy_futures::select::{Either, select};
@@ -22,6 +22,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Mode;
 
 pub use euler::{Euler, euler};
+pub use restart_report::{AGAIN, RestartReport};
 
 /// Time between steps, us.
 pub const STEP: u64 = 50_000;
@@ -66,7 +67,7 @@ pub async fn run<M: RawMutex>(
 ) -> ! {
     let (mut reading, mut summary, mut warning) = (0, 0, 0);
     let mut is_card_silent = false;
-    let mut teller = Teller::default();
+    let mut restart = RestartReport::default();
     loop {
         let now = clock.now();
         let report = shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
@@ -75,7 +76,7 @@ pub async fn run<M: RawMutex>(
             reading = now.saturating_add(BATTERY_INTERVAL);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
-        teller.look(shared, now);
+        restart.tick(shared, now);
         let is_silent = shared.card().is_silent(now);
         if is_silent && !is_card_silent {
             shared.announce(Event::new(Severity::Warning, "Card does not answer: flights are not logged"));

@@ -19,7 +19,7 @@ use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
-use foreign::Foreign;
+use explained::Explained;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA,
@@ -27,13 +27,15 @@ use mavlink::dialects::common::{
     MISSION_REQUEST_LIST_DATA, MavType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
     SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SETUP_SIGNING_DATA, TIMESYNC_DATA,
 };
-use setpoints::Setpoints;
+use senders::Senders;
 
 mod commands;
+mod explained;
 mod foreign;
 mod parameters;
 mod places;
 mod recordings;
+mod senders;
 mod setpoints;
 mod signatures;
 
@@ -109,8 +111,8 @@ pub struct Receiver<'a, M: RawMutex> {
     /// When the time may be told again, us.
     next_time_told: u64,
     traffic: Traffic,
-    setpoints: Setpoints,
-    foreign: Foreign,
+    setpoints: Senders,
+    foreign: Explained,
 }
 
 impl<'a, M: RawMutex> Receiver<'a, M> {
@@ -130,8 +132,8 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             signature_refused: Occasionally::default(),
             next_time_told: 0,
             traffic: Traffic::default(),
-            setpoints: Setpoints::default(),
-            foreign: Foreign::default(),
+            setpoints: Senders::default(),
+            foreign: Explained::default(),
         }
     }
 

@@ -2,16 +2,17 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
-use firmware::last_words::{AGAIN, LastWords, SIZE, Teller};
+use firmware::last_words::{LastWords, SIZE};
 use firmware::shared::CardState;
+use firmware::status::{AGAIN, RestartReport};
 use flight::Mode;
 
 const FAULT: &str = "fault at 0x08012344 from 0x08012001, CFSR 0x00008200, HFSR 0x40000000, BFAR 0x00000004";
 
-fn told() -> (Local, Teller) {
+fn told() -> (Local, RestartReport) {
     let shared = Local::new();
     shared.last_words.put(LastWords::new(FAULT), 0);
-    (shared, Teller::default())
+    (shared, RestartReport::default())
 }
 
 #[test]
@@ -38,26 +39,26 @@ fn words_without_room_are_cut_at_whole_characters() {
 #[test]
 fn the_first_ground_station_that_is_heard_is_told_why_the_vehicle_restarted() {
     let (shared, mut teller) = told();
-    teller.look(shared.for_status(), 0);
+    teller.tick(shared.for_status(), 0);
     let first = texts(&shared);
     assert_eq!(first.concat(), format!("Restarted: {FAULT}"));
     assert!(first.iter().all(|line| line.len() <= 50));
-    teller.look(shared.for_status(), 50_000);
+    teller.tick(shared.for_status(), 50_000);
     assert!(texts(&shared).is_empty());
     shared.ground_station.put((), 100_000);
-    teller.look(shared.for_status(), 100_000);
+    teller.tick(shared.for_status(), 100_000);
     assert_eq!(texts(&shared), first);
-    teller.look(shared.for_status(), 150_000);
+    teller.tick(shared.for_status(), 150_000);
     assert!(texts(&shared).is_empty());
 }
 
 #[test]
 fn the_card_is_told_once_it_is_ready() {
     let (shared, mut teller) = told();
-    teller.look(shared.for_status(), 0);
+    teller.tick(shared.for_status(), 0);
     assert!(shared.card_events.take().is_none());
     shared.card.set(CardState::Ready, 3_000_000);
-    teller.look(shared.for_status(), 3_000_000);
+    teller.tick(shared.for_status(), 3_000_000);
     assert!(shared.card_events.take().is_some());
 }
 
@@ -65,7 +66,7 @@ fn the_card_is_told_once_it_is_ready() {
 fn it_is_told_again_until_somebody_arms() {
     let (shared, mut teller) = told();
     let mut count = |time| {
-        teller.look(shared.for_status(), time);
+        teller.tick(shared.for_status(), time);
         texts(&shared).len()
     };
     assert_eq!([count(0), count(AGAIN - 1), count(AGAIN), count(AGAIN + 1)], [2, 0, 2, 0]);

@@ -39,15 +39,6 @@ const FOR_ALL: usize = 255;
 /// Where a mission item says whom it is for, after seven numbers of four bytes and two of two.
 const TARGET: usize = 32;
 
-/// What came that is not flown.
-#[derive(Debug, Default)]
-pub(super) struct Foreign {
-    /// What was explained, bit by bit as [`NOT_USED`].
-    explained: u16,
-    /// The last setpoint's name.
-    setpoint: Option<Stamped<&'static str>>,
-}
-
 impl<M: RawMutex> Receiver<'_, M> {
     /// Explains or answers a message that is not understood.
     pub(super) fn foreign(&mut self, frame: &Frame<'_>) {

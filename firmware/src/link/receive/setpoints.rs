@@ -5,6 +5,7 @@
 //! system, which has to be the only sender; of anybody else's setpoints it is refused.
 
 use super::Receiver;
+use super::senders::{NOBODY, Sender, counts};
 use crate::link::frame::Frame;
 use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
 use crate::radio::SILENCE as RADIO_SILENCE;
@@ -12,47 +13,6 @@ use controller_core::governor::Setpoint;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::{SETPOINT_AGE_MAX, Stamped};
 use mavlink::dialects::common::SET_POSITION_TARGET_LOCAL_NED_DATA;
-
-/// Senders that are known at a time.
-const SENDERS: usize = 4;
-
-/// Who sends: system and component.
-type Sender = (u8, u8);
-
-/// A place for a sender. No system has this number.
-const NOBODY: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
-
-/// Who sends setpoints that can be flown.
-#[derive(Debug)]
-pub(super) struct Setpoints {
-    /// Each sender, and when its last came, us.
-    senders: [Stamped<Sender>; SENDERS],
-    /// Whose are taken while nobody on the link has asked, and when the last came, us.
-    taken: Stamped<Sender>,
-    /// The last that was refused because the sticks fly, and whose it was.
-    kept: Option<(Sender, Stamped<Setpoint>)>,
-}
-
-impl Default for Setpoints {
-    fn default() -> Self {
-        Self { senders: [NOBODY; SENDERS], taken: NOBODY, kept: None }
-    }
-}
-
-impl Setpoints {
-    /// Hears a sender, in place of the one that has been silent for longest.
-    fn hear(&mut self, sender: Sender, now: u64) {
-        if let Some(place) =
-            self.senders.iter_mut().min_by_key(|known| if known.value == sender { 0 } else { known.time })
-        {
-            *place = Stamped { value: sender, time: now };
-        }
-    }
-}
-
-fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
-    sender.value != NOBODY.value && sender.age(now) <= SETPOINT_AGE_MAX
-}
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {

@@ -1,0 +1,46 @@
+//! Who sends setpoints.
+
+use controller_core::governor::Setpoint;
+use flight::{SETPOINT_AGE_MAX, Stamped};
+
+/// Senders that are known at a time.
+const SENDERS: usize = 4;
+
+/// Who sends: system and component.
+pub(super) type Sender = (u8, u8);
+
+/// A place for a sender. No system has this number.
+pub(super) const NOBODY: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
+
+/// Who sends setpoints that can be flown.
+#[derive(Debug)]
+pub(super) struct Senders {
+    /// Each sender, and when its last came, us.
+    pub senders: [Stamped<Sender>; SENDERS],
+    /// Whose are taken while nobody on the link has asked, and when the last came, us.
+    pub taken: Stamped<Sender>,
+    /// The last that was refused because the sticks fly, and whose it was.
+    pub kept: Option<(Sender, Stamped<Setpoint>)>,
+}
+
+impl Default for Senders {
+    fn default() -> Self {
+        Self { senders: [NOBODY; SENDERS], taken: NOBODY, kept: None }
+    }
+}
+
+impl Senders {
+    /// Hears a sender, in place of the one that has been silent for longest.
+    pub fn hear(&mut self, sender: Sender, now: u64) {
+        if let Some(place) =
+            self.senders.iter_mut().min_by_key(|known| if known.value == sender { 0 } else { known.time })
+        {
+            *place = Stamped { value: sender, time: now };
+        }
+    }
+}
+
+/// Whether a sender's setpoints count at `now`, us.
+pub(super) fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
+    sender.value != NOBODY.value && sender.age(now) <= SETPOINT_AGE_MAX
+}
