@@ -195,19 +195,24 @@ fn a_key_without_an_end_is_refused_at_once() {
 
 #[cfg(unix)]
 #[test]
-fn a_device_without_an_end_is_refused_and_not_read_to_exhaustion() {
+fn what_is_no_file_is_refused_and_neither_waited_for_nor_read_to_exhaustion() {
     let directory = directory("endless");
-    for command in ["certify", "fly", "tune", "campaign", "compare", "law"] {
-        let output = host_sim(&directory, &[command, "/dev/zero"]);
-        let message = stderr(&output);
-        assert_eq!((status(&output), message.lines().count()), (2, 1), "{command}: {message}");
-        assert!(message.contains("/dev/zero: cannot be read: is no regular file"), "{command}: {message}");
-    }
-    let sources = [&["identify", "/dev/zero"][..], &["identify", "log.csv", "--scenario", "/dev/zero"]];
-    for arguments in [&sources[..], &[&["sitl", "--parameters", "/dev/zero"]]].concat() {
-        let output = host_sim(&directory, arguments);
-        let message = stderr(&output);
-        assert_eq!((status(&output), message.lines().count()), (2, 1), "{arguments:?}: {message}");
-        assert!(message.contains("/dev/zero: cannot be read: is no regular file"), "{arguments:?}: {message}");
+    // Nobody writes to it.
+    assert!(std::process::Command::new("mkfifo").arg(directory.join("pipe")).status().unwrap().success());
+    for source in ["/dev/zero", "pipe"] {
+        let alone =
+            ["certify", "fly", "tune", "campaign", "compare", "law", "identify"].map(|command| vec![command, source]);
+        let besides = [
+            vec!["identify", "log.csv", "--scenario", source],
+            vec!["sitl", "--parameters", source],
+            vec!["sitl", "--signing-key", source],
+        ];
+        for arguments in alone.into_iter().chain(besides) {
+            let output = host_sim(&directory, &arguments);
+            let message = stderr(&output);
+            assert_eq!((status(&output), message.lines().count()), (2, 1), "{arguments:?}: {message}");
+            let words = format!("{source}: cannot be read: is no regular file");
+            assert!(message.contains(&words), "{arguments:?}: {message}");
+        }
     }
 }

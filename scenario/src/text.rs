@@ -23,12 +23,24 @@ const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/threa
 /// Opens a file for reading. Opening a pipe waits until somebody writes to it, and reading a device may never end.
 ///
 /// # Errors
-/// If there is none, or it is something else, unless it was opened already by who started the program.
+/// If there is none, or it is [none to read](regular).
 pub fn open(path: &Path) -> io::Result<File> {
-    if !GIVEN.iter().any(|given| path.starts_with(given)) && !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"));
-    }
+    regular(path)?;
     File::open(path)
+}
+
+/// Whether a path may be opened: where there is nothing, that is for who opens it to find.
+///
+/// # Errors
+/// If it is no regular file, unless it was opened already by who started the program.
+pub fn regular(path: &Path) -> io::Result<()> {
+    let is_given = GIVEN.iter().any(|given| path.starts_with(given));
+    match std::fs::metadata(path) {
+        Ok(what) if !what.is_file() && !is_given => {
+            Err(io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The bytes of `path`.

@@ -31,6 +31,11 @@ impl DeskFlash {
     /// In words, if the file cannot be read, is something else, or could not be written later: what is set in a session
     /// is to outlast it.
     pub fn open(file: Option<PathBuf>) -> Result<Self, String> {
+        let unreadable = |path: &PathBuf, error| format!("--parameters {}: cannot be read: {error}", path.display());
+        // Before it is opened for writing, which waits where it is a pipe.
+        if let Some(path) = &file {
+            scenario::text::regular(path).map_err(|error| unreadable(path, error))?;
+        }
         let unwritable = |path: &PathBuf, error| format!("--parameters {}: cannot be written: {error}", path.display());
         let alone = |path: &PathBuf| WholeFile::alone(path).map_err(|error| unwritable(path, error));
         let _alone = file.as_ref().map(alone).transpose()?.map(Rc::new);
@@ -40,7 +45,7 @@ impl DeskFlash {
         let image = match scenario::text::bytes(path, wanted as u64) {
             Ok(image) => image,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(flash),
-            Err(error) => return Err(format!("--parameters {}: cannot be read: {error}", path.display())),
+            Err(error) => return Err(unreadable(path, error)),
         };
         if image.len() != wanted {
             return Err(format!(
