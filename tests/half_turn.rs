@@ -1,4 +1,5 @@
-//! Attitude laws near the half turn: the continuous one unwinds, noise holds the memoryless one there, ours does neither.
+//! Attitude laws near the half turn: the continuous one unwinds, noise holds the memoryless one there, ours does
+//! neither.
 
 use controller_core::controller::Memory;
 use controller_core::law::Law;

@@ -58,7 +58,6 @@
 
 #![no_std]
 #![deny(unsafe_code)]
-#![warn(missing_docs)]
 // A tick has no way to panic; nor has configuration.
 #![cfg_attr(
     not(test),
@@ -69,7 +68,7 @@
 #[cfg(test)]
 extern crate self as controller_core;
 #[cfg(test)]
-#[path = "../../tests/support/hummingbird.rs"]
+#[path = "../tests/support/hummingbird.rs"]
 mod hummingbird;
 
 pub mod allocation;

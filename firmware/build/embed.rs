@@ -3,8 +3,8 @@
 //! With it goes which factors on its gains have sampled loops with margin, judged here because no board can, and a
 //! number by which parameters that were tuned on one configuration know that they are on another.
 //!
-//! The numbers are written with all the digits that reading back bit for bit takes. Nothing that is worked out from them is
-//! carried over: the board works out the rotors' inverse and the certificate again at boot.
+//! The numbers are written with all the digits that reading back bit for bit takes. Nothing that is worked out from
+//! them is carried over: the board works out the rotors' inverse and the certificate again at boot.
 
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};

@@ -113,7 +113,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.shared.commander().put(order.map(|order| order.sender), now);
         }
         if !outcome.wants_setpoints {
-            self.shared.flier().set(None);
+            self.shared.setpoint_owner().set(None);
         }
         self.tell(&outcome, asked);
         if has_armed && self.shared.pose_delay_unknown().is_raised() {

@@ -20,7 +20,7 @@ pub const SIZE: usize = 160;
 /// What the checksum begins with, so that zeros are no words.
 const SEED: u8 = b'W';
 
-/// The end of a source file's path that is told.
+/// The part of a source file's path that is kept: its end.
 const PATH: usize = 40;
 
 /// The words; what does not fit is cut off.

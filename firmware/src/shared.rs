@@ -25,7 +25,6 @@ mod card;
 mod count;
 mod event;
 mod flag;
-mod flier;
 mod lately;
 mod latest;
 mod library;
@@ -33,6 +32,7 @@ mod queue;
 mod reply;
 mod report;
 mod requests;
+mod setpoint_owner;
 mod table;
 
 pub use access::{All, Read, Take, Write};
@@ -40,13 +40,13 @@ pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
 pub use count::Count;
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
-pub use flier::Flier;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
 pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Report, Timing, Traffic};
 pub use requests::{REQUESTS, Requests};
+pub use setpoint_owner::SetpointOwner;
 
 use self::lately::Lately;
 use crate::last_words::LastWords;
@@ -149,9 +149,9 @@ values! {
     pub report: Latest<M, Report> { Write: ControlView; Read: RadioView, ReceiveView, TransmitView, StatusView }
     /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
     pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView }
-    /// Whose setpoints are flown, or will be once they come, by system and component; none where nobody on the link has
-    /// asked for that.
-    pub flier: Flier { Write: ControlView; Read: ReceiveView }
+    /// Whose setpoints are flown, or will be once they come, by system and component; none without such a request on
+    /// the link.
+    pub setpoint_owner: SetpointOwner { Write: ControlView; Read: ReceiveView }
     /// Answers to requests. Put in with [`Values::answer`].
     pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
     /// What the receiving half of the link gives the sending half to say. Put in with [`Values::reply`].
@@ -268,7 +268,7 @@ impl<M: RawMutex> Values<M> {
     pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
         match result {
             Err(refusal) => self.announce(Event::Refused(refusal)),
-            Ok(()) if matches!(asked.request, Request::FlySetpoints) => self.flier.set(asked.setpoints),
+            Ok(()) if matches!(asked.request, Request::FlySetpoints) => self.setpoint_owner.set(asked.setpoints),
             Ok(()) => {}
         }
         let Some(order) = asked.order else { return };

@@ -30,14 +30,13 @@
 
 #![no_std]
 #![deny(unsafe_code)]
-#![warn(missing_docs)]
 #![cfg_attr(
     not(test),
     deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)
 )]
 
 #[cfg(test)]
-#[path = "../../tests/support/hummingbird.rs"]
+#[path = "../../controller-core/tests/support/hummingbird.rs"]
 mod hummingbird;
 
 mod bench;

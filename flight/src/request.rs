@@ -46,7 +46,7 @@ impl Newest {
         self.1 = Some((refusal, now));
     }
 
-    /// Why there is none at `now`, us.
+    /// Why there is no setpoint at `now`, us.
     pub fn refused(&self, now: u64) -> Refusal {
         let recent = self.1.filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX);
         recent.map_or(Refusal::NoSetpoints, |(refusal, _)| refusal)

@@ -214,8 +214,8 @@ One line of 33 numbers in, one line of 4 numbers out, flushed, until end of inpu
   out:  thrust [N], torque x y z [N m]; not clipped to any limit
 The output uses the filters as they stand, which then advance by the line's dt (0.00025 to 0.1 s, and under
 the extended law at most 0.6 over the greater estimates.force_bandwidth). A line that cannot be used, or is longer than 64 KB, is
-answered by \"error: ...\" on its turn and changes nothing. Beyond these, numbers cannot be used: x 1e6 m; v 300 m/s; omega
-and yaw rate 300 rad/s; a 300 m/s^2, j 1e4 m/s^3, s 1e6 m/s^4; yaw 1e6 rad, its acceleration 1e4 rad/s^2.";
+answered by \"error: ...\" on its turn and changes nothing. Beyond these, numbers cannot be used: x 1e6 m; v 1e4 m/s; omega
+and yaw rate 1e4 rad/s; a 1e4 m/s^2, j 1e6 m/s^3, s 1e8 m/s^4; yaw 1e6 rad, its acceleration 1e6 rad/s^2.";
 
 const HIL_HELP: &str = "\
 The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the file's order. Each moves

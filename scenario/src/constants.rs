@@ -11,7 +11,7 @@ pub fn keys(table: &[Constant], section: &str) -> Vec<&'static str> {
     table.iter().filter(|constant| constant.section == section).map(|constant| constant.key).collect()
 }
 
-/// Reads the constants of `table` that stand in `section`; what is left out is none.
+/// Reads the constants of `table` that stand in `section`; a constant that is left out has no value.
 ///
 /// # Errors
 /// Names the key that is unknown, or whose value is outside its range.

@@ -123,6 +123,6 @@ fn about_x(angle: f64) -> Quaternion<f64> {
     Quaternion::new(cos, sin, 0.0, 0.0)
 }
 
-/// Gains of [quaternion feedback](host_sim::rivals::quaternion_feedback) that push as hard at half a turn as Table I, and damp as
-/// well.
+/// Gains of [quaternion feedback](host_sim::rivals::quaternion_feedback) that push as hard at half a turn as Table I,
+/// and damp as well.
 pub const LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];

@@ -56,3 +56,6 @@ pub fn flyable(airframe: &Airframe, law: ExtendedLaw, least: &ReferenceBounds) -
     }
     least.covering(&most)
 }
+
+#[cfg(test)]
+mod tests;

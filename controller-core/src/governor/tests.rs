@@ -8,7 +8,7 @@ use std::boxed::Box;
 use std::string::{String, ToString};
 pub(super) use xorshift::Random;
 
-#[path = "../../../tests/support/xorshift.rs"]
+#[path = "../../tests/support/xorshift.rs"]
 mod xorshift;
 
 /// Bounds a small quadrotor certifies.

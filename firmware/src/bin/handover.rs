@@ -1,6 +1,7 @@
 //! Starts twice on an emulated board. The first start spoils all that a bootloader may leave of the core, and jumps to
-//! the image's first instruction as a bootloader does; the second looks whether it begins as after a reset. Then
-//! it leaves last words and resets the chip; the third start finds them, and its stack overflows. Run by `.ci/emulated handover`.
+//! the image's first instruction as a bootloader does; the second looks whether it begins as after a reset. Then it
+//! leaves last words and resets the chip; the third start finds them, and its stack overflows. Run by
+//! `.ci/emulated handover`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -41,7 +42,7 @@ mod target {
     #[cortex_m_rt::entry]
     fn main() -> ! {
         let control = control::read();
-        // SAFETY: one thread, aligned memory that nobody else touches; any bits are a number.
+        // SAFETY: one thread, aligned memory that nothing else touches; any bits are a number.
         if let Some(words) = kept::take(false) {
             check("kept over the reset", words.as_str() == WORDS);
             let _ = mps2::begin();

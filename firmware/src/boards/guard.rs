@@ -1,12 +1,12 @@
-//! The stack's end: a guard that nobody may touch, and a fault that is handled on a stack of its own.
+//! The stack's end: a guard that no code may touch, and a fault that is handled on a stack of its own.
 //!
 //! ```text
 //! statics | guard | <- stack, growing down | top
 //! ```
 //!
-//! A stack that overflows runs into the guard, and the memory protection unit faults before anything is overwritten. The
-//! handler cannot use that stack any more. What is on it is of no use either, as nothing that was interrupted goes on:
-//! so the handler begins again at its top.
+//! A stack that overflows runs into the guard, and the memory protection unit faults before anything is overwritten.
+//! The handler cannot use that stack any more. What is on it is of no use either, as nothing that was interrupted goes
+//! on: so the handler begins again at its top.
 //!
 //! A function whose frame is larger than the guard could step over it; `.ci/budgets` holds every frame to less.
 
@@ -39,7 +39,7 @@ fn guard() -> usize {
 pub fn watch(mpu: &mut MPU) {
     /// Privileged code has the default map elsewhere; the unit is on.
     const ON: u32 = 0b101;
-    /// No execution; the size as a power of two, less one; on. Nobody may read or write.
+    /// No execution; the size as a power of two, less one; on. No access.
     const NO_ACCESS: u32 = 1 << 28 | (GUARD.trailing_zeros() - 1) << 1 | 1;
     // SAFETY: nothing lies in the guard but what a stack of this size never reaches.
     unsafe {

@@ -13,11 +13,11 @@ use cortex_m::Peripherals;
 use cortex_m::peripheral::SCB;
 
 // By the runtime's own hook, which comes before memory is set up: without using a stack (it may lie in a memory that is
-// off) and without a float. No interrupt until `begin_anew` has ended those that are armed, none masked by priority; the
-// floating-point unit saves registers by itself and lazily (FPCCR), none are left to be saved, an interrupt begins with
-// the default rounding (FPDSCR); the main stack; no float is in use (CONTROL.FPCA). On a Cortex-M7, whose part number is
-// 0xC27, both tightly coupled memories are on (ITCMCR, DTCMCR), and the instruction cache holds nothing (ICIALLU): a
-// bootloader may have left it on, with what was in flash before it wrote there.
+// off) and without a float. No interrupt until `begin_anew` has ended those that are armed, none masked by priority;
+// the floating-point unit saves registers by itself and lazily (FPCCR), none are left to be saved, an interrupt begins
+// with the default rounding (FPDSCR); the main stack; no float is in use (CONTROL.FPCA). On a Cortex-M7, whose part
+// number is 0xC27, both tightly coupled memories are on (ITCMCR, DTCMCR), and the instruction cache holds nothing
+// (ICIALLU): a bootloader may have left it on, with what was in flash before it wrote there.
 core::arch::global_asm!(
     ".section .text.__pre_init, \"ax\"",
     ".global __pre_init",
@@ -65,16 +65,16 @@ const CONFIGURATION: u32 = 1 << 9;
 /// The caches' bits there, of data and of instructions: each is turned on and off in an order of its own.
 const CACHES: u32 = 0b11 << 16;
 
-/// The rest of what may be on, and the core's peripherals, which nobody has had before. `quiet` ends what the chip adds
-/// to them, with every interrupt still off.
+/// The rest of what may be on, and the core's peripherals, taken here for the first time. `quiet` ends what the chip
+/// adds to them, with every interrupt still off.
 ///
 /// # Panics
 /// The second time.
 #[must_use]
 pub fn begin_anew(quiet: impl FnOnce(&mut Peripherals)) -> Peripherals {
     let mut core = Peripherals::take().expect("begun twice");
-    // SAFETY: the runtime has set up memory and all handlers, and nothing else runs; from here on nothing is pending but
-    // what this firmware starts.
+    // SAFETY: the runtime has set up memory and all handlers, and nothing else runs; from here on nothing is pending
+    // but what this firmware starts.
     unsafe {
         core.SYST.csr.write(0);
         core.SCB.icsr.write(END_PENDING);

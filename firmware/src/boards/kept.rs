@@ -25,8 +25,8 @@ pub fn take(is_blank: bool) -> Option<LastWords> {
     let mut bytes = [0; SIZE];
     if !is_blank {
         for (word, part) in memory().zip(bytes.as_chunks_mut().0) {
-            // SAFETY: this part of the memory is nobody else's, has been written to since power came, and any bits are
-            // numbers.
+            // SAFETY: this part of the memory belongs to this function, has been written to since power came, and any
+            // bits are numbers.
             *part = unsafe { word.read_volatile() }.to_le_bytes();
         }
     }
@@ -36,7 +36,7 @@ pub fn take(is_blank: bool) -> Option<LastWords> {
 
 fn set(bytes: &[u8; SIZE]) {
     for (word, part) in memory().zip(bytes.as_chunks().0.iter().chain([&[0; 8]])) {
-        // SAFETY: this part of the memory is nobody else's, and one thing at a time sets it.
+        // SAFETY: this part of the memory belongs to this module, and one thing at a time sets it.
         unsafe { word.write_volatile(u64::from_le_bytes(*part)) };
     }
     fence(Ordering::SeqCst);

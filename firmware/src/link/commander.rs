@@ -1,9 +1,10 @@
 //! Who commands: the station that armed the vehicle, a system and a component, while it is armed and heard.
 //!
-//! Nobody else may disarm it, not even by force; everything else anybody may ask for. Where no ground station armed it
-//! but a companion computer, a ground station may as well: the operator's word goes before a program's. A station that
-//! has been silent for [`SILENCE`] commands no more: the next that speaks may stop the motors. So may anybody where a
-//! radio armed it. Who armed is control's to say: many may have asked. Who is a ground station its heartbeat says.
+//! No other station may disarm it, not even by force; every station may request everything else. Where no ground
+//! station armed it but a companion computer, a ground station may as well: the operator's word goes before a
+//! program's. A station that has been silent for [`SILENCE`] commands no more: the next that speaks may stop the
+//! motors. So may anybody where a radio armed it. Who armed is control's to say: many may have asked. Who is a ground
+//! station its heartbeat says.
 
 use super::command::Call;
 use flight::Stamped;

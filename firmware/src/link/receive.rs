@@ -209,7 +209,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    /// Any ground station's will do. A companion computer's does not: it goes on when nobody watches any more.
+    /// Any ground station's will do. A companion computer's does not: it goes on when no person watches any more.
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
         if message.mavtype == MavType::MAV_TYPE_GCS {
             self.shared.ground_station().put((), frame.time);

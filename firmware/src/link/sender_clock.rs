@@ -14,10 +14,10 @@
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
 //! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
 //! [`LEAD_MAX`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
-//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`STEADY`] such frames, and more than
-//! were taken meanwhile, it is believed, and o is found anew: who forges fewer messages than are true never gets so far.
-//! A line that is that late from some time on looks the same; who knows better by TIMESYNC must refuse its messages
-//! first.
+//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`STEADY`] such frames, and more
+//! than were taken meanwhile, it is believed, and o is found anew: who forges fewer messages than are true never gets
+//! so far. A line that is that late from some time on looks the same; who knows better by TIMESYNC must refuse its
+//! messages first.
 
 /// Frames that prove a clock that is not where it was: 50 ms at 100 Hz.
 pub const STEADY: u8 = 5;
@@ -29,8 +29,8 @@ pub const LATE_MAX: u64 = 500_000;
 pub const LEAD_MAX: u64 = 100_000;
 
 /// By how much the clocks may differ over the frames that prove another clock, us, and how much quicker than those a
-/// line may become. Frames that come too early may differ by [`LEAD_MAX`]: the first message may have been a slow one on
-/// a line whose delay varies.
+/// line may become. Frames that come too early may differ by [`LEAD_MAX`]: the first message may have been a slow one
+/// on a line whose delay varies.
 const SPACING_ERROR: u64 = 20_000;
 
 /// One over the drift between two clocks.

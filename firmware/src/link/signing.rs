@@ -34,7 +34,7 @@ pub type Stamp = u64;
 /// A minute. A stream that is not known is refused if it is further behind the vehicle's clock.
 const MINUTE: Stamp = 6_000_000;
 
-/// A year. So much longer than a vehicle is put away nobody's clock is ahead of it, once somebody's has been heard.
+/// A year: no vehicle is put away for so long, so that no sound clock is further ahead of one that came before.
 pub const LEAP: Stamp = 525_600 * MINUTE;
 
 /// The year 2100. 48 bits last four years longer.

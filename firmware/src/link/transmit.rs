@@ -46,7 +46,7 @@ struct Owed {
     times: u8,
 }
 
-/// No command: nobody sends this one.
+/// No command has this number.
 const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
 /// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other

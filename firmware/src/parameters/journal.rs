@@ -10,9 +10,9 @@
 //!
 //! Records fill one sector; then the other is erased and takes the next ones, first of all a copy of the other kind's
 //! newest. Power may fail at any point. A sector in which a kind's newest record is is never erased, so that record is
-//! lost by nothing. One that was cut short fails its checksum and is left where it is: what was programmed once cannot be
-//! programmed again. An erasure that was cut short is done again, because only the sector of the newest record is ever
-//! continued. Reading back after writing finds a place that looked blank and was not.
+//! lost by nothing. One that was cut short fails its checksum and is left where it is: what was programmed once cannot
+//! be programmed again. An erasure that was cut short is done again, because only the sector of the newest record is
+//! ever continued. Reading back after writing finds a place that looked blank and was not.
 
 use crate::hardware::{Fault, Flash, Record};
 

@@ -127,8 +127,8 @@ pub enum Name {
     GainPositionVertical,
     /// Gain on vertical velocity errors, percent of the built one.
     GainVelocityVertical,
-    /// Which output each rotor's controller is wired to, a digit a rotor: see [`outputs::wiring`]. Taken over at the next
-    /// boot.
+    /// Which output each rotor's controller is wired to, a digit a rotor: see [`outputs::wiring`]. Taken over at the
+    /// next boot.
     MotorOrder,
     /// The serial line's baud rate. Taken over at the next boot.
     SerialRate,

@@ -5,12 +5,12 @@
 use super::card::{CardState, CardStatus};
 use super::count::Count;
 use super::flag::Flag;
-use super::flier::Flier;
 use super::latest::Latest;
 use super::library::{Answer, Library, Question};
 use super::queue::{Full, Queue};
 use super::reply::Asked;
 use super::requests::Requests;
+use super::setpoint_owner::SetpointOwner;
 use super::table::offers;
 use crate::link::frame::Frame;
 use crate::link::signing::{Refusal, Signing};
@@ -69,8 +69,8 @@ offers! {
     [] Write<'_, Flag> { fn raise(); fn lower(); fn is_raised() -> bool; }
     [] Take<'_, Flag> { fn take() -> bool; }
     [] Read<'_, Count> { fn get() -> u32; }
-    [] Read<'_, Flier> { fn get() -> Option<(u8, u8)>; }
-    [] Write<'_, Flier> { fn set(sender: Option<(u8, u8)>); }
+    [] Read<'_, SetpointOwner> { fn get() -> Option<(u8, u8)>; }
+    [] Write<'_, SetpointOwner> { fn set(sender: Option<(u8, u8)>); }
     [M: RawMutex, T, const ROOM: usize] Write<'_, Queue<M, T, ROOM>> { fn put(value: T) -> Result<(), Full>; }
     [M: RawMutex, T, const ROOM: usize] Take<'_, Queue<M, T, ROOM>> { fn take() -> Option<T>; }
     [M: RawMutex] Take<'_, Requests<M>> { fn take() -> Option<Asked>; }

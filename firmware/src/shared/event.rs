@@ -70,7 +70,7 @@ pub enum Event {
     MotorsRegained,
     /// The battery that is to be watched is not measured.
     BatteryMissing,
-    /// The vehicle has armed with poses whose delay nobody knows.
+    /// The vehicle has armed with poses of unknown delay.
     PoseDelayUnknown,
     /// Anything else, in words.
     Words(Severity, Text),

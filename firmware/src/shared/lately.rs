@@ -1,4 +1,4 @@
-//! What people were told a moment ago, so that nobody fills the line with one text.
+//! The latest texts, so that one text does not fill the line.
 
 use super::event::Event;
 use core::cell::Cell;

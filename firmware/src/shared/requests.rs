@@ -1,8 +1,9 @@
 //! Requests that wait for control, which takes one a tick.
 //!
-//! Of each kind one waits for whoever is on the link and one for the pilot's radio, the latest: nobody who repeats one
-//! keeps another out. Who asked for the same a moment before is answered as that one is. Where there is no room, a lesser one of the link makes some. So landing, disarming and the
-//! pilot's switches always have room, and none waits for more than the others, [`REQUESTS`] ticks.
+//! Of each kind the latest waits, one of the link and one of the pilot's radio: a client that repeats one keeps another
+//! out. Who asked for the same a moment before is answered as that one is. Where there is no room, a lesser one of the
+//! link makes some. So landing, disarming and the pilot's switches always have room, and none waits for more than the
+//! others, [`REQUESTS`] ticks.
 
 use super::reply::Asked;
 use crate::link::acknowledgement::Order;

@@ -1,4 +1,4 @@
-//! Many on one line: whom the vehicle obeys, whose setpoints it flies, and what nobody crowds out.
+//! Many on one line: whom the vehicle obeys, whose setpoints it flies, and what no client crowds out.
 
 use crate::support::desk::Desk;
 use crate::support::line::{Live, Outgoing};
@@ -155,7 +155,7 @@ fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
             assert_eq!(results, vec![(message.command as u16, result); count], "{message:?}");
         }
     }
-    // Of equal orders that are not copies as many as there is room for, and that keeps nobody out afterwards.
+    // Of equal orders that are not copies as many as there is room for; the room is free again afterwards.
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let many = |first: u8| (first..first + 12).flat_map(|sequence| v2(sequence, &land)).collect::<Vec<_>>();
     let bursts = [0, 1, 2_u8].map(|burst| (3_000_000 + 20_000 * u64::from(burst), many(12 * burst)));
@@ -163,7 +163,7 @@ fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
     let results = acknowledged(&[&bursts[..], &[later]].concat());
     assert_eq!(results[..21], [(MavCmd::MAV_CMD_NAV_LAND as u16, ACCEPTED); 21]);
     assert_eq!(results[21..], [(ARM_DISARM as u16, ACCEPTED); 2]);
-    // Nobody calibrates on this desk: what is never answered is not made up.
+    // No task calibrates on this desk: an answer that never comes is not made up.
     assert_eq!(acknowledged(&[(3_000_000, v2(1, &nothing).repeat(3))]), []);
 }
 
@@ -303,7 +303,7 @@ fn offboard(asker: (u8, u8), streams: &[(u8, u8)]) -> (bool, Vec<f32>, Vec<Strin
         }
     }
     taken.dedup();
-    let flown = shared.flier.get().is_some();
+    let flown = shared.setpoint_owner.get().is_some();
     (flown, taken, said)
 }
 
@@ -326,8 +326,8 @@ fn who_asks_for_offboard_has_its_own_setpoints_flown_whoever_streams_first() {
 fn nobody_takes_a_flight_by_setpoints_over_by_asking_in_vain() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
-    let flier = Some((255, 190));
-    shared.flier.set(flier);
+    let setpoint_owner = Some((255, 190));
+    shared.setpoint_owner.set(setpoint_owner);
     // Somebody else streams, and asks; until control has granted it nothing changes.
     fed.bytes(&from(9, 9, 1, &target(9.0)), 1_000);
     fed.bytes(&from(9, 9, 2, &mode(6.0, 0.0)), 2_000);

@@ -383,8 +383,8 @@ fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
     clock.run(100_000, storage.keep(&clock, shared.for_storage()), |_| ());
     let mut station = Sender::new(255, key(), FIRST);
     let mut vehicle = shared;
-    // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which lasts
-    // as long as what was kept before it.
+    // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which
+    // lasts as long as what was kept before it.
     let flight = AHEAD * 10 - 1_000_000;
     for _ in 0..2 {
         let heard: Vec<_> = (0..=4).map(|part| station.say(&disarm(), part * flight / 4)).collect();
@@ -463,7 +463,7 @@ fn one_stamp_far_ahead_deafens_nobody() {
     let signing = Signing::<NoopRawMutex>::new();
     signing.set(key(), FIRST, 0);
     let year = LEAP;
-    // Nobody was heard since the start: the first may set the clock, but not beyond what 48 bits last for.
+    // The first frame since the start may set the clock, but not beyond what 48 bits last for.
     for stamp in [LATEST, (1 << 48) - 5_000, (1 << 48) - 1] {
         assert_eq!(judged(&signing, &stamped(7, stamp), 0), Err(Refusal::Ahead));
     }

@@ -1,6 +1,8 @@
 extern crate std;
+use super::without_pose::slowed;
 use super::*;
 use crate::hummingbird;
+use estimation::estimator::EstimatedState;
 use nalgebra::Quaternion;
 use std::boxed::Box;
 

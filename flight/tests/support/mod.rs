@@ -8,7 +8,7 @@
 
 #[path = "../../../tests/support/body.rs"]
 mod body;
-#[path = "../../../tests/support/hummingbird.rs"]
+#[path = "../../../controller-core/tests/support/hummingbird.rs"]
 mod hummingbird;
 pub mod outputs;
 

@@ -2,7 +2,7 @@
 
 use super::Random;
 use super::std::string::{String, ToString};
-use crate::allocation::{QuadX, Rotors, greatest_torques};
+use crate::allocation::{QuadX, Rotors};
 use crate::certificate::Certificate;
 use crate::extended::controller::Controller;
 use crate::extended::defaults::{self, NOTHING_GIVEN};
@@ -61,8 +61,7 @@ fn a_vehicle_whose_yaw_is_weak_and_whose_tilt_is_uneven_is_certified() {
     let quad =
         QuadX { arm: 0.32, thrust_coefficient: 1e-5, drag_coefficient: 5.4e-8, speed_min: 0.0, speed_max: 2_130.0 };
     let rotors = Rotors::quad_x(quad).unwrap();
-    let limits = LimitParameters { thrust_max: rotors.thrust_together().1, torque_max: greatest_torques(&rotors) };
-    let limits = Limits::new(limits, &vehicle).unwrap();
+    let limits = rotors.limits(&vehicle).unwrap();
     let craft = Craft { vehicle, limits, rotors, ..Craft::example() };
     assert_eq!(certified(&craft, &craft.constants(&NOTHING_GIVEN)).err(), None);
 }

@@ -1,7 +1,7 @@
 use super::*;
 use xorshift::Random;
 
-#[path = "../../../../tests/support/xorshift.rs"]
+#[path = "../../../../controller-core/tests/support/xorshift.rs"]
 mod xorshift;
 
 /// A standstill of noisy samples around what is given for each.

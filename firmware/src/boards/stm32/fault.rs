@@ -12,10 +12,10 @@
 //!
 //! `panic-probe` logs before anything else can run. So the panic handler is here.
 //!
-//! Times: a frame takes 0.057 ms and the silence before it 0.08 ms, both by timers that count the chip's clocks, so that
-//! neither depends on caches: 1.4 ms for the first ten frames and 27 ms for the rest, well within the watchdog's 50 ms
-//! (its own clock is exact to a tenth on the H743, and makes 34 to 94 ms of them on the F405). Where something goes wrong
-//! before the clocks are set, all of it takes longer, and there is no watchdog yet.
+//! Times: a frame takes 0.057 ms and the silence before it 0.08 ms, both by timers that count the chip's clocks, so
+//! that neither depends on caches: 1.4 ms for the first ten frames and 27 ms for the rest, well within the watchdog's
+//! 50 ms (its own clock is exact to a tenth on the H743, and makes 34 to 94 ms of them on the F405). Where something
+//! goes wrong before the clocks are set, all of it takes longer, and there is no watchdog yet.
 //!
 //! What the controllers see: the frame that was going out is cut and discarded by its checksum; stop frames follow, and
 //! then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included,
@@ -23,9 +23,10 @@
 //!
 //! A stack that overflowed is no hindrance: a fault begins it anew ([`crate::boards::guard`]).
 //!
-//! What this does not reach: a core that cannot run any code (a clock that failed, a fault in a fault). There the watchdog restarts the chip within 50 ms, once the control task has fed it for the first
-//! time, and the controllers stop for want of frames within their own time-out. The watchdog is fed once before these
-//! steps, so that the restart is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
+//! What this does not reach: a core that cannot run any code (a clock that failed, a fault in a fault). There the
+//! watchdog restarts the chip within 50 ms, once the control task has fed it for the first time, and the controllers
+//! stop for want of frames within their own time-out. The watchdog is fed once before these steps, so that the restart
+//! is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
 use super::motors::rest;
 use crate::boards::chosen::{WATCHDOG, motor_timer};

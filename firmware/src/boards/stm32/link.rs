@@ -1,5 +1,6 @@
-//! The serial lines, 8N1, at 921,600 baud until the parameter `SER_BAUD` has set the link's: the link to the ground station and the pose source, by DMA both ways, and the
-//! line to a simulator, by an interrupt for each byte, for want of free DMA channels; it is not used in flight.
+//! The serial lines, 8N1, at 921,600 baud until the parameter `SER_BAUD` has set the link's: the link to the ground
+//! station and the pose source, by DMA both ways, and the line to a simulator, by an interrupt for each byte, for want
+//! of free DMA channels; it is not used in flight.
 //!
 //! Reception runs on by itself into a ring that holds 22 ms of a full line; a line that falls idle wakes the reader at
 //! once, a busy one every half ring. A read that fails (noise, a ring overrun) loses what the ring held, and the next

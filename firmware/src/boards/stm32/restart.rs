@@ -44,7 +44,7 @@ impl Cause {
         matches!(self, Self::Power | Self::BrownOut)
     }
 
-    /// What to tell people of it where nobody left any words.
+    /// The report where no words were kept.
     #[must_use]
     pub fn words(self) -> Option<&'static str> {
         match self {

@@ -1,11 +1,11 @@
 //! Transfer errors of the DMA controllers: they end the transfer, and not the flight.
 //!
-//! Embassy's interrupt handler panics at one. This one is bound to every stream before it, and takes the error away: the
-//! controller has switched the stream off by itself, and Embassy's handler, which comes next, finds nothing to do. So
-//! nobody is woken, and who waits is done when its own time limit wakes it. Embassy then takes a stream that is off for
-//! one that has finished: where that matters, the motors' frames and the sensors' samples, [`Begun`] makes it a fault.
-//! A frame of the link is lost. What the link receives stops; the bytes that follow overrun, and Embassy starts reception
-//! again. Dropping a transfer clears its stream, and the next one begins anew.
+//! Embassy's interrupt handler panics at one. This one is bound to every stream before it, and takes the error away:
+//! the controller has switched the stream off by itself, and Embassy's handler, which comes next, finds nothing to do.
+//! So no task is woken, and a task that waits is done when its own time limit wakes it. Embassy then takes a stream
+//! that is off for one that has finished: where that matters, the motors' frames and the sensors' samples, [`Begun`]
+//! makes it a fault. A frame of the link is lost. What the link receives stops; the bytes that follow overrun, and
+//! Embassy starts reception again. Dropping a transfer clears its stream, and the next one begins anew.
 
 use crate::hardware::Fault;
 use core::marker::PhantomData;

@@ -42,7 +42,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Its value, as it is now, answers every question about a parameter. Of one that is not there nothing can be sent:
-    /// who asks is told at `now`, us.
+    /// the sender gets at `now`, us.
     pub(super) fn reply_with_parameter(&mut self, name: Option<Name>, now: u64, asked: impl Display) {
         match name {
             Some(name) => self.shared.reply(Reply::Parameter(name)),

@@ -10,14 +10,14 @@ const SENDERS: usize = 4;
 pub(super) type Sender = (u8, u8);
 
 /// A place for a sender. No system has this number.
-pub(super) const NOBODY: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
+const NO_SENDER: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
 
 /// Who sends setpoints that can be flown.
 #[derive(Debug)]
 pub(super) struct Senders {
     /// Each sender, and when its last came, us.
     pub senders: [Stamped<Sender>; SENDERS],
-    /// Whose are taken while nobody on the link has asked, and when the last came, us.
+    /// Whose are taken before a request on the link, and when the last came, us.
     pub taken: Stamped<Sender>,
     /// The last that was refused because the sticks fly, and whose it was.
     pub kept: Option<(Sender, Stamped<Setpoint>)>,
@@ -25,7 +25,7 @@ pub(super) struct Senders {
 
 impl Default for Senders {
     fn default() -> Self {
-        Self { senders: [NOBODY; SENDERS], taken: NOBODY, kept: None }
+        Self { senders: [NO_SENDER; SENDERS], taken: NO_SENDER, kept: None }
     }
 }
 
@@ -42,5 +42,5 @@ impl Senders {
 
 /// Whether a sender's setpoints count at `now`, us.
 pub(super) fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
-    sender.value != NOBODY.value && sender.age(now) <= SETPOINT_AGE_MAX
+    sender.value != NO_SENDER.value && sender.age(now) <= SETPOINT_AGE_MAX
 }

@@ -1,11 +1,12 @@
-//! Setpoints in, and whose are flown: of who asked for that, and while nobody on the link has, of who sends first.
+//! Setpoints in, and whose are flown: those of the sender that requested OFFBOARD; before such a request, those of the
+//! first sender.
 //!
-//! A sender's setpoints count while it has sent one that can be flown within [`SETPOINT_AGE_MAX`]. Who asks for OFFBOARD
-//! has its own flown from when control has granted it. If it sends none, they may be those of another component of its
-//! system, which has to be the only sender; of anybody else's setpoints it is refused.
+//! A sender counts while its newest setpoint that can be flown is not older than [`SETPOINT_AGE_MAX`]. The sender of an
+//! OFFBOARD command has its own setpoints flown once control grants it. If it sends none, another component of its
+//! system may send them, as the only sender; otherwise the command is denied.
 
 use super::Receiver;
-use super::senders::{NOBODY, Sender, counts};
+use super::senders::{Sender, counts};
 use crate::link::frame::Frame;
 use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
 use crate::radio::SILENCE as RADIO_SILENCE;
@@ -39,7 +40,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             return Err(SetpointRefusal::Sticks);
         }
         let taken = Some(self.setpoints.taken).filter(|taken| counts(taken, time)).map(|taken| taken.value);
-        if self.shared.flier().get().or(taken).is_some_and(|flier| flier != sender) {
+        if self.shared.setpoint_owner().get().or(taken).is_some_and(|owner| owner != sender) {
             return Err(SetpointRefusal::Others);
         }
         self.setpoints.taken = Stamped { value: sender, time };
@@ -68,18 +69,14 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// Whose setpoints are flown if this sender asks for it; of who sends none yet its own, which may come.
     fn whose(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
-        let mut only = None;
-        for Stamped { value, .. } in self.setpoints.senders.iter().filter(|sender| counts(sender, now)) {
-            if *value == asker {
-                return Ok(asker);
-            }
-            // Of two neither is.
-            only = Some(if only.is_none() { *value } else { NOBODY.value });
+        let mut senders = self.setpoints.senders.iter().filter(|sender| counts(sender, now)).map(|sender| sender.value);
+        if senders.clone().any(|sender| sender == asker) {
+            return Ok(asker);
         }
-        match only {
-            None => self.unflown(now).map_or(Ok(asker), Err),
-            Some(only) if only.0 == asker.0 => Ok(only),
-            Some(_) => Err("another sender's setpoints"),
+        match (senders.next(), senders.next()) {
+            (None, _) => self.unflown(now).map_or(Ok(asker), Err),
+            (Some(only), None) if only.0 == asker.0 => Ok(only),
+            _ => Err("another sender's setpoints"),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Whose frames count, and the key that says so.
 //!
-//! The port is trusted: who has the cable may set another key, and need not sign, or with another key. Nobody else may set one: a key that
+//! The port is trusted: the cable's owner may set another key, and need not sign. No other line may set one: a key that
 //! goes over a radio is everybody's.
 
 use super::Receiver;

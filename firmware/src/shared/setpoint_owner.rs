@@ -2,23 +2,23 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Nobody's in particular. A system and a component are less.
-const NOBODY: u32 = u32::MAX;
+/// No sender. A system and a component make a smaller number.
+const NO_SENDER: u32 = u32::MAX;
 
-/// A system and a component, or nobody.
+/// A system and a component, or none.
 #[derive(Debug)]
-pub struct Flier(AtomicU32);
+pub struct SetpointOwner(AtomicU32);
 
-impl Flier {
-    /// Nobody.
+impl SetpointOwner {
+    /// No sender.
     #[must_use]
     pub const fn new() -> Self {
-        Self(AtomicU32::new(NOBODY))
+        Self(AtomicU32::new(NO_SENDER))
     }
 
-    /// From now on it is somebody else, or nobody.
+    /// Sets the sender, or none.
     pub fn set(&self, sender: Option<(u8, u8)>) {
-        let number = sender.map_or(NOBODY, |(system, component)| u16::from_be_bytes([system, component]).into());
+        let number = sender.map_or(NO_SENDER, |(system, component)| u16::from_be_bytes([system, component]).into());
         self.0.store(number, Ordering::Release);
     }
 
@@ -30,7 +30,7 @@ impl Flier {
     }
 }
 
-impl Default for Flier {
+impl Default for SetpointOwner {
     fn default() -> Self {
         Self::new()
     }

@@ -1,0 +1,34 @@
+//! The rotors' thrust against the commands, as the law's estimates know it.
+
+use super::{Chain, Flown};
+use crate::tilt::up;
+use estimation::estimator::EstimatedState;
+use nalgebra::{UnitQuaternion, Vector3};
+
+impl Chain<'_> {
+    /// The law's estimate of the vertical force per mass, m/s^2: mostly a lack of thrust.
+    fn vertical_force(&self) -> f32 {
+        self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
+    }
+
+    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns
+    /// nothing.
+    ///
+    /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
+    /// takes up a steady lack of thrust.
+    pub fn delivered_share(&self) -> f32 {
+        self.law.thrust_scale() * self.gravity / (self.gravity - self.vertical_force())
+    }
+
+    /// The acceleration that neither the commanded thrust nor the estimated force explains, m/s^2, world.
+    pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
+        let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);
+        let asked = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);
+        estimated.acceleration + Vector3::z() * (self.gravity - self.vertical_force()) - asked
+    }
+
+    /// The vertical acceleration that a thrust means with the force that the law knows of, m/s^2.
+    pub fn asked_acceleration(&self, flown: &Flown) -> f32 {
+        flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity + self.vertical_force()
+    }
+}
