@@ -19,7 +19,7 @@ use super::watch::{Seen, Watch};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
 use controller_core::governor::GovernorLimits;
-use estimation::estimator::{COASTING_AFTER, EstimatedState, Estimator, Fault, Taken};
+use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 3.5 KB, and its [`Memory`] and [`Estimator`].
@@ -34,9 +34,6 @@ pub struct Pilot<'m> {
     watch: Watch,
     fall: Fall,
     fence: Fence,
-    /// From when on poses have been refused for what they say, and until when, us; not counted on once a vehicle
-    /// without a pose has levelled.
-    lies: Option<(u64, u64)>,
     bench: Bench,
     /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
     newest: Newest,
@@ -77,7 +74,6 @@ impl<'m> Pilot<'m> {
             watch: Watch::default(),
             fall: Fall::default(),
             fence: Fence::new(&settings),
-            lies: None,
             bench: Bench::NONE,
             newest: Newest::default(),
             wanted_since: None,
@@ -181,9 +177,7 @@ impl<'m> Pilot<'m> {
         if transition.reason == Reason::LandingOver {
             self.trust.give_up();
         }
-        // One outlier before an outage is no lie.
-        let lasted = self.lies.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER);
-        let lied = self.trust.is_given_up() || lasted;
+        let lied = self.trust.has_lied();
         if transition.to == Mode::Descending && lied {
             self.estimation.distrust();
         }

@@ -14,7 +14,7 @@
 //!
 //! At [`DOUBT_MAX`] the source is given up until the vehicle is disarmed.
 
-use estimation::estimator::{Rejected, Taken};
+use estimation::estimator::{COASTING_AFTER, Rejected, Taken};
 
 /// Doubt at which a source is given up, s.
 pub const DOUBT_MAX: f32 = 3.0;
@@ -39,6 +39,8 @@ pub(super) struct Trust {
     /// The time of the last poses, us.
     heard: u64,
     is_given_up: bool,
+    /// From when on poses have been refused for what they say, and until when, us; none once one is believed.
+    refused: Option<(u64, u64)>,
 }
 
 impl Trust {
@@ -56,6 +58,27 @@ impl Trust {
             Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
         });
+    }
+
+    /// Notes a pose that is refused for what it says, or believed.
+    pub fn note(&mut self, pose: Result<Taken, Rejected>, now: u64) {
+        match pose {
+            Ok(taken) if taken.is_believed() => self.refused = None,
+            Err(rejected) if rejected.is_lie() => {
+                self.refused = Some((self.refused.map_or(now, |(first, _)| first), now));
+            }
+            Ok(_) | Err(_) => {}
+        }
+    }
+
+    /// Whether poses have lied: one outlier before an outage is no lie.
+    pub fn has_lied(&self) -> bool {
+        self.is_given_up || self.refused.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER)
+    }
+
+    /// Whether poses lied before `levelled`, us, or still did then: what they agree on later is no better.
+    pub fn lied_until(&self, levelled: u64) -> bool {
+        self.has_lied() || self.refused.is_some_and(|(_, last)| levelled.saturating_sub(last) <= COASTING_AFTER)
     }
 
     /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.

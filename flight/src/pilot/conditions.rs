@@ -11,7 +11,7 @@ use crate::rules::{
     LEVELLING_MAX, Mode,
 };
 use crate::watch::Seen;
-use estimation::estimator::{COASTING_AFTER, EstimatedState, Fault, Rejected, Taken};
+use estimation::estimator::{EstimatedState, Fault};
 use estimation::measurement::is_fresh;
 
 impl Pilot<'_> {
@@ -54,10 +54,11 @@ impl Pilot<'_> {
         let elapsed = inputs.now.saturating_sub(self.since);
         let is_levelled = self.mode == Mode::Descending && elapsed >= LEVELLING_MAX;
         if let (Some(pose), false) = (estimate.pose, is_levelled) {
-            self.hear(pose, inputs.now);
+            self.trust.note(pose, inputs.now);
         }
         let believed = estimate.is_found() && !seen.touched && !self.trust.is_given_up();
-        let may = believed && (elapsed < LEVELLING_MAX || !self.poses_lie());
+        let may =
+            believed && (elapsed < LEVELLING_MAX || !self.trust.lied_until(self.since.saturating_add(LEVELLING_MAX)));
         if let (true, Ok(chain), Some(EstimatedState { state, .. })) = (may, &self.chain, &estimate.state) {
             // What cannot hold above the ground lands.
             self.must_still_land |= !chain.stops_within(state.position.z - self.fence.home().z, state);
@@ -114,25 +115,6 @@ impl Pilot<'_> {
             .with(Condition::EstimateLost, estimate.is_lost() || !followed)
             .with(Condition::ChecksPass, is_ready)
             .with(Condition::ChecksFail, !is_ready)
-    }
-
-    /// Remembers from when on poses have been refused for what they say, and until when, none having been believed
-    /// since.
-    fn hear(&mut self, pose: Result<Taken, Rejected>, now: u64) {
-        match pose {
-            Ok(taken) if taken.is_believed() => self.lies = None,
-            Err(rejected) if rejected.is_lie() => self.lies = Some((self.lies.map_or(now, |(first, _)| first), now)),
-            Ok(_) | Err(_) => {}
-        }
-    }
-
-    /// Whether poses lied for a while before the vehicle had levelled, or still did then: what they agree on later is
-    /// no better.
-    fn poses_lie(&self) -> bool {
-        let levelled = self.since.saturating_add(LEVELLING_MAX);
-        self.lies.is_some_and(|(first, last)| {
-            last.saturating_sub(first) >= COASTING_AFTER || levelled.saturating_sub(last) <= COASTING_AFTER
-        })
     }
 
     /// Whether the ground station has been silent for so long, us.
