@@ -1,5 +1,5 @@
 //! Hours of flight, and any time of the clock:
-//! `cargo run --release -p host-sim --example endurance -- vehicles/study.toml 24` flies a day.
+//! `cargo run --release -p verification --example endurance -- vehicles/study.toml 24` flies a day.
 
 use controller_core::certificate::certified::Certified;
 use flight::Reason;

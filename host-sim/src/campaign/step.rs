@@ -3,7 +3,7 @@
 //! A scenario's step is chosen for a single flight, whose log is read tick by tick. A campaign asks each of its flights
 //! for a verdict and for metres and seconds; it takes the longest step of at most [`LONGEST`] that still fits. The
 //! error of the method of fourth order is then 5^4 times that of 1 ms; of the paper's flight it is 0.33 um. Rotors that
-//! lag, filters and wind are advanced exactly at any step. `cargo run --release -p host-sim --example halved_steps`
+//! lag, filters and wind are advanced exactly at any step. `cargo run --release -p verification --example halved_steps`
 //! shows that no verdict changes with half of it.
 
 use scenario::Scenario;

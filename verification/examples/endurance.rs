@@ -1,4 +1,4 @@
-//! Flies missions for hours, on one pilot: `cargo run --release -p host-sim --example endurance -- FILE HOURS`.
+//! Flies missions for hours, on one pilot: `cargo run --release -p verification --example endurance -- FILE HOURS`.
 //!
 //! The vehicle's clock starts half the hours before its milliseconds overflow 32 bits; its microseconds do so every 72
 //! minutes. Fails if a mission does not go as it should, a delay has changed, or the last hour is not as good as the

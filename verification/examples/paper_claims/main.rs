@@ -1,5 +1,5 @@
 //! What the paper claims of its design against others, beside what a simulation shows:
-//! `cargo run --release -p host-sim --example paper_claims -- [DIR]`. A table of claims, each confirmed or refuted by a
+//! `cargo run --release -p verification --example paper_claims -- [DIR]`. A table of claims, each confirmed or refuted by a
 //! figure; two pictures in DIR (default flights/paper-claims).
 //!
 //! All on the paper's vehicle with Table I. The nested-saturation design ([`host_sim::rivals::nested`]) has the same

@@ -1,5 +1,5 @@
 //! Whether a campaign's verdicts depend on its plant step: flies each flight with the step that campaigns take and with
-//! half of it. `cargo run --release -p host-sim --example halved_steps -- FILE COUNT`. The exit status is 1 if a
+//! half of it. `cargo run --release -p verification --example halved_steps -- FILE COUNT`. The exit status is 1 if a
 //! verdict changes.
 
 use controller_core::certificate::certified::Certified;

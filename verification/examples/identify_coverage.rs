@@ -1,4 +1,4 @@
-//! How often `identify` is right: `cargo run --release -p host-sim --example identify_coverage -- [RUNS]`.
+//! How often `identify` is right: `cargo run --release -p verification --example identify_coverage -- [RUNS]`.
 //!
 //! For each of two vehicles, for one whose commands act without delay, and for one with the air's forces at its rotors'
 //! hubs, RUNS (100) vehicles drawn like it fly the manoeuvre of `scenarios/identify.toml`, each identified from its log

@@ -1,6 +1,6 @@
 //! Records the states of the paper's flight and of the embedded scenario's recovery for `firmware::replay`, as
 //! `states.f32` and `recovery.f32`, and prints the numbers of the recovery and of the estimate of it on this machine, a
-//! line each: `cargo run -p host-sim --example recorded_flights -- FOLDER`.
+//! line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
 
 use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};

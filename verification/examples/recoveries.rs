@@ -1,5 +1,5 @@
 //! Flies a campaign of recoveries and prints what it showed:
-//! `cargo run --release -p host-sim --example recoveries -- FILE COUNT`.
+//! `cargo run --release -p verification --example recoveries -- FILE COUNT`.
 //!
 //! A certified vehicle, its state known, is thrown into the air. Each flight starts anywhere within 10 m of where it is
 //! to be, at any attitude (uniform), with up to 5 m/s, 15 rad/s across and 6 rad/s about its thrust axis, in wind of up
