@@ -190,7 +190,7 @@ fn in_roll_and_pitch_it_is_never_worse_than_clipping_each_rotor() {
 }
 
 #[test]
-fn vehicles_that_nobody_would_build_are_served_as_well() {
+fn extreme_vehicles_are_served_as_well() {
     let mut random = Random(5);
     let (mut served, mut inside, mut excess) = (0, 0.0_f64, f64::NEG_INFINITY);
     while served < 1000 {

@@ -71,7 +71,7 @@ fn all_demands(rotors: &Rotors) -> Vec<RotorDemand> {
 }
 
 #[test]
-fn no_command_in_the_set_asks_a_rotor_for_more_and_none_saturates_it() {
+fn no_command_in_the_set_exceeds_or_saturates_a_rotor() {
     let rotors = hummingbird(0.0);
     let (demands, mixer, mut random) = (all_demands(&rotors), Mixer::new(&rotors), Random(1));
     assert!(demands.iter().all(RotorDemand::fits), "{demands:?}");

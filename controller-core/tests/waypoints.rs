@@ -158,7 +158,7 @@ fn bounds_hold_at_every_instant_and_are_attained() {
 }
 
 #[test]
-fn two_points_are_joined_by_the_polynomial_everybody_knows() {
+fn two_points_are_joined_by_the_minimum_snap_polynomial() {
     let waypoints = Waypoints::new(&[waypoint(0.0, [0.0; 3], 0.0), waypoint(2.0, [1.0, -2.0, 0.0], 90.0)]).unwrap();
     for i in 0..=100_u32 {
         let s = f64::from(i) / 100.0;

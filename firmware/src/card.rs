@@ -11,13 +11,13 @@
 //! | [`sector`] | messages in a sector, whole or torn |
 //! | [`log`] | a flight's file, made before the flight |
 //! | [`copy`] | the recording that a reset left, as a file |
-//! | [`library`] | the files for whoever asks over the link |
+//! | [`library`] | the files, read over the link |
 //! | [`volume`] | numbered files in a FAT file system |
 //! | [`geometry`] | whether a card's file system can be used |
 //!
 //! - Control writes to the recorder's ring, as without a card, and never waits. This task follows along; it may fall
 //!   behind by as much as the ring holds. What is overwritten before it was read is counted, noted in the file and
-//!   told.
+//!   reported.
 //! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority
 //!   of all. A card that is missing, full, removed, worn out or formatted for something else is reported in words,
 //!   tried again every [`RETRY`], and does not prevent arming.
@@ -67,12 +67,12 @@ pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl 
         events: Deque::new(),
         is_copied: false,
         missed: 0,
-        told: None,
+        reported: None,
     };
     loop {
         let Err(trouble) = logger.use_card(&mut card).await;
         shared.card().set(if trouble == Trouble::Absent { CardState::Absent } else { CardState::Failed }, clock.now());
-        logger.tell(trouble);
+        logger.report(trouble);
         clock.until(clock.now().saturating_add(RETRY)).await;
     }
 }
@@ -93,14 +93,14 @@ struct Logger<'a, K, M: RawMutex> {
     clock: &'a K,
     shared: CardView<'a, M>,
     follower: Follower,
-    /// What people were told, and when, us; the newest.
+    /// The newest announced events, and when, us.
     events: Deque<(u64, Event), KEPT>,
     /// Whether the recording that the start found has been copied, as far as it could be.
     is_copied: bool,
     /// Records that this flight's file lacks.
     missed: u32,
-    /// The trouble that was told last.
-    told: Option<Trouble>,
+    /// The trouble reported last.
+    reported: Option<Trouble>,
 }
 
 impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
@@ -120,7 +120,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
             let mut log = Log::prepare(&volume)?;
             let number = log.number();
             shared.card().set(CardState::Ready, self.clock.now());
-            if self.told.take().is_some() || !log.has_begun() {
+            if self.reported.take().is_some() || !log.has_begun() {
                 shared.announce(Event::new(Severity::Information, format_args!("Card: next log {number:05}")));
             }
             if let Err(trouble) = self.fill(&volume, &mut log, &mut library).await {
@@ -156,7 +156,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
                     // It is as long as it can be, and will do for a shorter flight.
                     Err(Trouble::Full) => {
                         may_grow = false;
-                        self.tell(Trouble::Full);
+                        self.report(Trouble::Full);
                     }
                     Err(trouble) => return Err(trouble),
                 },
@@ -166,7 +166,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
     }
 
-    /// Answers what the link asks of the files; whether somebody is reading.
+    /// Answers the link's questions about the files; whether a client is reading.
     fn serve<C: Card>(&self, volume: &Volume<'_, C>, log: &Log, library: &mut Library) -> bool {
         let (shared, now) = (self.shared, self.clock.now());
         if let Some(question) = shared.library().asked() {
@@ -216,7 +216,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         Ok(Flight::Recording)
     }
 
-    /// Takes what people were told; the oldest makes room.
+    /// Takes announced events; the oldest makes room.
     fn keep_events(&mut self) {
         while let Some(event) = self.shared.card_events().take() {
             if self.events.is_full() {
@@ -226,10 +226,10 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
     }
 
-    /// Says what is wrong, once.
-    fn tell(&mut self, trouble: Trouble) {
-        if self.told != Some(trouble) {
-            self.told = Some(trouble);
+    /// Reports a trouble once.
+    fn report(&mut self, trouble: Trouble) {
+        if self.reported != Some(trouble) {
+            self.reported = Some(trouble);
             let severity = if trouble == Trouble::Absent { Severity::Information } else { Severity::Warning };
             self.shared.announce(Event::new(severity, trouble));
         }

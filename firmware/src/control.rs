@@ -8,7 +8,8 @@
 //! The task decides nothing about flight: [`flight`] does. It keeps time: ticks are due a period
 //! apart, counted from the first one. A tick that has not written its command when the next is due has been missed; the
 //! ticks it overran are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided
-//! in time, the stop command included: a vehicle whose motors do not hear it, or that has no time left, is reset.
+//! in time, the stop command included: a vehicle whose motors do not receive it, or that has no time left, is
+//! reset.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
@@ -28,10 +29,10 @@ const WRITING_MAX: u64 = 2_000;
 /// The greatest age of a voltage that counts, us.
 const VOLTAGE_AGE_MAX: u64 = 1_000_000;
 
-/// How long a fault of the IMU counts after it was seen last, us.
-const IMU_FAULT_LASTING: u64 = 1_000_000;
+/// How long a fault of the IMU is held after its last sample, us.
+const IMU_FAULT_HOLD: u64 = 1_000_000;
 
-/// How often poses that are refused, and faults of the estimator, are told, us.
+/// The least interval between reports of refused poses, and of estimator faults, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
 
 /// The control task's own state.
@@ -46,19 +47,19 @@ pub struct Control<'a, M: RawMutex> {
     simulated: bool,
     /// When the last IMU increment ended, us.
     integrated: Option<u64>,
-    /// What the last tick had to complain about: said when it changes, not a hundred times a second.
-    complaint: Complaint,
+    /// The last tick's faults: reported when they change, not a hundred times a second.
+    reported: Reported,
 }
 
-/// What a tick may have to complain about.
+/// The faults of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Complaint {
+struct Reported {
     setpoint: Option<Refusal>,
     law: Option<InputError>,
     battery: bool,
     writing: Option<Fault>,
     estimator: Option<EstimatorFault>,
-    /// Before these times, us, no refused pose and no fault of the estimator is told again.
+    /// Before these times, us, no refused pose and no fault of the estimator is reported again.
     quiet: (u64, u64),
 }
 
@@ -73,7 +74,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             is_late: false,
             simulated: false,
             integrated: None,
-            complaint: Complaint::default(),
+            reported: Reported::default(),
         }
     }
 
@@ -91,7 +92,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             if in_time && written.is_ok() {
                 watchdog.feed();
             }
-            self.complain_about_writing(written);
+            self.report_writing(written);
             due = next_due(due, end);
         }
     }
@@ -115,12 +116,12 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if !outcome.wants_setpoints {
             self.shared.setpoint_owner().set(None);
         }
-        self.tell(&outcome, asked);
+        self.announce_outcome(&outcome, asked);
         if has_armed && self.shared.pose_delay_unknown().is_raised() {
             self.shared.announce(Event::PoseDelayUnknown);
         }
-        self.tell_of_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
-        self.tell_of_the_estimate(&outcome, now);
+        self.report_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
+        self.report_the_estimate(&outcome, now);
         let report = self.report(&inputs, &outcome);
         self.shared.report().put(report, now);
         let (parameters, voltage) = (self.shared.parameters(), self.shared.voltage().get());
@@ -141,20 +142,19 @@ impl<'a, M: RawMutex> Control<'a, M> {
 
     /// What is not measured.
     fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs<'static> {
-        // The simulator takes over at a stop: an arm command from before it was asked for must not turn the motors once
-        // more.
+        // The simulator takes over at a stop: an arm command from before must not turn the motors once more.
         let handed_over = self.shared.hil().is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
             now,
             body_rate: self.shared.imu().get().map(|newest| newest.map(|sample| sample.angular_velocity)),
-            imu_fault: self.shared.imu_fault().recent(IMU_FAULT_LASTING, now),
-            ground_station: self.shared.ground_station().get().map(|heard| heard.time),
+            imu_fault: self.shared.imu_fault().recent(IMU_FAULT_HOLD, now),
+            ground_station: self.shared.ground_station().get().map(|last| last.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm().take() || handed_over,
             killed: self.shared.killed().get().is_some_and(|killed| killed.value),
             is_busy: self.shared.is_busy(),
             is_clock_doubtful: self.shared.clock_doubtful().is_raised(),
-            motors_fail: self.complaint.writing.is_some(),
+            motors_fail: self.reported.writing.is_some(),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
             setpoint: self.shared.setpoint().take().map(|setpoint| setpoint.value),
@@ -177,11 +177,11 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     /// Answers, transitions and refusals.
-    fn tell(&mut self, outcome: &Outcome, asked: Option<Asked>) {
+    fn announce_outcome(&mut self, outcome: &Outcome, asked: Option<Asked>) {
         if let (Some(asked), Some(result)) = (asked, outcome.answer) {
             self.shared.answer(&asked, result);
         }
-        // That it is ready, or not, the heartbeat says: on the bench that may change many times.
+        // The heartbeat reports readiness, which may change many times on the bench.
         if let Some(Transition { reason, .. }) = outcome.transition
             && !matches!(reason, Reason::Started | Reason::Ready | Reason::NotReady)
         {
@@ -189,14 +189,14 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
         if let Some(setpoint) = outcome.setpoint {
             let refusal = setpoint.err();
-            if refusal != self.complaint.setpoint {
-                self.complaint.setpoint = refusal;
+            if refusal != self.reported.setpoint {
+                self.reported.setpoint = refusal;
                 refusal.inspect(|refusal| self.shared.announce(Event::Refused(*refusal)));
             }
         }
         let refused = outcome.flown.as_ref().and_then(|flown| flown.as_ref().err().copied());
-        if refused != self.complaint.law {
-            self.complaint.law = refused;
+        if refused != self.reported.law {
+            self.reported.law = refused;
             refused.inspect(|error| self.shared.announce(Event::Input(*error)));
         }
         if let Some(share) = outcome.doubtful_thrust {
@@ -204,17 +204,17 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    /// That nothing watches the battery of an armed vehicle any more: landing for want of a reading would not help.
-    fn tell_of_the_battery(&mut self, is_missing: bool) {
-        if is_missing && !self.complaint.battery {
+    /// Reports that an armed vehicle's battery is no longer measured: landing for want of a reading would not help.
+    fn report_the_battery(&mut self, is_missing: bool) {
+        if is_missing && !self.reported.battery {
             self.shared.announce(Event::BatteryMissing);
         }
-        self.complaint.battery = is_missing;
+        self.reported.battery = is_missing;
     }
 
-    /// Poses that are refused, the estimate's jumps, and its faults, each once in a while.
-    fn tell_of_the_estimate(&mut self, outcome: &Outcome, now: u64) {
-        let (pose, fault) = &mut self.complaint.quiet;
+    /// Reports refused poses, the estimate's jumps and its faults, at a limited rate.
+    fn report_the_estimate(&mut self, outcome: &Outcome, now: u64) {
+        let (pose, fault) = &mut self.reported.quiet;
         match outcome.pose {
             // Before there is an IMU to compare it with, nothing is wrong with a pose.
             Some(Err(Rejected::NoImu | Rejected::TooOld)) if outcome.estimated.is_none() => {}
@@ -225,10 +225,10 @@ impl<'a, M: RawMutex> Control<'a, M> {
             Some(Ok(taken @ (Taken::Rebased | Taken::Refound))) => self.shared.announce(Event::Pose(Ok(taken))),
             _ => {}
         }
-        // Before it begins there is nothing to complain about.
+        // Before it begins it has no fault.
         let worst = outcome.health.faults.worst().filter(|&worst| worst != EstimatorFault::NotStarted);
-        if worst != self.complaint.estimator && now >= *fault {
-            self.complaint.estimator = worst;
+        if worst != self.reported.estimator && now >= *fault {
+            self.reported.estimator = worst;
             if let Some(worst) = worst {
                 *fault = now.saturating_add(TEXT_INTERVAL);
                 self.shared.announce(Event::Estimator(worst));
@@ -255,10 +255,10 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
     }
 
-    fn complain_about_writing(&mut self, written: Result<(), Fault>) {
+    fn report_writing(&mut self, written: Result<(), Fault>) {
         let fault = written.err();
-        if fault != self.complaint.writing {
-            self.complaint.writing = fault;
+        if fault != self.reported.writing {
+            self.reported.writing = fault;
             self.shared.announce(if fault.is_some() { Event::MotorsLost } else { Event::MotorsRegained });
         }
     }

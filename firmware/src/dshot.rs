@@ -38,7 +38,7 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
             }
         }
         MotorCommand::One { motor, level } => *frames.get_mut(motor).ok_or(Fault)? = run(level)?,
-        MotorCommand::Tell { motor, word } => *frames.get_mut(motor).ok_or(Fault)? = tell(word),
+        MotorCommand::Word { motor, word } => *frames.get_mut(motor).ok_or(Fault)? = word_frame(word),
     }
     Ok(frames)
 }
@@ -49,8 +49,8 @@ pub fn stop() -> [NormalFrame; MOTORS] {
     [(); MOTORS].map(|()| NormalFrame::command(Command::MotorStop, false))
 }
 
-/// A frame that tells a controller something.
-fn tell(word: Word) -> NormalFrame {
+/// The frame of a word to a controller.
+fn word_frame(word: Word) -> NormalFrame {
     let command = match word {
         Word::Beep => Command::Beep1,
         Word::Normal => Command::SpinDirectionNormal,

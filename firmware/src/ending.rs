@@ -44,7 +44,7 @@ mod tests {
     use std::cell::RefCell;
 
     #[test]
-    fn motors_are_stopped_before_anything_is_said() {
+    fn motors_are_stopped_before_anything_is_reported() {
         let acts = RefCell::new(Vec::new());
         Ending::new()
             .act(|frames| acts.borrow_mut().push(format!("stop {frames}")), || acts.borrow_mut().push("say".into()));
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_wrong_in_saying_it_does_not_say_it_again() {
+    fn a_panic_while_reporting_is_not_reported_again() {
         let (acts, ending) = (RefCell::new(Vec::new()), Ending::new());
         let stop = |frames| acts.borrow_mut().push(format!("stop {frames}"));
         let said_again = || panic!("said again");

@@ -38,7 +38,7 @@ pub struct Fault;
 /// One reading of an inertial measurement unit, in body axes (x forward, y left, z up), before calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawImu {
-    /// When it was taken, us: when the sensor said that it was ready.
+    /// When it was taken, us: when the sensor raised data-ready.
     pub time: u64,
     /// omega, rad/s.
     pub angular_velocity: Vector3<f32>,
@@ -83,14 +83,14 @@ pub trait Imu {
 
 /// A sensor's data-ready pin.
 pub trait DataReady {
-    /// Waits until it rises; when it did, us of the board's clock, however late whoever waits wakes up.
+    /// Waits until it rises; when it did, us of the board's clock, however late the waiting task wakes up.
     ///
     /// # Errors
-    /// [`Fault`] if the pin cannot tell.
+    /// [`Fault`] if the pin cannot be read.
     fn rise(&mut self) -> impl Future<Output = Result<u64, Fault>>;
 }
 
-/// What the motors are told, once per control tick.
+/// The motors' command, once per control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotorCommand {
     /// The stop command: the only frame that a disarmed vehicle sends.
@@ -104,11 +104,11 @@ pub enum MotorCommand {
         /// Its command.
         level: f32,
     },
-    /// One motor's controller is told something; the others get the stop command.
-    Tell {
+    /// One motor's controller gets a word; the others get the stop command.
+    Word {
         /// Its index in the rotors' order.
         motor: usize,
-        /// What.
+        /// The word.
         word: Word,
     },
 }
@@ -118,7 +118,7 @@ impl MotorCommand {
     #[must_use]
     pub fn levels(&self) -> [f32; MOTORS] {
         match *self {
-            Self::Stop | Self::Tell { .. } => [0.0; MOTORS],
+            Self::Stop | Self::Word { .. } => [0.0; MOTORS],
             Self::Run(levels) => levels,
             Self::One { motor, level } => core::array::from_fn(|index| if index == motor { level } else { 0.0 }),
         }
@@ -188,13 +188,13 @@ pub trait Flash {
     /// Fills a place, which must be blank.
     ///
     /// # Errors
-    /// [`Fault`] if the flash says that it failed.
+    /// [`Fault`] if the flash reports an error.
     fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault>;
 
     /// Blanks a sector, 0 or 1.
     ///
     /// # Errors
-    /// [`Fault`] if the flash says that it failed.
+    /// [`Fault`] if the flash reports an error.
     fn erase(&mut self, sector: usize) -> Result<(), Fault>;
 }
 
@@ -207,7 +207,7 @@ pub trait Card {
     /// Powers up the card that is in the slot now, and learns its size.
     ///
     /// # Errors
-    /// [`Fault`] if there is none, or none that answers as a card does.
+    /// [`Fault`] if no card answers.
     fn start(&mut self) -> Result<(), Fault>;
 
     /// How many sectors it has.
@@ -216,7 +216,7 @@ pub trait Card {
     /// Reads a sector.
     ///
     /// # Errors
-    /// [`Fault`] if the card does not answer, or says that it failed.
+    /// [`Fault`] if the card does not answer, or reports an error.
     fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> Result<(), Fault>;
 
     /// Writes a sector. It is on the card for good once this returns.

@@ -42,13 +42,13 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
         Ok(flow) => flow,
         Err(error) => refuse(shared.samples(), clock, &error).await,
     };
-    if ask_standby(clock, imu).await == Some(Err(Fault)) {
+    if start_standby(clock, imu).await == Some(Err(Fault)) {
         shared.announce(Event::new(Severity::Warning, "Second IMU does not answer"));
     }
     let (mut unit, mut is_healthy, mut is_polled) = (imu.unit(), true, false);
     loop {
-        calibrator.listen(clock.now());
-        let standby = if calibrator.wants_standby() { ask_standby(clock, imu).await } else { None };
+        calibrator.poll(clock.now());
+        let standby = if calibrator.wants_standby() { start_standby(clock, imu).await } else { None };
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         if imu.unit() != unit {
             unit = imu.unit();
@@ -85,7 +85,7 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
 }
 
 /// A sample of the sensor that stands by.
-async fn ask_standby(clock: &impl Clock, imu: &mut impl Imu) -> Option<Result<RawImu, Fault>> {
+async fn start_standby(clock: &impl Clock, imu: &mut impl Imu) -> Option<Result<RawImu, Fault>> {
     let answer = within(clock, PATIENCE, imu.standby()).await.unwrap_or(Some(Err(Fault)))?;
     Some(answer.and_then(finite))
 }

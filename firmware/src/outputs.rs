@@ -47,7 +47,7 @@ impl Outputs {
             Output::Stop => MotorCommand::Stop,
             Output::Idle => MotorCommand::Run([idle; MOTORS]),
             Output::Test { rotor, level } => MotorCommand::One { motor: *rotor, level: *level },
-            Output::Tell { rotor, word } => MotorCommand::Tell { motor: *rotor, word: *word },
+            Output::Word { rotor, word } => MotorCommand::Word { motor: *rotor, word: *word },
             Output::Thrusts(thrusts) => {
                 let mut commands = [0.0; MOTORS];
                 for ((command, curve), thrust) in commands.iter_mut().zip(&self.0).zip(thrusts) {

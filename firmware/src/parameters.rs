@@ -3,7 +3,7 @@
 //! They change only while disarmed. What the certificate depends on is certified when it is set, and refused if that
 //! fails; it counts from the next boot, which certifies it again.
 //!
-//! [`table`] says what there is, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], `flight` and
+//! [`table`] lists them, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], `flight` and
 //! [`tuned`] are what rows mean together: the inertial sensors', those of the flight rules, and those of the
 //! configuration.
 
@@ -39,22 +39,22 @@ const DEFAULTS: Values = {
 
 /// The present values.
 pub struct Parameters<M: RawMutex> {
-    /// The numbers' bits. Each stands alone: nobody needs two that belong together.
+    /// The numbers' bits. Each stands alone: no reader needs two that belong together.
     values: [AtomicU32; PARAMETERS.len()],
     /// Something changed since it was last saved.
     changed: Signal<M, ()>,
-    /// What the rows of the configuration change; none before boot has said so.
+    /// What the rows of the configuration change; none before boot.
     built: Mutex<M, Cell<Option<&'static Built>>>,
 }
 
-/// Why a value was not taken.
+/// Why a value was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NotTaken {
     /// The table does not allow it for this parameter.
     OutOfRange(Name),
-    /// This parameter is only told.
-    OnlyTold(Name),
-    /// Nobody has said yet what was built, which this parameter changes.
+    /// This parameter is read-only.
+    ReadOnly(Name),
+    /// Before boot has reported the configuration that this parameter changes.
     NothingBuilt(Name),
     /// The vehicle could not fly with it.
     Unfit(Name, Unfit),
@@ -71,7 +71,7 @@ impl fmt::Display for NotTaken {
                 }
                 write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")
             }
-            Self::OnlyTold(parameter) => write!(f, "{}: is only told", parameter.row().name),
+            Self::ReadOnly(parameter) => write!(f, "{}: is read-only", parameter.row().name),
             Self::NothingBuilt(parameter) => write!(f, "{}: not yet", parameter.row().name),
             Self::Unfit(parameter, _) => write!(f, "{}: refused, cannot be flown", parameter.row().name),
         }
@@ -139,7 +139,7 @@ impl<M: RawMutex> Parameters<M> {
     /// could not fly.
     pub fn set(&self, name: Name, value: f32) -> Result<(), NotTaken> {
         if name == Name::TunedOn {
-            return Err(NotTaken::OnlyTold(name));
+            return Err(NotTaken::ReadOnly(name));
         }
         if !name.row().allows(value) {
             return Err(NotTaken::OutOfRange(name));

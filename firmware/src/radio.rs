@@ -1,4 +1,4 @@
-//! A radio transmitter in somebody's hands: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000
+//! The operator's radio transmitter: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000
 //! baud).
 //!
 //! | channel | what | low | middle | high |
@@ -6,17 +6,16 @@
 //! | 1, 2, 4 | sticks: right, forward, yaw to the right | | rest | |
 //! | 3 | stick: up | down | rest | up |
 //! | 5 | arm | disarm, on the ground | | arm |
-//! | 6 | who flies | whoever is on the link | hold | the sticks |
+//! | 6 | who flies | clients on the link | hold | the sticks |
 //! | 7 | kill switch | | | every motor stops |
 //!
 //! - A switch acts when it is moved, not where it is found: a transmitter that is turned on arms nothing. The kill
-//!   switch alone acts as it stands, and stays as it was last heard when the receiver falls silent.
-//! - The sticks ask for velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
-//!   anybody's setpoints; what comes from the link is then refused. On the ground they begin a flight when the stick is
-//!   pushed up.
-//! - A transmitter that is heard is somebody who watches, as a ground station is. One that falls silent for [`SILENCE`]
-//!   no longer is. If its sticks flew, the vehicle holds, and nothing takes over by itself: setpoints of the link go on
-//!   being refused until a client on it asks to fly them, or the radio is heard again and its switch says so.
+//!   switch alone acts as it stands, and keeps its last received position when the receiver falls silent.
+//! - The sticks command velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
+//!   setpoints; those of the link are then refused. On the ground they begin a flight when the stick is pushed up.
+//! - A transmitter counts as a ground station until it has been silent for [`SILENCE`]. If its sticks flew, the vehicle
+//!   then holds, and nothing takes over by itself: setpoints of the link stay refused until a client requests to fly
+//!   them, or the radio is received again and its switch selects the link.
 
 pub mod sticks;
 
@@ -30,7 +29,7 @@ use sticks::Sticks;
 use uf_crsf::CrsfParser;
 use uf_crsf::packets::{CrsfPacket, RcChannelsPacked};
 
-/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not hear its
+/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not receive its
 /// transmitter.
 pub const SILENCE: u64 = 500_000;
 
@@ -64,7 +63,7 @@ impl Switch {
     }
 }
 
-/// What a frame of channels says.
+/// A frame of channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Frame {
     sticks: Sticks,
@@ -101,11 +100,11 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
             Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
             Either::Second(()) => {}
         }
-        radio.listen(clock.now());
+        radio.check_silence(clock.now());
     }
 }
 
-/// What the transmitter said last.
+/// The last frame of the transmitter.
 pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
     shared: RadioView<'a, M>,
@@ -113,7 +112,7 @@ pub struct Radio<'a, M: RawMutex> {
 }
 
 impl<'a, M: RawMutex> Radio<'a, M> {
-    /// Nothing heard yet.
+    /// Nothing received yet.
     #[must_use]
     pub fn new(shared: RadioView<'a, M>) -> Self {
         Self { parser: CrsfParser::new(), shared, last: None }
@@ -138,20 +137,20 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         self.shared.ground_station().put((), now);
         self.shared.killed().put(frame.killed, now);
         self.shared.sticks().put(frame.flies == Switch::High, now);
-        // Switches act when they are moved while somebody is heard.
+        // Switches act when they are moved while the radio is received.
         if let Some((before, _)) = self.last.replace((frame, now)) {
             self.moved(&before, &frame);
         } else {
-            self.shared.announce(Event::new(Severity::Information, "Radio heard"));
+            self.shared.announce(Event::new(Severity::Information, "Radio received"));
         }
         if frame.flies == Switch::High {
             self.steer(&frame.sticks, now);
         }
     }
 
-    /// Notices silence.
-    pub fn listen(&mut self, now: u64) {
-        if self.last.is_some_and(|(_, heard)| now.saturating_sub(heard) > SILENCE) {
+    /// Reports the radio lost after silence, and holds if its sticks flew.
+    pub fn check_silence(&mut self, now: u64) {
+        if self.last.is_some_and(|(_, time)| now.saturating_sub(time) > SILENCE) {
             self.last = None;
             self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
             if self.is_flown() && self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
@@ -182,7 +181,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         }
     }
 
-    /// Puts down what the sticks ask for. On the ground only a stick that is pushed up does.
+    /// Puts down the sticks' setpoint. On the ground only a stick that is pushed up does.
     fn steer(&self, sticks: &Sticks, now: u64) {
         let Some(report) = self.shared.report().get().map(|report| report.value) else { return };
         let begins = report.mode == Mode::Idling && sticks.begin();

@@ -25,10 +25,10 @@ mod card;
 mod count;
 mod event;
 mod flag;
-mod lately;
 mod latest;
 mod library;
 mod queue;
+mod recent_texts;
 mod reply;
 mod report;
 mod requests;
@@ -48,7 +48,7 @@ pub use report::{Report, Timing, Traffic};
 pub use requests::{REQUESTS, Requests};
 pub use setpoint_owner::SetpointOwner;
 
-use self::lately::Lately;
+use self::recent_texts::RecentTexts;
 use crate::last_words::LastWords;
 use crate::link::acknowledgement::Order;
 use crate::link::origin::Origin;
@@ -206,7 +206,7 @@ values! {
     pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
     /// What the link wants to know of the card's files.
     pub library: Library<M> { Write: CardView; Read: TransmitView }
-    lately: Lately<M> {}
+    recent_texts: RecentTexts<M> {}
 }
 
 // What concerns several values at once, and which views can do it.
@@ -292,14 +292,14 @@ impl<M: RawMutex> Values<M> {
 
     /// Control's time, us, by which texts are held back.
     pub fn pass(&self, now: u64) {
-        self.lately.pass(now);
+        self.recent_texts.pass(now);
     }
 
     /// Tells people what they were not told within the last second: the ground station, the log and the card. Where a
     /// queue is full the event is dropped and counted: what came first is the cause, what follows is mostly its
     /// consequence.
     pub fn announce(&self, event: Event) {
-        if self.lately.has_said(&event) {
+        if self.recent_texts.repeats(&event) {
             return;
         }
         let is_logged = self.card.state() != CardState::Ready || self.card_events.put(event.clone()).is_ok();

@@ -1,9 +1,9 @@
-//! What is done with one motor on the bench, while nothing else turns: turning it slowly, and telling its controller
-//! something.
+//! What is done with one motor on the bench, while nothing else turns: turning it slowly, and sending words to its
+//! controller.
 //!
 //! | setting | the commands that its controller gets, from the beginning |
 //! |---|---|
-//! | beep | beep for a tick; then the stop command, for as long as the tone lasts |
+//! | beep | beep for a tick; then the stop command, for as long as the tone sounds |
 //! | direction | the direction for a tick; 40 ms of the stop command; save for a tick; the stop command while it is saved |
 //!
 //! A tick's command goes out ten times, which is more than the six that such words take to be believed.
@@ -13,7 +13,7 @@ use super::motor::{MotorSetting, MotorTest, Setting, Word};
 use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
 
-/// How long telling a controller something takes, us: the tone of a beep, which is the longest.
+/// How long a setting takes, us: the tone of a beep, which is the longest.
 const SETTING_LASTS: u64 = 300_000;
 
 /// When a direction is saved, us after its command.
@@ -67,7 +67,7 @@ impl Bench {
             (Setting::Normal | Setting::Reversed, SAVED_AFTER) => Word::Save,
             _ => return Output::Stop,
         };
-        Output::Tell { rotor, word }
+        Output::Word { rotor, word }
     }
 }
 
@@ -76,11 +76,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tick_that_comes_a_little_late_tells_what_it_should() {
+    fn a_tick_that_comes_a_little_late_still_sends_its_word() {
         let bench = Bench::Setting(MotorSetting { rotor: 1, setting: Setting::Reversed });
         for (tick, word) in [(0, Word::Reversed), (5, Word::Save)] {
             for late in [0, 1, PERIOD - 1] {
-                assert_eq!(bench.output(tick * PERIOD + late), Output::Tell { rotor: 1, word }, "{late} us late");
+                assert_eq!(bench.output(tick * PERIOD + late), Output::Word { rotor: 1, word }, "{late} us late");
             }
             assert_eq!(bench.output((tick + 1) * PERIOD), Output::Stop);
         }

@@ -84,11 +84,11 @@ pub enum Output {
         /// Part of the command's range, at most [`super::rules::MOTOR_TEST_LEVEL_MAX`].
         level: f32,
     },
-    /// One motor's controller gets a command, the others stop.
-    Tell {
+    /// One motor's controller gets a word, the others stop.
+    Word {
         /// The motor's index in the rotors' order.
         rotor: usize,
-        /// What.
+        /// The word.
         word: Word,
     },
 }
@@ -126,6 +126,6 @@ pub struct Outcome {
     pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,
-    /// The rotors' thrust over the commanded thrust, in the ticks in which a lasting doubt about it is to be reported.
+    /// The rotors' thrust over the commanded thrust, in the ticks that report a persistent deviation.
     pub doubtful_thrust: Option<f32>,
 }

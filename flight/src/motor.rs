@@ -1,4 +1,4 @@
-//! What may be asked of one motor, and said to its controller, while nothing else turns.
+//! Requests for one motor, and for its controller, while nothing else turns.
 
 /// One motor to be turned slowly for a while, to see which it is and which way it turns.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -137,7 +137,7 @@ impl<'m> Pilot<'m> {
             self.trust.give_up();
         }
         if self.mode.flies() {
-            self.trust.hear(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), now);
+            self.trust.judge(estimate.pose, !estimate.health.faults.contain(Fault::GyroBias), now);
         } else if !self.mode.is_armed() {
             self.trust = Trust::default();
         }
@@ -172,7 +172,7 @@ impl<'m> Pilot<'m> {
         self.must_still_land |= transition.from == Mode::Landing;
         self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
-            self.watch.tell_low();
+            self.watch.report_low();
         }
         if transition.reason == Reason::LandingOver {
             self.trust.give_up();

@@ -27,7 +27,7 @@ pub enum Request {
     Land,
     /// Turn one motor slowly.
     MotorTest(MotorTest),
-    /// Tell one motor's controller something, while no motor turns.
+    /// Send a setting to one motor's controller, while no motor turns.
     MotorSetting(MotorSetting),
 }
 

@@ -1,7 +1,7 @@
 //! Whether a source of poses may still be believed in this flight.
 //!
-//! A pose that is refused proves nothing, and a body that was lost may be found again. A source whose poses are refused
-//! and found again over and over lies. What speaks against it is counted in seconds of doubt and forgotten slowly:
+//! One refused pose proves nothing, and a lost body may be found again. A source whose poses are refused and found
+//! again over and over lies. Evidence against it is counted in seconds of doubt, which decays slowly:
 //!
 //! | what happens in flight | doubt |
 //! |---|---|
@@ -28,16 +28,16 @@ const RESUMED: f32 = 1.6;
 /// What a second of belief takes from the doubt, s.
 const FORGOTTEN: f32 = 0.03;
 
-/// The longest time that one pose speaks for, us.
+/// The longest time that one pose accounts for, us.
 const SPEAKS_FOR: u64 = 100_000;
 
-/// What speaks against a source of poses.
+/// The evidence against a source of poses.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Trust {
     /// s.
     doubt: f32,
-    /// The time of the last poses, us.
-    heard: u64,
+    /// When the last poses were judged, us.
+    judged: u64,
     is_given_up: bool,
     /// From when on poses have been refused for what they say, and until when, us; none once one is believed.
     refused: Option<(u64, u64)>,
@@ -46,10 +46,10 @@ pub(super) struct Trust {
 impl Trust {
     /// Takes note of what became of a tick's poses, in flight. Where the gyro's bias is not `plausible` with them, they
     /// turn as the vehicle does not, and are no better than refused.
-    pub fn hear(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
+    pub fn judge(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
-        let seconds = now.saturating_sub(self.heard).min(SPEAKS_FOR) as f32 * 1e-6;
-        self.heard = now;
+        let seconds = now.saturating_sub(self.judged).min(SPEAKS_FOR) as f32 * 1e-6;
+        self.judged = now;
         self.doubt(match pose {
             Err(rejected) if rejected.is_lie() => seconds,
             Ok(Taken::Refound) => REFOUND,

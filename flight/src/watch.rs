@@ -129,7 +129,7 @@ pub(super) struct Watch {
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
     /// Whether a low battery has caused its landing: a flight that goes on after it is the pilot's choice.
-    low_is_told: bool,
+    low_is_reported: bool,
 }
 
 /// What is so.
@@ -201,7 +201,7 @@ impl Look<'_> {
     /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for.
     fn feels(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
         let (Some(state), Some(chain), Some(flown)) = (self.state, self.chain, self.flown) else { return None };
-        Some((chain.unexpected(flown, state), chain.asked_acceleration(flown), state))
+        Some((chain.unexpected(flown, state), chain.commanded_acceleration(flown), state))
     }
 
     /// The same, only where nothing but the IMU is left.
@@ -298,7 +298,7 @@ impl Watch {
             touches,
             lied,
             crashed: self.lying.holds_for(look.lies(), GROUND_DEBOUNCE, now),
-            battery_low: self.low.holds_for(is_low, BATTERY_DEBOUNCE, now) && !self.low_is_told,
+            battery_low: self.low.holds_for(is_low, BATTERY_DEBOUNCE, now) && !self.low_is_reported,
             battery_critical: self.critical.holds_for(battery == Battery::Critical, BATTERY_DEBOUNCE, now),
             imu_doubtful: doubtful || turning,
             overrun: self.late.holds_for(is_late, OVERRUN_DEBOUNCE, now),
@@ -353,8 +353,8 @@ impl Watch {
     }
 
     /// A low battery has been acted on.
-    pub fn tell_low(&mut self) {
-        self.low_is_told = true;
+    pub fn report_low(&mut self) {
+        self.low_is_reported = true;
     }
 }
 

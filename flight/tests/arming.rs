@@ -108,9 +108,9 @@ fn arming_takes_a_whole_second_of_poses_that_are_all_believed() {
     assert_eq!(first, Some(151));
     for (elapsed, answer) in [(99, Err(Refusal::PosesUnsettled)), (100, Ok(()))] {
         let mut flight = Flight::settled();
-        flight.told = Box::new(|body, time| displaced(body, time, &Vector3::new(0.0, 0.1, 0.0), &Vector3::zeros()));
+        flight.source = Box::new(|body, time| displaced(body, time, &Vector3::new(0.0, 0.1, 0.0), &Vector3::zeros()));
         flight.tick();
-        flight.told = Flight::new().told;
+        flight.source = Flight::new().source;
         flight.ticks(elapsed);
         flight.inputs.request = Some(Request::Arm);
         assert_eq!(flight.tick().answer, Some(answer), "{elapsed}");
@@ -190,19 +190,19 @@ fn arming_is_refused_with_poses_that_lie_or_do_not_advance() {
     let resent = Flight::new().tick().health;
     assert!(resent.faults.contain(Fault::NotStarted));
     refuses_sensors(
-        |flight| flight.told = Box::new(|body, _| displaced(body, 1_000_000, &Vector3::zeros(), &Vector3::zeros())),
+        |flight| flight.source = Box::new(|body, _| displaced(body, 1_000_000, &Vector3::zeros(), &Vector3::zeros())),
         not_started,
     );
     let upside_down = Vector3::new(std::f64::consts::PI, 0.0, 0.0);
     refuses_sensors(
-        |flight| flight.told = Box::new(move |body, time| displaced(body, time, &Vector3::zeros(), &upside_down)),
+        |flight| flight.source = Box::new(move |body, time| displaced(body, time, &Vector3::zeros(), &upside_down)),
         not_started,
     );
     let untracked = |body: &crate::support::Body, time| {
         let pose = displaced(body, time, &Vector3::zeros(), &Vector3::zeros());
         flight::Stamped { value: pose.value.quality(-1), ..pose }
     };
-    refuses_sensors(|flight| flight.told = Box::new(untracked), not_started);
+    refuses_sensors(|flight| flight.source = Box::new(untracked), not_started);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! One motor on the bench: turned slowly, or its controller told something, while nothing else turns; and what is
+//! One motor on the bench: turned slowly, or its controller given a word, while nothing else turns; and what is
 //! refused there.
 
 use crate::support::{Flight, Handed, at_rest, pilot};
@@ -44,11 +44,11 @@ fn words(setting: Setting) -> Vec<(usize, Word)> {
     }
     assert_eq!(outcomes.len(), 31, "300 ms, and the tick after them");
     assert_eq!(outcomes[30].transition.map(|transition| transition.reason), Some(Reason::MotorTestOver));
-    let told = outcomes.iter().enumerate().filter_map(|(tick, outcome)| match outcome.output {
-        Output::Tell { rotor: 2, word } => Some((tick, word)),
+    let words = outcomes.iter().enumerate().filter_map(|(tick, outcome)| match outcome.output {
+        Output::Word { rotor: 2, word } => Some((tick, word)),
         ref other => (*other != Output::Stop).then(|| panic!("{other:?}")),
     });
-    told.collect()
+    words.collect()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn motor_tests_of_other_rotors_levels_or_durations_are_refused() {
 }
 
 #[test]
-fn a_motors_controller_is_told_nothing_where_motors_turn_or_of_one_that_is_not_there() {
+fn a_motor_controller_gets_no_word_while_motors_turn_nor_does_one_that_is_missing() {
     let set = |rotor| Request::MotorSetting(MotorSetting { rotor, setting: Setting::Reversed });
     assert_eq!(Flight::settled().answer(set(4)), Err(Refusal::NoSuchRotor));
     let mut flight = Flight::settled();

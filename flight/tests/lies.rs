@@ -2,7 +2,7 @@
 //! second, levels for another, and stops, and says why the poses are not believed. Where the sender says that its frame
 //! has moved, or where a lost body is found again, it flies on and does not lurch.
 
-use crate::support::{Body, Flight, SPOOLING, Told, displaced, go_to};
+use crate::support::{Body, Flight, PoseSource, SPOOLING, displaced, go_to};
 use controller_core::prelude::*;
 use estimation::estimator::{Rejected, Taken};
 use flight::rules::COASTING_MAX;
@@ -29,11 +29,11 @@ fn hovering() -> Flight {
     flight
 }
 
-/// A flight from the tick on in which poses begin to be what `told` says: it ends as in silence, up to `late` ticks
+/// A flight from the tick on in which poses begin to be those of `source`: it ends as in silence, up to `late` ticks
 /// later, and the poses are refused for one of `reasons` when it levels. Returns how far by then the law's state was
 /// from the truth, m.
-fn ends_as_in_silence(mut flight: Flight, told: Told, late: u64, reasons: &[Rejected]) -> f64 {
-    flight.told = told;
+fn ends_as_in_silence(mut flight: Flight, source: PoseSource, late: u64, reasons: &[Rejected]) -> f64 {
+    flight.source = source;
     let silence = COASTING_MAX / PERIOD + 1;
     let (ticks, outcome) = flight.until(Reason::PoseLost, silence + late + 1);
     assert!((silence..=silence + late).contains(&ticks), "{reasons:?}: levelled after {ticks} ticks");
@@ -50,17 +50,17 @@ fn ends_as_in_silence(mut flight: Flight, told: Told, late: u64, reasons: &[Reje
 }
 
 /// Both flights with a lie that starts at their present time.
-fn lie(make: impl Fn(&Flight) -> Told, late: u64, reasons: &[Rejected]) {
+fn lie(make: impl Fn(&Flight) -> PoseSource, late: u64, reasons: &[Rejected]) {
     for flight in [under_way(), hovering()] {
-        let told = make(&flight);
-        let drift = ends_as_in_silence(flight, told, late, reasons);
+        let source = make(&flight);
+        let drift = ends_as_in_silence(flight, source, late, reasons);
         assert!(drift < 0.25, "{reasons:?}: {drift} m");
     }
 }
 
 #[test]
 fn a_frame_sent_again_and_again_stops_as_fast_as_silence() {
-    let resent = |flight: &Flight| -> Told {
+    let resent = |flight: &Flight| -> PoseSource {
         let last = displaced(&flight.body, flight.inputs.now, &NOWHERE, &NOWHERE);
         Box::new(move |_, _| last)
     };
@@ -96,7 +96,7 @@ fn half_turns_are_not_followed() {
 
 #[test]
 fn a_drift_of_half_a_metre_a_second_is_not_followed() {
-    let drifting = |flight: &Flight| -> Told {
+    let drifting = |flight: &Flight| -> PoseSource {
         let start = flight.inputs.now;
         Box::new(move |body: &Body, time| {
             let gone = (time - start) as f64 * 1e-6;
@@ -108,7 +108,7 @@ fn a_drift_of_half_a_metre_a_second_is_not_followed() {
 
 #[test]
 fn poses_whose_sender_has_lost_track_are_none() {
-    let untracked = |_: &Flight| -> Told {
+    let untracked = |_: &Flight| -> PoseSource {
         Box::new(|body: &Body, time| {
             let pose = displaced(body, time, &NOWHERE, &NOWHERE);
             Stamped { value: pose.value.quality(-1), ..pose }
@@ -119,29 +119,31 @@ fn poses_whose_sender_has_lost_track_are_none() {
 
 #[test]
 fn poses_of_another_time_are_none() {
-    let future = |_: &Flight| -> Told { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
+    let future =
+        |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
     lie(future, 0, &[Rejected::Future]);
-    let old = |_: &Flight| -> Told { Box::new(|body, time| displaced(body, time - 500_000, &NOWHERE, &NOWHERE)) };
+    let old = |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time - 500_000, &NOWHERE, &NOWHERE)) };
     lie(old, 0, &[Rejected::TooOld, Rejected::Repeated]);
 }
 
 /// How long it takes to hold once true poses come again, after three seconds: in the first `lied` ticks of them the
-/// poses are those of `told`, afterwards there are none. `None` if it does not hold within ten seconds.
-fn held_again(told: Told, lied: u64) -> Option<u64> {
+/// poses are those of `source`, afterwards there are none. `None` if it does not hold within ten seconds.
+fn held_again(source: PoseSource, lied: u64) -> Option<u64> {
     let mut flight = hovering();
-    flight.told = told;
+    flight.source = source;
     flight.ticks(lied);
     flight.present.pose = false;
     flight.ticks(300 - lied);
     assert_eq!(flight.pilot.mode(), Mode::Descending);
-    (flight.told, flight.present.pose) = (Flight::new().told, true);
+    (flight.source, flight.present.pose) = (Flight::new().source, true);
     (1..=1_000).find(|_| flight.tick().mode.is_guided())
 }
 
 #[test]
 fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only() {
-    let astray = || -> Told { Box::new(|body, time| displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE)) };
-    let silent = held_again(Flight::new().told, 0);
+    let astray =
+        || -> PoseSource { Box::new(|body, time| displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE)) };
+    let silent = held_again(Flight::new().source, 0);
     assert!(silent.is_some_and(|ticks| ticks < 50), "{silent:?}");
     for lied in [1, 10, 25] {
         let held = held_again(astray(), lied);
@@ -151,9 +153,9 @@ fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only(
     for lied in [40, 100, 200] {
         assert_eq!(held_again(astray(), lied), None, "{lied}");
     }
-    // Nor does a frame that is said to have moved at the end of it make them true.
+    // Nor does a frame that reports a move at the end of it make them true.
     let end = hovering().inputs.now + 39 * PERIOD;
-    let moved: Told = Box::new(move |body, time| {
+    let moved: PoseSource = Box::new(move |body, time| {
         let pose = displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE);
         Stamped { value: pose.value.reset_counter(u8::from(time >= end)), ..pose }
     });
@@ -162,23 +164,23 @@ fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only(
 
 #[test]
 fn poses_whose_sender_had_lost_track_or_time_are_believed_again() {
-    let track = || -> Told {
+    let track = || -> PoseSource {
         Box::new(|body: &Body, time| {
             let pose = displaced(body, time, &NOWHERE, &NOWHERE);
             Stamped { value: pose.value.quality(-1), ..pose }
         })
     };
-    let late = || -> Told { Box::new(|body, time| displaced(body, time - 600_000, &NOWHERE, &NOWHERE)) };
-    let early = || -> Told { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
-    for (number, told) in [track(), late(), early()].into_iter().enumerate() {
-        let held = held_again(told, 300);
+    let late = || -> PoseSource { Box::new(|body, time| displaced(body, time - 600_000, &NOWHERE, &NOWHERE)) };
+    let early = || -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
+    for (number, source) in [track(), late(), early()].into_iter().enumerate() {
+        let held = held_again(source, 300);
         assert!(held.is_some_and(|ticks| ticks < 100), "{number}: {held:?}");
     }
 }
 
 /// The truth in a frame that has moved by `offset` and turned by `turn` (rad, about the vertical), which its counter
 /// says.
-fn moved(offset: Vector3<f64>, turn: f64, resets: u8) -> Told {
+fn moved(offset: Vector3<f64>, turn: f64, resets: u8) -> PoseSource {
     Box::new(move |body, time| {
         let turn = Vector3::new(0.0, 0.0, turn);
         let position = UnitQuaternion::from_scaled_axis(turn) * body.position + offset - body.position;
@@ -198,11 +200,11 @@ fn speed(flight: &mut Flight, ticks: u64) -> (f64, Outcome) {
 }
 
 #[test]
-fn a_frame_that_moves_and_says_so_is_flown_on_in_without_a_lurch() {
+fn a_reported_frame_move_is_flown_through_without_a_lurch() {
     for (offset, turn) in [(Vector3::new(100.0, -5.0, 2.0), 0.0), (Vector3::new(1.0, 2.0, 0.0), 1.5), (NOWHERE, PI)] {
         let mut flight = hovering();
         let place = flight.body.position;
-        flight.told = moved(offset, turn, 1);
+        flight.source = moved(offset, turn, 1);
         let rebased = flight.tick();
         assert_eq!((rebased.pose, rebased.health.jumps, rebased.mode), (Some(Ok(Taken::Rebased)), 1, Mode::Flying));
         let (fastest, last) = speed(&mut flight, 300);
@@ -225,7 +227,7 @@ fn a_frame_that_moves_while_the_rotors_are_brought_up_takes_the_reference_along(
         flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
         assert_eq!(flight.tick().answer, Some(Ok(())));
         flight.ticks(20);
-        flight.told = moved(Vector3::new(20.0, 0.0, 3.0), 1.0, 1);
+        flight.source = moved(Vector3::new(20.0, 0.0, 3.0), 1.0, 1);
         for _ in 20..SPOOLING - 2 {
             let outcome = flight.tick();
             assert!(outcome.mode.flies());
@@ -243,7 +245,7 @@ fn a_frame_that_moves_under_way_makes_the_vehicle_brake_and_hold() {
     let [straight, turned] = [0.0, 1.0].map(|turn| {
         let mut flight = under_way();
         let fast = flight.body.velocity.norm();
-        flight.told = moved(Vector3::new(3.0, 0.0, 1.0), turn, 1);
+        flight.source = moved(Vector3::new(3.0, 0.0, 1.0), turn, 1);
         flight.tick();
         let (fastest, _) = speed(&mut flight, 1_500);
         assert!(flight.body.velocity.norm() < 0.02, "{}", flight.body.velocity);
@@ -261,10 +263,10 @@ fn a_counter_that_runs_is_flown_no_longer_than_silence() {
     for every in [1, 5, 20, 100] {
         let mut flight = hovering();
         let from = flight.inputs.now;
-        flight.told = Box::new(move |body, time| {
+        flight.source = Box::new(move |body, time| {
             let frame = (time - from) / PERIOD / every;
-            let told = displaced(body, time, &Vector3::new(3.0 * frame as f64, 0.0, 0.0), &NOWHERE);
-            Stamped { value: told.value.reset_counter(frame as u8), ..told }
+            let pose = displaced(body, time, &Vector3::new(3.0 * frame as f64, 0.0, 0.0), &NOWHERE);
+            Stamped { value: pose.value.reset_counter(frame as u8), ..pose }
         });
         for tick in 1..=1_000 {
             flight.present.pose = tick % every == 0;
@@ -285,7 +287,7 @@ fn a_body_found_where_coasting_may_have_led_is_flown_on_from_without_a_lurch() {
     flight.present.pose = false;
     flight.ticks(40);
     flight.present.pose = true;
-    flight.told = Box::new(|body, time| displaced(body, time, &Vector3::new(0.15, 0.0, 0.0), &NOWHERE));
+    flight.source = Box::new(|body, time| displaced(body, time, &Vector3::new(0.15, 0.0, 0.0), &NOWHERE));
     let mut found = 0;
     for _ in 0..300 {
         let outcome = flight.tick();
@@ -302,12 +304,12 @@ fn a_lie_that_ends_in_time_costs_nothing_but_what_was_coasted() {
     for seconds in [0.9, 1.8] {
         let mut flight = under_way();
         let offset = Vector3::new(5.0, 0.0, 0.0);
-        flight.told = Box::new(move |body, time| displaced(body, time, &offset, &NOWHERE));
+        flight.source = Box::new(move |body, time| displaced(body, time, &offset, &NOWHERE));
         let ticks = (seconds * 100.0) as u64;
         let mode = flight.ticks(ticks).mode;
         let [lost, found] = if seconds < 1.0 { [Mode::Flying; 2] } else { [Mode::Descending, Mode::Holding] };
         assert_eq!(mode, lost);
-        flight.told = Flight::new().told;
+        flight.source = Flight::new().source;
         assert_eq!(flight.tick().mode, found, "{seconds} s");
         let last = flight.ticks(1_500);
         assert_eq!((last.mode, last.health.jumps), (found, 0));
@@ -327,7 +329,7 @@ fn a_gap_in_the_imu_or_a_number_that_is_none_stops_the_motors() {
 }
 
 #[test]
-fn sensors_that_lie_in_flight_end_it_within_two_seconds_and_never_in_a_number_that_is_none() {
+fn sensors_that_lie_in_flight_end_it_within_two_seconds_and_never_in_a_nan() {
     let lies: [fn(&mut Flight); 3] = [
         |flight| flight.imu = Box::new(|imu| imu.delta_velocity = -imu.delta_velocity),
         |flight| flight.imu = Box::new(|imu| imu.delta_velocity = Vector3::zeros()),

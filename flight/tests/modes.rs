@@ -109,14 +109,14 @@ fn a_pose_regained_within_the_second_is_flown_from_and_the_vehicle_brakes_and_ho
 }
 
 #[test]
-fn stopped_in_the_air_it_is_not_said_to_lie_on_the_ground_before_it_does() {
+fn stopped_in_the_air_it_is_not_reported_on_the_ground_before_it_lies_there() {
     for kill in [false, true] {
         let mut flight = Flight::armed();
         flight.ground = flight.body.position.z - 20.0;
         (flight.inputs.disarm, flight.inputs.killed) = (!kill, kill);
         let stopped = flight.tick();
         assert!(stopped.output == Output::Stop && !stopped.is_airborne && stopped.may_fall);
-        // Whoever disarms what was killed has not caught it.
+        // Disarming what was killed does not catch it.
         flight.inputs.request = kill.then_some(Request::Disarm);
         assert!(flight.tick().mode.may_arm());
         while flight.body.position.z > flight.ground {

@@ -90,7 +90,7 @@ fn spoil(handed: &mut Handed, field: usize, number: f32) {
             (handed.disarm, handed.request) = (false, Some(Request::MotorTest(test)));
         }
     }
-    // Numbers that make no pose are none: there is no way to hand them in.
+    // Numbers that make no pose cannot be handed in.
     let pose = Pose::new(position, Velocity::World(velocity), attitude).ok();
     let made = pose.map(|pose| PoseMeasurement::with_velocity(&pose).deviations(number, number));
     handed.poses = made.into_iter().map(|value| Stamped { value, time: handed.now }).collect();

@@ -76,7 +76,7 @@ fn what_cannot_be_done_in_the_air_is_refused_there() {
         assert_eq!(flight.answer(Request::TakeOff(Some(height))), Err(Refusal::TakeOffHeight));
     }
     assert_eq!(flight.answer(Request::GoTo(go_to(0.0, 200.0, 2.0))), Err(Refusal::OutsideFence));
-    // A critical battery lands, and nobody takes that back.
+    // A critical battery lands, and no request cancels that.
     flight.inputs.battery = Battery::Critical;
     for _ in 0..301 {
         flight.tick();

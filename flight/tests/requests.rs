@@ -1,4 +1,4 @@
-//! What was asked for earlier, and what is asked for now: the newest counts, and nothing that was granted is forgotten.
+//! Earlier and present requests: the newest counts, and nothing that was granted is forgotten.
 
 use crate::support::{Flight, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
@@ -31,7 +31,7 @@ fn stream(flight: &mut Flight, setpoint: Setpoint, ticks: u64) -> Outcome {
     flight.tick()
 }
 
-/// Idling since the last tick; setpoints were asked for before arming, and come.
+/// Idling since the last tick; setpoints were requested before arming, and come.
 fn idling_with_setpoints_wanted() -> Flight {
     let mut flight = Flight::settled();
     for request in [Request::FlySetpoints, Request::Arm] {
@@ -43,13 +43,13 @@ fn idling_with_setpoints_wanted() -> Flight {
 }
 
 #[test]
-fn setpoints_asked_for_before_arming_are_flown_from_arming_on() {
+fn setpoints_requested_before_arming_are_flown_from_arming_on() {
     let mut flight = idling_with_setpoints_wanted();
     assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
 }
 
 #[test]
-fn a_flight_that_was_granted_and_may_not_begin_is_told_why() {
+fn a_granted_flight_that_may_not_begin_is_refused_with_a_reason() {
     let mut flight = idling_with_setpoints_wanted();
     for _ in 0..10 {
         flight.inputs.battery = Battery::Missing;
@@ -122,7 +122,7 @@ fn a_setpoint_that_is_refused_begins_no_flight_and_says_why() {
 }
 
 #[test]
-fn setpoints_asked_for_on_the_ground_are_taken_back_by_whatever_else_is_asked_for() {
+fn any_other_request_cancels_setpoints_requested_on_the_ground() {
     for request in [Request::Disarm, Request::Hold, Request::Land, Request::TakeOff(None)] {
         let mut flight = Flight::settled();
         assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Ok(())));
@@ -139,7 +139,7 @@ fn setpoints_asked_for_on_the_ground_are_taken_back_by_whatever_else_is_asked_fo
 }
 
 #[test]
-fn setpoints_asked_for_on_the_ground_are_wanted_for_five_seconds() {
+fn setpoints_requested_on_the_ground_stay_requested_for_five_seconds() {
     for (waited, mode) in
         [(SETPOINTS_WANTED_MAX / PERIOD - 1, Mode::Flying), (SETPOINTS_WANTED_MAX / PERIOD, Mode::Idling)]
     {
@@ -156,8 +156,8 @@ fn setpoints_asked_for_on_the_ground_are_wanted_for_five_seconds() {
     assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
 }
 
-/// Going down by the IMU alone, told to land meanwhile, and poses again from the next tick on.
-fn told_to_land_without_a_pose() -> Flight {
+/// Going down by the IMU alone, commanded to land meanwhile, and poses again from the next tick on.
+fn commanded_to_land_without_a_pose() -> Flight {
     let mut flight = Flight::armed();
     flight.ticks(50);
     flight.present.pose = false;
@@ -170,7 +170,7 @@ fn told_to_land_without_a_pose() -> Flight {
 
 #[test]
 fn a_landing_that_is_granted_without_a_pose_is_begun_when_there_is_one() {
-    let mut flight = told_to_land_without_a_pose();
+    let mut flight = commanded_to_land_without_a_pose();
     flight.until(Reason::LandingResumed, 20);
     // Once: who holds afterwards holds.
     assert_eq!(ask(&mut flight, Request::Hold).mode, Mode::Holding);
@@ -178,13 +178,13 @@ fn a_landing_that_is_granted_without_a_pose_is_begun_when_there_is_one() {
 }
 
 #[test]
-fn a_landing_that_is_granted_without_a_pose_gives_way_to_what_is_asked_for_later() {
-    let mut flight = told_to_land_without_a_pose();
+fn a_landing_granted_without_a_pose_gives_way_to_a_later_request() {
+    let mut flight = commanded_to_land_without_a_pose();
     flight.until(Reason::LandingResumed, 20);
     assert_eq!(ask(&mut flight, Request::Hold).answer, Some(Ok(())));
     assert_eq!(flight.ticks(300).mode, Mode::Holding);
     // Nor does it outlast its flight.
-    let mut flight = told_to_land_without_a_pose();
+    let mut flight = commanded_to_land_without_a_pose();
     flight.inputs.disarm = true;
     flight.tick();
     flight.body = Flight::new().body;
@@ -197,7 +197,7 @@ fn a_landing_that_is_granted_without_a_pose_gives_way_to_what_is_asked_for_later
 }
 
 #[test]
-fn asking_again_for_what_is_so_is_granted_and_changes_nothing() {
+fn a_request_for_the_present_state_is_granted_and_changes_nothing() {
     let mut flight = Flight::idling();
     let outcome = ask(&mut flight, Request::Arm);
     assert_eq!((outcome.answer, outcome.mode), (Some(Ok(())), Mode::Idling));
@@ -220,7 +220,7 @@ fn asking_again_for_what_is_so_is_granted_and_changes_nothing() {
 }
 
 #[test]
-fn who_lands_what_has_landed_is_told_so() {
+fn landing_a_landed_vehicle_is_refused_with_a_reason() {
     let mut flight = Flight::idling();
     for _ in 0..2 {
         assert_eq!(ask(&mut flight, Request::Land).answer, Some(Ok(())));

@@ -129,8 +129,8 @@ struct Judge {
     imu: Option<u64>,
     pose: Option<u64>,
     body_rate: Option<Stamped<Vector3<f32>>>,
-    /// When the ground station was heard last.
-    heard: Option<u64>,
+    /// When the ground station last sent.
+    last_heartbeat: Option<u64>,
     descending_since: Option<u64>,
     idling_since: Option<u64>,
     testing_since: Option<u64>,
@@ -146,7 +146,7 @@ impl Judge {
             imu: None,
             pose: None,
             body_rate: None,
-            heard: None,
+            last_heartbeat: None,
             descending_since: None,
             idling_since: None,
             testing_since: None,
@@ -156,13 +156,13 @@ impl Judge {
     fn tick(&mut self, pilot: &mut Pilot, arrival: &Arrival) -> Mode {
         self.now += arrival.elapsed;
         let before = pilot.mode();
-        self.heard = arrival.ground_station.then_some(self.now).or(self.heard);
+        self.last_heartbeat = arrival.ground_station.then_some(self.now).or(self.last_heartbeat);
         let handed = Handed {
             now: self.now,
             increments: self.increments(arrival),
             body_rate: self.body_rate(arrival),
             poses: self.pose(arrival).into_iter().collect(),
-            ground_station: self.heard,
+            ground_station: self.last_heartbeat,
             request: arrival.request,
             disarm: arrival.disarm,
             setpoint: arrival.position.map(|x| go_to(x, 0.0, 1.0)),

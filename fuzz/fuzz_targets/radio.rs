@@ -72,7 +72,7 @@ fuzz_target!(|events: Vec<Event>| {
             }
             Event::Wait(time) => now += u64::from(time),
         }
-        radio.listen(now);
+        radio.check_silence(now);
         if let Some(setpoint) = shared.setpoint.get() {
             let Motion::Velocity(velocity) = setpoint.value.motion else { panic!("{setpoint:?}") };
             assert!(velocity.iter().all(|x| x.abs() <= 4.3), "{setpoint:?}");

@@ -119,11 +119,11 @@ def strangers(flown, station):
 def replays(flown, station):
     """Whatever was recorded on the line does nothing when it is sent again."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as attacker:
-        before = sum("was heard before" in line for line in flown.lines)
+        before = sum("was used before" in line for line in flown.lines)
         for frame in station.sent:
             attacker.sendto(frame, ("127.0.0.1", flown.local))
         station.rest(1.0)
-    assert not station.armed and sum("was heard before" in line for line in flown.lines) > before
+    assert not station.armed and sum("was used before" in line for line in flown.lines) > before
 
 
 def main():
@@ -136,7 +136,7 @@ def main():
                 part(flown, station)
                 print(f"  signing {part.__name__}: passed", flush=True)
             recorded = station.sent
-        # Another day: the key is in the parameters' file, and nothing that was heard before counts.
+        # Another day: the key is in the parameters' file, and no time stamp that was used before counts.
         with Desk(SPEED, *parameters) as flown:
             station = Station(flown)
             station.until(lambda message: message is not None, 10, "the vehicle is heard")

@@ -31,7 +31,7 @@ fn rotors_that_cannot_hover_or_cannot_but_climb_are_refused() {
 }
 
 #[test]
-fn a_floor_is_at_most_what_the_law_itself_asks_for_at_least() {
+fn a_floor_is_at_most_the_laws_own_least_thrust() {
     let least = paper().least_thrust();
     assert_eq!(paper().with_thrust_floor(least).unwrap().thrust_floor(), Some(least));
     let refused = |floor: f32| paper().with_thrust_floor(floor).unwrap_err();

@@ -184,7 +184,7 @@ fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
 }
 
 #[test]
-fn a_flight_starts_anew_where_it_is_told_and_leaves_nothing_of_the_last() {
+fn a_flight_starts_anew_at_the_given_state_and_keeps_nothing_of_the_last() {
     let start = Vector3::new(3.0, -2.0, 7.0);
     for turn in 0..48 {
         let (sin, cos) = (core::f32::consts::TAU * turn as f32 / 48.0).sin_cos();
@@ -250,7 +250,7 @@ fn a_bound_or_a_limit_of_zero_is_refused_by_name() {
 }
 
 #[test]
-fn a_limit_that_is_too_great_is_said_to_be_so() {
+fn a_limit_that_is_too_great_is_refused_as_such() {
     let said = |limits: GovernorLimits| -> String {
         Governor::new(&TYPICAL, &limits, PERIOD, memory()).unwrap_err().to_string()
     };

@@ -92,7 +92,7 @@ fn integers_and_their_whole_parts_convert_in_halves_as_well_as_in_one() {
 }
 
 #[test]
-fn what_is_no_number_is_neither_greater_nor_lesser_and_stays_none() {
+fn a_nan_is_neither_greater_nor_lesser_and_stays_a_nan() {
     assert_eq!(
         (greater_f64(1.0, 2.0), greater_f64(2.0, 1.0), lesser_f64(1.0, 2.0), lesser_f64(2.0, 1.0)),
         (2.0, 2.0, 1.0, 1.0)

@@ -99,7 +99,7 @@ fn a_choice_of_factors_holds_where_it_was_judged_to_and_nowhere_else() {
 }
 
 #[test]
-fn where_nobody_judged_only_the_gains_as_built_hold() {
+fn without_a_judgement_only_the_gains_as_built_hold() {
     let factors = |rate, velocity_vertical| Factors { rate, velocity_vertical, ..Factors::BUILT };
     for rate in Percent::all() {
         for vertical in Percent::all() {

@@ -7,7 +7,7 @@
 //! over so long that it does not shake:
 //!
 //! ```text
-//! v_calm = (v_0 + 2 v_1 + v_2) / 4 + (H + A) (R f_slow - g e3) = v_0 - R (D - H f_slow) + A (R f_slow - g e3)
+//! v_smooth = (v_0 + 2 v_1 + v_2) / 4 + (H + A) (R f_slow - g e3) = v_0 - R (D - H f_slow) + A (R f_slow - g e3)
 //! D = (3 d_0 + d_1) / 4      H = (3 h_0 + h_1) / 4
 //! f_slow += h / 0.05 s (d / h - f_slow)                       at each increment, kept with the history
 //! f = (d_0 + d_1) / (h_0 + h_1)                              what acted just now, for whoever asks for an acceleration
@@ -21,7 +21,7 @@
 //! | 130 Hz | 0.21 | 0.20 | 0.03 |
 //!
 //! f must not carry the velocity on: in 6 ms it makes as much of it as the shaking itself is. Where the thrust changes
-//! within a twentieth of a second, v_calm is up to 12 ms late along it; across, R is that of now. The vertical loops
+//! within a twentieth of a second, v_smooth is up to 12 ms late along it; across, R is that of now. The vertical loops
 //! bear five times as much. All d are turned into the frame at the end of the last increment, to first order in the
 //! turn.
 

@@ -61,7 +61,7 @@ fn samples_that_run_back_or_are_no_numbers_are_left_out() {
     let mut conditioner = conditioner();
     let (_, faults) = run(&mut conditioner, [1_000, 2_000, 2_000, 1_500, 3_000].into_iter());
     assert_eq!(faults, [ImuFault::Clock, ImuFault::Clock]);
-    // What is worse than a clock is told first.
+    // A fault worse than the clock's is reported first.
     let (rate, force) = at(3);
     (0..20).for_each(|_| _ = conditioner.sample(3_000, &rate, Some(&force)));
     assert_eq!(conditioner.sample(3_000, &rate, Some(&force)).fault, Some(ImuFault::GyroStuck));
@@ -77,9 +77,9 @@ fn the_gyro_goes_on_when_the_accelerometer_is_silent() {
     run(&mut conditioner, (0..10).map(|n| n * 1_000));
     let mut increments = 0;
     for n in 10..30_u64 {
-        let said = conditioner.sample(n * 1_000, &at(n).0, None);
-        assert_eq!(said.fault, Some(ImuFault::AccelerometerSilent));
-        increments += u32::from(said.increment.is_some());
+        let sample = conditioner.sample(n * 1_000, &at(n).0, None);
+        assert_eq!(sample.fault, Some(ImuFault::AccelerometerSilent));
+        increments += u32::from(sample.increment.is_some());
     }
     assert_eq!(increments, 4);
 }
@@ -141,9 +141,9 @@ fn another_sensor_takes_over_within_15_ms_without_a_gap_and_is_judged_by_its_own
     let mut increments = Vec::new();
     for n in 0..20_u64 {
         let (rate, force) = at(n);
-        let said = conditioner.sample(52_000 + n * 1_250, &(rate + turned.gyro_bias), Some(&force));
-        assert_eq!(said.fault, None);
-        increments.extend(said.increment);
+        let sample = conditioner.sample(52_000 + n * 1_250, &(rate + turned.gyro_bias), Some(&force));
+        assert_eq!(sample.fault, None);
+        increments.extend(sample.increment);
         let smooth = conditioner.newest().unwrap().value.angular_velocity;
         assert!((smooth - at(0).0).norm() < 2e-3, "{smooth}");
     }
@@ -155,7 +155,7 @@ fn another_sensor_takes_over_within_15_ms_without_a_gap_and_is_judged_by_its_own
 }
 
 #[test]
-fn a_shock_beyond_a_range_is_told_by_the_increments_that_it_is_part_of_and_is_no_fault() {
+fn a_shock_beyond_a_range_is_flagged_in_its_increments_and_is_no_fault() {
     let (range, other) = (ImuParameters::BMI088.accelerometer_range, ImuParameters::BMI088.gyro_range);
     // Within an increment, and between two: half of that sample counts for each. Then where the next forces are
     // missing.
@@ -169,9 +169,9 @@ fn a_shock_beyond_a_range_is_told_by_the_increments_that_it_is_part_of_and_is_no
                     *(if gyro { &mut rate.y } else { &mut force.z }) = -(if gyro { other } else { range });
                 }
                 let is_silent = (shocked + 1..=shocked + silent).contains(&n);
-                let said = conditioner.sample((n + 5) * 1_000, &rate, (!is_silent).then_some(&force));
-                assert_eq!(said.fault, is_silent.then_some(ImuFault::AccelerometerSilent));
-                increments.extend(said.increment);
+                let sample = conditioner.sample((n + 5) * 1_000, &rate, (!is_silent).then_some(&force));
+                assert_eq!(sample.fault, is_silent.then_some(ImuFault::AccelerometerSilent));
+                increments.extend(sample.increment);
             }
             increments.into_iter().map(|one| one.clipped).collect::<Vec<_>>()
         };

@@ -60,7 +60,7 @@ fn a_velocity_of_the_body_is_turned_into_the_world() {
 }
 
 #[test]
-fn what_is_stamped_with_a_time_to_come_is_not_fresh() {
+fn a_future_time_stamp_is_not_fresh() {
     assert!(is_fresh(STAMP_LEAD_MAX, 0, 0) && !is_fresh(STAMP_LEAD_MAX + 1, u64::MAX, 0));
     assert!(is_fresh(u64::MAX, 0, u64::MAX) && is_fresh(5, 10, 15) && !is_fresh(5, 10, 16));
 }

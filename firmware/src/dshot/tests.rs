@@ -29,11 +29,11 @@ fn a_motor_test_turns_one_motor_and_stops_the_others() {
 #[test]
 fn words_are_settings_that_ask_for_telemetry_and_the_other_motors_stop() {
     for (word, value) in [(Word::Beep, 1), (Word::Normal, 20), (Word::Reversed, 21), (Word::Save, 12)] {
-        let frames = frames(MotorCommand::Tell { motor: 1, word }).unwrap().map(|frame| frame.inner());
+        let frames = frames(MotorCommand::Word { motor: 1, word }).unwrap().map(|frame| frame.inner());
         assert_eq!((frames[1] >> 5, frames[1] >> 4 & 1), (value, 1));
         assert_eq!([frames[0], frames[2], frames[3]], [0; 3]);
     }
-    assert!(frames(MotorCommand::Tell { motor: 4, word: Word::Save }).is_err());
+    assert!(frames(MotorCommand::Word { motor: 4, word: Word::Save }).is_err());
 }
 
 #[test]

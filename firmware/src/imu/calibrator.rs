@@ -1,8 +1,8 @@
-//! Calibration of the inertial sensors: what was asked for, how far it is, and what came of it.
+//! Calibration of the inertial sensors: the requested procedure, its progress and its result.
 //!
-//! | asked for by PREFLIGHT_CALIBRATION | does |
+//! | requested by PREFLIGHT_CALIBRATION | does |
 //! |---|---|
-//! | parameter 1 = 1 | the gyro's bias, from a second of standing still; also without being asked, once after boot |
+//! | parameter 1 = 1 | the gyro's bias, from a second of standing still; also without a request, once after boot |
 //! | parameter 5 = 1 | the accelerometer's offsets and scales, from a second on each of its six sides, in any order |
 //! | parameter 5 = 2 | how level the sensor sits, from a second of the vehicle standing level |
 //! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
@@ -58,7 +58,7 @@ impl Findings {
 /// A calibration under way.
 struct Job {
     procedure: Procedure,
-    /// The command that asked for it, if one did.
+    /// The command that requested it, if one did.
     order: Option<Order>,
     /// When it has taken too long, us.
     until: u64,
@@ -68,18 +68,18 @@ struct Job {
     /// How the sensor that stands by does; `None` without one, or before its first sample.
     standby: Option<Result<(), Fault>>,
     /// The last report on a position that is not a side.
-    said: Option<SixPointError>,
+    reported: Option<SixPointError>,
 }
 
 impl Job {
     fn new(procedure: Procedure, order: Option<Order>, now: u64) -> Self {
         let within = if procedure == Procedure::SixSides { SIDE_WITHIN } else { STANDSTILL_WITHIN };
         let findings = Default::default();
-        Self { procedure, order, until: now.saturating_add(within), findings, sides: 0, standby: None, said: None }
+        Self { procedure, order, until: now.saturating_add(within), findings, sides: 0, standby: None, reported: None }
     }
 }
 
-/// What corrects both sensors, and what is being done about it.
+/// The calibrations of both sensors, and the procedure under way.
 pub struct Calibrator<'a, M: RawMutex> {
     shared: ImuView<'a, M>,
     /// Of the first and of the second sensor.
@@ -111,14 +111,14 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         }
     }
 
-    /// Whether samples of the sensor that stands by are wanted. One that has failed is not asked again: it takes its
+    /// Whether samples of the sensor that stands by are wanted. One that has failed is not read again: it takes its
     /// time.
     pub fn wants_standby(&self) -> bool {
         self.job.as_ref().is_some_and(|job| job.standby != Some(Err(Fault)))
     }
 
-    /// Takes up what was asked for, and gives up what may not go on.
-    pub fn listen(&mut self, now: u64) {
+    /// Starts what was requested, and ends what may not go on.
+    pub fn poll(&mut self, now: u64) {
         while let Some((asked, order)) = self.shared.calibrations().take() {
             let result = match asked {
                 None => {
@@ -180,7 +180,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         }
     }
 
-    /// Makes of standstills what was asked for; that of `unit` is among them.
+    /// Solves the requested calibration from standstills; that of `unit` is among them.
     fn conclude(&mut self, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
         let Some(job) = &mut self.job else { return false };
         let procedure = job.procedure;
@@ -237,7 +237,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
             }
             match added {
                 Ok(()) => {
-                    (job.sides, job.said) = (job.sides + 1, None);
+                    (job.sides, job.reported) = (job.sides + 1, None);
                     job.until = time.saturating_add(SIDE_WITHIN);
                     let words = format_args!("Calibration: {} of 6 sides", job.sides);
                     shared.announce(Event::new(Severity::Information, words));
@@ -245,7 +245,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 // It still lies there.
                 Err(SixPointError::FaceTwice) => {}
                 Err(error) => {
-                    if job.said.replace(error) != Some(error) {
+                    if job.reported.replace(error) != Some(error) {
                         shared.announce(Event::new(Severity::Warning, error));
                     }
                 }
@@ -257,7 +257,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         job.sides == 6
     }
 
-    /// Ends what is under way, and says why to whoever asked for it.
+    /// Ends what is under way, and answers the command that requested it with the reason.
     fn fail(&mut self, words: impl Display) {
         if let Some(order) = self.job.take().and_then(|job| job.order) {
             self.shared.announce(Event::new(Severity::Warning, words));

@@ -1,7 +1,7 @@
 //! A sensor's samples on their way to control: conditioned, and put down where control finds them.
 //!
-//! A fault is said when it sets in. One that goes on is not said again, one that comes back is, once it has been away
-//! for [`QUIET`]: eight kinds of faults cannot flood the link.
+//! A fault is reported when it sets in, and again when it comes back after [`QUIET`] without it: eight kinds of faults
+//! cannot flood the link.
 //!
 //! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a
 //! low-pass made for 1 kHz would be late by many of them: they pass as they are. And a simulator's sensors may be free
@@ -13,7 +13,7 @@ use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
 
-/// How long a fault must have been away to be said again, us.
+/// How long a fault must have been absent to be reported again, us.
 const QUIET: u64 = 1_000_000;
 
 /// A sensor's samples, as far as they have come.
@@ -66,9 +66,9 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         let force = raw.specific_force.as_ref();
         let Conditioned { increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);
         if let Some(fault) = fault {
-            self.tell(fault, raw.time);
+            self.report(fault, raw.time);
         }
-        // A gyro that is stuck is none: without increments nothing arms, and what flies stops as without an IMU.
+        // A stuck gyro is treated as missing: without increments nothing arms, and what flies stops as without an IMU.
         if fault == Some(ImuFault::GyroStuck) && !self.is_simulated {
             return;
         }
@@ -84,7 +84,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         }
     }
 
-    fn tell(&mut self, fault: ImuFault, time: u64) {
+    fn report(&mut self, fault: ImuFault, time: u64) {
         if self.is_simulated && matches!(fault, ImuFault::GyroStuck | ImuFault::AccelerometerStuck) {
             return;
         }

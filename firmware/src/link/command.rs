@@ -76,9 +76,9 @@ pub enum Action {
     /// Send this message, and answer whether there was anything to send.
     Send(Kind),
     /// Accept, and say something besides.
-    Tell(Reply),
+    Reply(Reply),
     /// Accept, and name every mode.
-    TellModes,
+    ReplyModes,
 }
 
 /// A command, however it came.
@@ -135,18 +135,18 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
         MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN => restart(call),
         MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
-            0.0 => Action::TellModes,
-            index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Tell(Reply::Mode(index as u8)),
+            0.0 => Action::ReplyModes,
+            index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Reply(Reply::Mode(index as u8)),
             _ => denied("Modes: parameter 2 is 0 or a mode's index"),
         },
         MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
-        MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Tell(Reply::IntervalOf(kind))),
+        MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Reply(Reply::IntervalOf(kind))),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => of_kind(first, |kind| match kind {
             // By it others know that the vehicle is there.
             Kind::Heartbeat if !(0.0..=HEARTBEAT).contains(&second) => {
                 denied("HEARTBEAT: once a second, or more often")
             }
-            _ => Action::Tell(Reply::Interval { kind, interval: second as i64 }),
+            _ => Action::Reply(Reply::Interval { kind, interval: second as i64 }),
         }),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is no number"),
         // What older clients say for REQUEST_MESSAGE.

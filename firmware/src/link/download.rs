@@ -159,7 +159,7 @@ impl Download {
                     (self.offset, self.chunk) = (next, Some(chunk));
                 }
                 Answer::Unknown => {
-                    self.give_up(shared, format_args!("Log {id}: there is none"));
+                    self.give_up(shared, format_args!("Log {id}: not found"));
                     return None;
                 }
                 _ => {

@@ -66,7 +66,7 @@ pub async fn watch<M: RawMutex>(port: &impl Port, clock: &impl Clock, shared: Po
         if is_open != shared.on_port().is_raised() && !shared.is_turning() {
             let words = if is_open {
                 shared.on_port().raise();
-                "Link: on USB, the serial line is not heard"
+                "Link: on USB, the serial line is ignored"
             } else {
                 shared.on_port().lower();
                 "Link: on the serial line"

@@ -1,6 +1,6 @@
-//! What comes in: bytes to frames, frames to what the other tasks want to know.
+//! What comes in: bytes to frames, frames to values for the other tasks.
 //!
-//! A message that cannot be used changes nothing, is counted and, once a second at most, told in words. No input
+//! A message that cannot be used changes nothing, is counted and, once a second at most, reported in words. No input
 //! panics.
 
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
@@ -45,10 +45,10 @@ const SILENCE: u64 = 1_000_000;
 /// The wait after a line that failed, us.
 const RECOVERY: u64 = 10_000;
 
-/// How often a kind of refusal is told in words, us.
+/// The least interval between texts about one kind of refusal, us.
 const TEXT_INTERVAL: u64 = 1_000_000;
 
-/// How often the time is told at most, us.
+/// The least interval between answers to TIMESYNC, us.
 const TIME_INTERVAL: u64 = 20_000;
 
 /// Bytes read at once.
@@ -81,13 +81,13 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
     }
 }
 
-/// Says something once in a while.
+/// Limits the rate of one text.
 #[derive(Debug, Default)]
-struct Occasionally {
+struct RateLimit {
     not_before: u64,
 }
 
-impl Occasionally {
+impl RateLimit {
     fn warn<M: RawMutex>(&mut self, shared: ReceiveView<'_, M>, now: u64, words: impl Display) {
         if now >= self.not_before {
             self.not_before = now.saturating_add(TEXT_INTERVAL);
@@ -102,14 +102,14 @@ pub struct Receiver<'a, M: RawMutex> {
     poses: Poses,
     repetitions: Repetitions,
     commander: Commander,
-    pose_refused: Occasionally,
-    setpoint_refused: Occasionally,
-    stranger_refused: Occasionally,
-    log_refused: Occasionally,
-    parameter_refused: Occasionally,
-    signature_refused: Occasionally,
-    /// When the time may be told again, us.
-    next_time_told: u64,
+    pose_refused: RateLimit,
+    setpoint_refused: RateLimit,
+    stranger_refused: RateLimit,
+    log_refused: RateLimit,
+    parameter_refused: RateLimit,
+    signature_refused: RateLimit,
+    /// When TIMESYNC may be answered again, us.
+    next_time_sent: u64,
     traffic: Traffic,
     setpoints: Senders,
     foreign: Explained,
@@ -124,13 +124,13 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             poses: Poses::default(),
             repetitions: Repetitions::default(),
             commander: Commander::default(),
-            pose_refused: Occasionally::default(),
-            setpoint_refused: Occasionally::default(),
-            stranger_refused: Occasionally::default(),
-            log_refused: Occasionally::default(),
-            parameter_refused: Occasionally::default(),
-            signature_refused: Occasionally::default(),
-            next_time_told: 0,
+            pose_refused: RateLimit::default(),
+            setpoint_refused: RateLimit::default(),
+            stranger_refused: RateLimit::default(),
+            log_refused: RateLimit::default(),
+            parameter_refused: RateLimit::default(),
+            signature_refused: RateLimit::default(),
+            next_time_sent: 0,
             traffic: Traffic::default(),
             setpoints: Senders::default(),
             foreign: Explained::default(),
@@ -141,7 +141,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     pub fn take(&mut self, frame: &Frame<'_>) {
         let own = self.own_system();
         self.traffic.frames = self.traffic.frames.wrapping_add(1);
-        // Our own words, come back over a line that echoes.
+        // Our own frames, echoed by the line.
         if (frame.header.system, frame.header.component) == (own, COMPONENT) {
             return;
         }
@@ -154,7 +154,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     #[inline(never)]
     fn obey(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
-        self.commander.hear(sender, self.shared.commander().get(), frame.time);
+        self.commander.receive(sender, self.shared.commander().get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             message if is_pose(message) => self.pose(frame),
@@ -209,7 +209,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         self.traffic.refused = self.traffic.refused.wrapping_add(1);
     }
 
-    /// Any ground station's will do. A companion computer's does not: it goes on when no person watches any more.
+    /// Any ground station's will do. A companion computer's does not: it goes on without an operator.
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
         if message.mavtype == MavType::MAV_TYPE_GCS {
             self.shared.ground_station().put((), frame.time);
@@ -218,7 +218,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     }
 
     fn pose(&mut self, frame: &Frame<'_>) {
-        // In a simulation the simulator says where the vehicle is.
+        // In a simulation the simulator sends the poses.
         if self.shared.hil().is_raised() {
             return;
         }
@@ -242,7 +242,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    /// Back to its sender. One that is addressed to somebody is itself an answer.
+    /// Back to its sender. One with a target is itself an answer.
     fn ping(&mut self, frame: &Frame<'_>, message: &Ping) {
         if (message.target_system, message.target_component) == (0, 0) {
             let (target_system, target_component) = (frame.header.system, frame.header.component);
@@ -250,12 +250,12 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
-    /// A question is answered, and an answer says what the clocks differ by.
+    /// Answers a question; an answer gives the clocks' offset.
     fn time_sync(&mut self, frame: &Frame<'_>, message: &TIMESYNC_DATA) {
         match message.tc1 {
             // Two clocks at zero would ask each other for ever.
-            0 if frame.time >= self.next_time_told => {
-                self.next_time_told = frame.time.saturating_add(TIME_INTERVAL);
+            0 if frame.time >= self.next_time_sent => {
+                self.next_time_sent = frame.time.saturating_add(TIME_INTERVAL);
                 self.shared.reply(Reply::TimeSync { asked: message.ts1 });
             }
             0 => {}

@@ -113,7 +113,7 @@ impl fmt::Display for Refusal {
         f.write_str(match self {
             Self::Unsigned => "Refused: not signed",
             Self::Forged => "Refused: signed with another key",
-            Self::Replayed => "Refused: its time stamp was heard before",
+            Self::Replayed => "Refused: its time stamp was used before",
             Self::Ahead => "Refused: its time stamp is too far ahead",
         })
     }

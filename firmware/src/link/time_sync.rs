@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_presumed_gives_way_to_any_answer() {
+    fn the_presumed_delay_gives_way_to_any_answer() {
         let mut sync = TimeSync::presumed(-3, 0);
         assert_eq!((sync.offset(0).unwrap().value, sync.recent(0)), (-3, None));
         exchange(&mut sync, 1_000_000, 9_000, 10_000, 90_000);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_asked_or_long_ago_says_nothing() {
+    fn an_answer_to_no_question_or_an_old_one_is_ignored() {
         let mut sync = TimeSync::default();
         for (ts1, arrived) in
             [(2_000_001_000, 2_000_000), (-1_000, 5), (i64::MIN, 5), (i64::MAX, u64::MAX), (0, ANSWER_MAX + 1)]

@@ -49,7 +49,7 @@ struct Owed {
 /// No command has this number.
 const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
-/// Transmits for ever: in turn something that is due and something that was asked for, so that neither keeps the other
+/// Transmits for ever: in turn a message that is due and one that was requested, so that neither keeps the other
 /// from being sent, however slow the line.
 pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: TransmitView<'_, M>) -> ! {
     let mut speaker = Speaker::new(shared, clock.now());
@@ -78,8 +78,8 @@ struct Speaker<'a, M: RawMutex> {
     /// What is still to be sent of the logs.
     download: Download,
     writer: Writer,
-    /// Lost events that were told of.
-    told: u32,
+    /// Lost events that were reported.
+    reported: u32,
     /// The last answers to commands, one of each frame.
     answered: [Acknowledgement; ANSWERED],
     /// Where the last was put; the next takes the place of the oldest.
@@ -97,7 +97,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             list: None,
             download: Download::new(),
             writer: Writer::new(),
-            told: 0,
+            reported: 0,
             answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
             next_answer: 0,
             owed: [Owed { order: NONE, of: 0, times: 0 }; _],
@@ -172,7 +172,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         view.write(kind, system, &mut self.writer)
     }
 
-    /// Writes the next thing that was asked for, what the vehicle decided first; whether there is one.
+    /// Writes the next requested message, the vehicle's decisions first; whether there is one.
     fn queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
         if self.owed() {
@@ -185,9 +185,9 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             self.say(&vehicle::text(&event));
             return true;
         }
-        let lost = shared.lost_events().get().wrapping_sub(self.told);
+        let lost = shared.lost_events().get().wrapping_sub(self.reported);
         if lost > 0 {
-            self.told = self.told.wrapping_add(lost);
+            self.reported = self.reported.wrapping_add(lost);
             self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }

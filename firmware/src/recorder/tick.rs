@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_no_number_and_all_of_a_record_is_written() {
+    fn unknown_values_are_nan_and_all_of_a_record_is_written() {
         let tick = Tick {
             time: 7,
             mode: Mode::Locked,

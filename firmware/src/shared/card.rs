@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 /// Events that wait to be logged.
 pub const CARD_EVENTS: usize = 16;
 
-/// The longest the card's task may say nothing, us: more than an attempt to start a card and the wait for the next one.
+/// The longest the card's task may be silent, us: more than an attempt to start a card and the wait for the next one.
 pub const CARD_SILENCE: u64 = 10_000_000;
 
 /// How the card is.
@@ -13,7 +13,7 @@ pub const CARD_SILENCE: u64 = 10_000_000;
 pub enum CardState {
     /// The board has no slot for one.
     NoSlot,
-    /// There is none in its slot.
+    /// The slot is empty.
     Absent,
     /// It cannot be used.
     Failed,
@@ -24,20 +24,20 @@ pub enum CardState {
 /// The card's state.
 pub struct CardStatus {
     state: AtomicU8,
-    /// When its task said something last, ms.
-    said: AtomicU32,
+    /// When its task last set the state, ms.
+    updated: AtomicU32,
 }
 
 impl CardStatus {
     /// No slot.
     #[must_use]
     pub const fn new() -> Self {
-        Self { state: AtomicU8::new(CardState::NoSlot as u8), said: AtomicU32::new(0) }
+        Self { state: AtomicU8::new(CardState::NoSlot as u8), updated: AtomicU32::new(0) }
     }
 
-    /// The card's task says how the card is, at `now`, us.
+    /// Sets the state, at `now`, us.
     pub fn set(&self, state: CardState, now: u64) {
-        self.said.store(milliseconds(now), Ordering::Relaxed);
+        self.updated.store(milliseconds(now), Ordering::Relaxed);
         self.state.store(state as u8, Ordering::Relaxed);
     }
 
@@ -51,10 +51,10 @@ impl CardStatus {
             .unwrap_or(CardState::NoSlot)
     }
 
-    /// Whether its task has said nothing for too long at `now`, us: the card, or its driver, keeps it.
+    /// Whether its task has been silent for too long at `now`, us: the card, or its driver, blocks it.
     #[must_use]
     pub fn is_silent(&self, now: u64) -> bool {
-        let silence = milliseconds(now).wrapping_sub(self.said.load(Ordering::Relaxed));
+        let silence = milliseconds(now).wrapping_sub(self.updated.load(Ordering::Relaxed));
         self.state() != CardState::NoSlot && u64::from(silence) > CARD_SILENCE / 1_000
     }
 

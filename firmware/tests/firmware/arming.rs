@@ -128,7 +128,7 @@ fn a_battery_that_is_to_be_watched_does_not_arm_unless_it_is_measured() {
 }
 
 #[test]
-fn a_battery_that_is_measured_no_more_in_flight_is_told_of_once_and_nothing_is_done() {
+fn a_battery_reading_that_ends_in_flight_is_reported_once_and_changes_nothing() {
     let wish = [(2_000_000, Request::Arm), (2_100_000, Request::TakeOff(None))];
     let words = "Battery: no reading for 1 s, nothing watches it";
     let told = |said: &[String]| said.iter().filter(|said| *said == words).count();

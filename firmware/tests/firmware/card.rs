@@ -83,7 +83,7 @@ fn bits(shared: &Local, now: u64) -> (bool, bool) {
 }
 
 #[test]
-fn every_flight_is_a_file_with_each_tick_and_all_that_was_said() {
+fn every_flight_is_a_file_with_each_tick_and_every_text() {
     for (image, sectors) in [small(), formatted(FatType::Fat32, 70_000, 512)] {
         let (clock, shared) = (Simulated::default(), shared());
         let card = Simulation::new(image, sectors, &clock);
@@ -169,7 +169,7 @@ fn a_flight_longer_than_its_file_makes_it_longer_and_then_goes_on_in_the_next() 
 }
 
 #[test]
-fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_then_says_what() {
+fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_the_loss_is_reported() {
     for (stall, missed) in [(4 * SECOND, 0..1), (7 * SECOND, 150..260)] {
         let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
         let card = Simulation::new(image, sectors, &clock);
@@ -197,7 +197,7 @@ fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_then_says_what() {
 }
 
 #[test]
-fn a_card_that_fails_in_flight_is_told_and_the_rest_goes_to_the_next_file_if_it_recovers() {
+fn a_card_that_fails_in_flight_is_reported_and_after_recovery_the_rest_goes_to_the_next_file() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
     let card = Simulation::new(image, sectors, &clock);
     let mut ticks = Ticks::new(&shared);
@@ -221,7 +221,7 @@ fn a_card_that_fails_in_flight_is_told_and_the_rest_goes_to_the_next_file_if_it_
 }
 
 #[test]
-fn a_missing_or_removed_card_is_told_once_and_one_that_is_put_in_is_used() {
+fn a_missing_or_removed_card_is_reported_once_and_an_inserted_one_is_used() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
     let card = Simulation::new(image, sectors, &clock);
     card.medium.borrow_mut().is_absent = true;
@@ -243,7 +243,7 @@ fn a_missing_or_removed_card_is_told_once_and_one_that_is_put_in_is_used() {
 }
 
 #[test]
-fn a_full_card_is_told_keeps_what_it_has_and_gets_no_empty_files() {
+fn a_full_card_is_reported_keeps_its_files_and_gets_no_empty_ones() {
     // Room for the first chunk and a part of the second.
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat16, 4_400, 512));
     let card = Simulation::new(image, sectors, &clock);
@@ -276,7 +276,7 @@ fn the_root_directory_is_never_made_longer() {
 }
 
 #[test]
-fn a_card_of_something_else_is_told_and_left_as_it_is() {
+fn a_card_with_a_foreign_format_is_reported_and_left_as_it_is() {
     let (good, sectors) = small();
     let foreign = |change: &dyn Fn(&mut Image)| {
         let mut image = good.clone();
@@ -342,7 +342,7 @@ fn the_recording_that_a_reset_left_is_copied_once() {
 }
 
 #[test]
-fn a_card_that_keeps_its_task_is_told() {
+fn a_card_that_blocks_its_task_is_reported() {
     let shared = shared();
     shared.card.set(CardState::Ready, 5 * SECOND);
     assert_eq!((shared.card.health(14 * SECOND), shared.card.health(16 * SECOND)), (Some(true), Some(false)));

@@ -162,7 +162,7 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
     }
     let beyond = bench.asked(SECOND, |fed| fed.message(&part(3, 0, 90), 0));
     assert!(sent::<LOG_DATA_DATA>(&beyond).is_empty());
-    assert_eq!(said(&beyond), ["Log 3: there is none"]);
+    assert_eq!(said(&beyond), ["Log 3: not found"]);
 
     let begun = bench.asked(SECOND, |fed| {
         fed.message(&part(1, 0, u32::MAX), 0);
@@ -266,7 +266,7 @@ fn what_the_card_offered_is_not_taken_for_the_recorders_when_the_card_goes() {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_is_told_and_the_next_flight_is_logged_all_the_same() {
+fn an_unreadable_file_is_reported_and_the_next_flight_is_logged() {
     let mut bench = Bench::flown();
     let worn = bench.files()["LOG00001.ULG"][9 * SECTOR..10 * SECTOR].to_vec();
     bench.card.medium.borrow_mut().worn = Some(worn);

@@ -116,7 +116,7 @@ fn a_pose_in_other_frames_or_without_a_rotation_is_refused() {
 }
 
 #[test]
-fn a_simulator_that_was_given_no_command_says_nothing_that_counts() {
+fn sensors_of_a_simulator_without_a_command_do_not_count() {
     let hil = Hil::new();
     let shared = said(&hil, [v2(1, &odometry(0)), v2(2, &sensor(0))].concat());
     assert!(shared.imu.get().is_none() && newest(&shared).is_none());

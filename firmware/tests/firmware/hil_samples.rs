@@ -116,7 +116,7 @@ fn ten_samples_a_tick_are_integrated_and_filtered_as_a_sensors() {
 }
 
 #[test]
-fn samples_repeated_overtaken_or_to_come_change_nothing() {
+fn repeated_out_of_order_and_future_samples_change_nothing() {
     let clean = simulated(|now| times(now).flat_map(told).collect());
     let twice = |time: u64| [told(time), told(time)].concat();
     let repeated = simulated(|now| times(now).flat_map(twice).collect());

@@ -133,7 +133,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
 }
 
 #[test]
-fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
+fn asking_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
     // Both between the same two ticks: neither finds the other done.
     let (pins, answer, texts) = handed_over(Request::Arm, 45_000);
     assert_eq!(pins, [MotorCommand::Stop; 9]);
@@ -142,7 +142,7 @@ fn who_asks_for_the_motors_and_the_simulator_at_once_turns_no_motor() {
 }
 
 #[test]
-fn a_motor_test_ends_where_the_simulator_is_asked_for() {
+fn a_motor_test_ends_when_the_simulator_is_requested() {
     let test = MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 };
     let (pins, answer, _) = handed_over(Request::MotorTest(test), 15_000);
     assert_eq!(pins[1..4], [MotorCommand::One { motor: 1, level: 0.1 }; 3]);

@@ -67,7 +67,7 @@ fn sampled(trouble: Says) -> (Vec<u64>, Vec<String>) {
 }
 
 #[test]
-fn every_trouble_leaves_the_last_sample_to_age_and_is_told_once() {
+fn every_fault_leaves_the_last_sample_to_age_and_is_reported_once() {
     let numbers = (0..6).flat_map(|index| [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(|n| Says::Number(index, n)));
     for trouble in numbers.chain([Says::Fault, Says::Nothing]) {
         let (times, texts) = sampled(trouble);

@@ -97,7 +97,7 @@ fn a_vehicle_that_is_moved_at_boot_is_calibrated_once_it_stands_still() {
 }
 
 #[test]
-fn arming_ends_what_nobody_asked_for() {
+fn arming_ends_a_calibration_that_no_command_started() {
     let (body, shared) = (Body::new(), Local::new());
     run(&body, &shared, 3, |now| {
         if now == 500_000 {
@@ -109,7 +109,7 @@ fn arming_ends_what_nobody_asked_for() {
 }
 
 #[test]
-fn a_gyro_calibration_that_was_asked_for_is_answered_twice() {
+fn a_requested_gyro_calibration_is_answered_twice() {
     let (body, shared) = (Body::new(), Local::new());
     run(&body, &shared, 4, |now| {
         if now == 100_000 {
@@ -241,7 +241,7 @@ fn one_side_finds_the_offsets_of_a_level_vehicle() {
 }
 
 #[test]
-fn a_second_sensor_that_fails_meanwhile_is_said_and_the_first_calibrated() {
+fn a_second_sensor_that_fails_meanwhile_is_reported_and_the_first_calibrated() {
     let (body, shared) = (Body::new(), Local::new());
     run_both(&body, &shared, 6, |now| {
         if now == 2_500_000 {

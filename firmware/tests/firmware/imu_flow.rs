@@ -78,7 +78,7 @@ fn the_newest_sample_is_the_sensors_last_and_low_passed() {
 }
 
 #[test]
-fn increments_that_nobody_takes_are_counted_and_leave_a_gap() {
+fn increments_that_overflow_are_counted_and_leave_a_gap() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
     let mut increments = Vec::new();
@@ -95,7 +95,7 @@ fn increments_that_nobody_takes_are_counted_and_leave_a_gap() {
 }
 
 #[test]
-fn a_fault_is_said_once_when_it_sets_in_and_again_when_it_comes_back() {
+fn a_fault_is_reported_once_when_it_sets_in_and_again_when_it_comes_back() {
     for (does, words) in [(Does::Stuck, "IMU: gyro stuck"), (Does::Forceless, "IMU: accelerometer does not answer")] {
         let body = Body::new();
         let (increments, texts) = flown(&body, first(&body), |now| {
@@ -111,7 +111,7 @@ fn a_fault_is_said_once_when_it_sets_in_and_again_when_it_comes_back() {
 }
 
 #[test]
-fn the_second_sensor_takes_over_without_a_gap_and_that_is_said() {
+fn the_second_sensor_takes_over_without_a_gap_and_this_is_reported() {
     for (does, more) in [
         (Does::Faults, vec!["IMU does not answer", "IMU: the second takes over", "IMU answers again"]),
         (Does::Stuck, vec!["IMU: the second takes over"]),
@@ -130,7 +130,7 @@ fn the_second_sensor_takes_over_without_a_gap_and_that_is_said() {
 }
 
 #[test]
-fn a_second_sensor_that_does_not_answer_on_the_ground_is_said_once_and_never_flown() {
+fn a_second_sensor_that_does_not_answer_on_the_ground_is_reported_once_and_never_flown() {
     let body = Body::new();
     body.second.set(Does::Faults);
     let (_, texts) = flown(&body, both(&body), |now| {

@@ -105,7 +105,7 @@ fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
 }
 
 #[test]
-fn blank_flash_holds_nothing_and_anything_else_is_told() {
+fn blank_flash_holds_nothing_and_anything_else_is_reported() {
     let chip = Chip::erased();
     assert!(Journal::open(Words::<4>(&chip)).1.is_ok());
     for byte in 0..2 * SECTOR {

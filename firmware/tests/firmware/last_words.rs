@@ -37,7 +37,7 @@ fn words_without_room_are_cut_at_whole_characters() {
 }
 
 #[test]
-fn the_first_ground_station_that_is_heard_is_told_why_the_vehicle_restarted() {
+fn the_first_ground_station_receives_why_the_vehicle_restarted() {
     let (shared, mut teller) = told();
     teller.tick(shared.for_status(), 0);
     let first = texts(&shared);
@@ -53,7 +53,7 @@ fn the_first_ground_station_that_is_heard_is_told_why_the_vehicle_restarted() {
 }
 
 #[test]
-fn the_card_is_told_once_it_is_ready() {
+fn the_card_is_reported_once_it_is_ready() {
     let (shared, mut teller) = told();
     teller.tick(shared.for_status(), 0);
     assert!(shared.card_events.take().is_none());
@@ -63,7 +63,7 @@ fn the_card_is_told_once_it_is_ready() {
 }
 
 #[test]
-fn it_is_told_again_until_somebody_arms() {
+fn it_is_repeated_until_the_vehicle_arms() {
     let (shared, mut teller) = told();
     let mut count = |time| {
         teller.tick(shared.for_status(), time);
@@ -77,7 +77,7 @@ fn it_is_told_again_until_somebody_arms() {
 }
 
 #[test]
-fn the_status_task_tells_it() {
+fn the_status_task_reports_it() {
     struct Dark;
     impl firmware::hardware::Light for Dark {
         fn set(&mut self, _on: bool) {}

@@ -113,7 +113,7 @@ fn a_frame_that_goes_on_being_delivered_acts_once_a_second() {
 }
 
 #[test]
-fn a_client_that_asks_again_and_counts_how_often_is_heard() {
+fn a_client_that_repeats_a_command_with_its_count_is_answered() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     (0..3).for_each(|confirmation| fed.message(&COMMAND_LONG_DATA { confirmation, ..arm() }, 1_000));
@@ -147,7 +147,7 @@ fn a_motors_controller_is_named_and_what_it_shall_do() {
 }
 
 #[test]
-fn nonsense_is_denied_and_said_to_be() {
+fn invalid_commands_are_denied_with_a_reason() {
     let test = MavCmd::MAV_CMD_DO_MOTOR_TEST;
     let nan = f32::NAN;
     for message in [
@@ -258,7 +258,7 @@ fn the_message_set_mode_means_the_command() {
 }
 
 #[test]
-fn taking_off_landing_and_disarming_are_asked_for() {
+fn taking_off_landing_and_disarming_are_requested() {
     let takeoff = |param7: f32| COMMAND_LONG_DATA { param7, ..command(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0; 5]) };
     assert_eq!(asked(&takeoff(3.0)), Some(Request::TakeOff(Some(3.0))));
     assert_eq!(asked(&takeoff(f32::NAN)), Some(Request::TakeOff(None)));
@@ -308,7 +308,7 @@ fn a_line_that_echoes_does_not_command() {
 }
 
 #[test]
-fn only_the_heartbeat_of_a_ground_station_says_that_somebody_watches() {
+fn only_a_ground_stations_heartbeat_counts_as_its_presence() {
     for (mavtype, heard) in [
         (MavType::MAV_TYPE_GCS, true),
         (MavType::MAV_TYPE_ONBOARD_CONTROLLER, false),
@@ -345,7 +345,7 @@ fn stops(fed: &mut Fed<'_>, desk: &mut Desk<'_>, system: u8) -> bool {
 }
 
 #[test]
-fn a_station_that_was_refused_keeps_nobody_from_stopping_the_motors() {
+fn a_refused_station_does_not_keep_another_from_stopping_the_motors() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let mut desk = desk(&shared, |tick, now| {
@@ -363,7 +363,7 @@ fn a_station_that_was_refused_keeps_nobody_from_stopping_the_motors() {
 }
 
 #[test]
-fn of_two_that_ask_at_once_the_later_is_granted_and_commands() {
+fn of_two_stations_that_arm_at_once_the_later_commands() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let mut desk = desk(&shared, |tick, now| {

@@ -143,7 +143,7 @@ fn a_frame_that_comes_twice_at_once_is_answered_by_what_becomes_of_it_and_not_of
 }
 
 #[test]
-fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
+fn every_copy_of_a_repeated_command_is_acknowledged() {
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let version = command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [300.0, 0.0, 0.0, 0.0, 0.0]);
     let nothing = command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 5]);
@@ -168,7 +168,7 @@ fn every_copy_of_a_burst_is_acknowledged_whoever_answers_it() {
 }
 
 #[test]
-fn who_asks_for_the_same_at_once_is_answered_the_same() {
+fn equal_commands_at_once_get_equal_answers() {
     for message in [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5]), arm()] {
         let by = |system: u8| from(system, 190, 1, &message);
         let mut results = answered(&[(3_000_000, [by(255), by(254), by(253)].concat())]);
@@ -195,7 +195,7 @@ fn an_arm_command_sent_again_is_accepted_again_whether_its_bytes_are_equal_or_no
 }
 
 #[test]
-fn equal_bytes_are_acknowledged_by_what_became_of_the_first_and_never_by_another_commands_answer() {
+fn equal_bytes_are_acknowledged_with_the_result_of_the_first_and_never_of_another_command() {
     let denied = MavResult::MAV_RESULT_DENIED;
     let nonsense = v2(1, &mode(1.0, 0.0));
     let set_mode = MavCmd::MAV_CMD_DO_SET_MODE as u16;
@@ -258,7 +258,7 @@ fn target(x: f32) -> SET_POSITION_TARGET_LOCAL_NED_DATA {
 }
 
 #[test]
-fn of_two_streams_of_setpoints_one_is_flown_and_the_other_told() {
+fn of_two_streams_of_setpoints_one_is_flown_and_the_other_refused() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let mut flown = vec![];
@@ -308,7 +308,7 @@ fn offboard(asker: (u8, u8), streams: &[(u8, u8)]) -> (bool, Vec<f32>, Vec<Strin
 }
 
 #[test]
-fn who_asks_for_offboard_has_its_own_setpoints_flown_whoever_streams_first() {
+fn the_client_that_requests_offboard_has_its_own_setpoints_flown() {
     let refused = vec!["No OFFBOARD by another sender's setpoints".to_owned()];
     let (stranger, station, companion, other) = ((9, 9), (255, 190), (255, 191), (255, 192));
     assert_eq!(offboard(station, &[stranger, station]), (true, vec![1.0], vec![]));
@@ -323,7 +323,7 @@ fn who_asks_for_offboard_has_its_own_setpoints_flown_whoever_streams_first() {
 }
 
 #[test]
-fn nobody_takes_a_flight_by_setpoints_over_by_asking_in_vain() {
+fn a_refused_request_does_not_take_over_a_flight_by_setpoints() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let setpoint_owner = Some((255, 190));
@@ -368,7 +368,7 @@ fn offboard_is_refused_in_words_while_what_streams_cannot_be_flown() {
 }
 
 #[test]
-fn a_text_is_said_at_most_once_a_second_however_often_its_cause_comes() {
+fn a_text_is_sent_at_most_once_a_second() {
     let shared = Local::new();
     let (mut fed, mut desk) = (Fed::new(&shared), Desk::new(&shared));
     // By control's clock.

@@ -61,7 +61,7 @@ fn the_covariance_and_the_reset_counter_of_a_vision_message_count() {
 }
 
 #[test]
-fn what_is_not_flown_here_is_said_once_for_each_message() {
+fn a_message_that_is_not_flown_is_reported_once() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     for count in 0..1_000 {
@@ -75,7 +75,7 @@ fn what_is_not_flown_here_is_said_once_for_each_message() {
 
 #[test]
 #[expect(deprecated, reason = "superseded messages: clients still send them")]
-fn what_is_not_used_here_is_said_once_for_each_message() {
+fn an_unused_message_is_reported_once() {
     fn said<D: MessageData>(ours: &D, anothers: Option<&D>) {
         let shared = Local::new();
         let mut fed = Fed::new(&shared);
@@ -113,7 +113,7 @@ fn a_mission_item_is_answered_as_unsupported() {
 }
 
 #[test]
-fn a_parameter_that_is_not_there_is_told_by_its_name_once_a_second() {
+fn a_missing_parameter_is_reported_by_its_name_once_a_second() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let set = PARAM_SET_DATA {

@@ -14,7 +14,7 @@ fn set(name: &str, param_value: f32) -> PARAM_SET_DATA {
 }
 
 #[test]
-fn a_parameter_is_set_and_its_value_told() {
+fn a_parameter_is_set_and_its_value_sent() {
     let shared = Local::new();
     Fed::new(&shared).message(&set("TLM_RATE", 50.0), 0);
     assert_eq!(shared.parameters.get(Name::TelemetryRate), 50.0);
@@ -22,7 +22,7 @@ fn a_parameter_is_set_and_its_value_told() {
 }
 
 #[test]
-fn a_value_that_is_not_allowed_changes_nothing_and_is_told_in_words() {
+fn a_value_that_is_not_allowed_changes_nothing_and_is_refused_in_words() {
     for value in [51.0, 9.0, 20.5, f32::NAN, f32::INFINITY, -25.0] {
         let shared = Local::new();
         Fed::new(&shared).message(&set("TLM_RATE", value), 0);

@@ -36,7 +36,7 @@ fn a_clock_set_back_costs_no_more_than_40_ms_of_poses() {
 }
 
 #[test]
-fn what_a_line_takes_longer_than_usual_is_told_by_the_senders_clock() {
+fn extra_delay_of_the_line_shows_on_the_senders_clock() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     for count in 0..50 {
@@ -104,7 +104,7 @@ fn a_sender_that_answers_timesync_has_no_delay() {
 }
 
 #[test]
-fn timesync_of_another_clock_says_nothing_and_a_delay_that_was_measured_does() {
+fn timesync_of_another_clock_does_not_count_and_a_measured_delay_does() {
     for answers in [None, Some(0), Some(10_000_000), Some(4_400_000)] {
         let shared = Local::new();
         let plain = late_by_30_ms(&shared, 5_000_000, answers);
@@ -151,7 +151,7 @@ fn worst(stamps: &[(u64, Option<u64>)], from: u64) -> u64 {
 }
 
 #[test]
-fn what_timesync_said_of_a_clock_does_not_count_once_it_was_set_back() {
+fn timesync_answers_of_a_clock_do_not_count_once_it_was_set_back() {
     for back in [100_000, 200_000, 450_000, 5_000_000] {
         let shared = Local::new();
         let clock = |truth: u64| 1_700_000_000_000_000 + truth - if truth >= 5_500_000 { back } else { 0 };
@@ -190,7 +190,7 @@ fn a_late_stream_without_timesync_is_refused_with_the_remedy() {
 }
 
 #[test]
-fn a_clock_that_stood_still_is_believed_once_timesync_has_said_so() {
+fn a_clock_that_stood_still_is_believed_once_timesync_confirms_it() {
     let shared = Local::new();
     let clock = |truth: u64| if truth < 5_000_000 { truth } else { truth.saturating_sub(900_000).max(5_000_000) };
     let stamps = synchronised(&shared, 1_500, |truth| (1_700_000_000_000_000 + clock(truth), 20_000));

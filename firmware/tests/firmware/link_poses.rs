@@ -132,7 +132,7 @@ fn a_pose_from_the_moon_is_refused() {
 }
 
 #[test]
-fn a_repeated_or_overtaken_pose_is_none_however_long() {
+fn a_repeated_or_out_of_order_pose_never_counts() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     let (first, second) = (v2(1, &odometry(1_000)), v2(2, &odometry(2_000)));
@@ -193,7 +193,7 @@ fn odometrys_quality_reset_counter_and_covariance_go_along() {
 }
 
 #[test]
-fn refusals_are_told_once_a_second() {
+fn refusals_are_reported_once_a_second() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     for k in 0..250 {

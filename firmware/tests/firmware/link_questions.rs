@@ -16,7 +16,7 @@ use mavlink::dialects::common::{
 use nalgebra::Vector3;
 
 #[test]
-fn commands_nobody_knows_are_answered_as_unsupported() {
+fn unknown_commands_are_answered_as_unsupported() {
     for known in [MavCmd::MAV_CMD_DO_PARACHUTE, MavCmd::MAV_CMD_NAV_WAYPOINT] {
         assert_eq!(answer(&command(known, [0.0; 5]), Mode::Ready), MavResult::MAV_RESULT_UNSUPPORTED);
     }
@@ -39,7 +39,7 @@ fn commands_nobody_knows_are_answered_as_unsupported() {
 }
 
 #[test]
-fn messages_are_sent_on_request_and_at_rates_that_are_asked_for() {
+fn messages_are_sent_on_request_and_at_requested_rates() {
     let tell = |command: MavCmd, first: f32, second: f32| {
         let shared = Local::new();
         Fed::new(&shared).message(&crate::support::receiver::command(command, [first, second, 0.0, 0.0, 0.0]), 0);
@@ -192,7 +192,7 @@ fn a_flood_of_questions_overflows_nothing() {
 }
 
 #[test]
-fn the_time_is_told_fifty_times_a_second_at_most() {
+fn the_time_is_sent_fifty_times_a_second_at_most() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     // A thousand questions in a second, and an answer among them.

@@ -110,7 +110,7 @@ fn setpoints_of_the_body_may_mix_height_and_velocity_across_but_not_ahead_and_ac
 }
 
 #[test]
-fn masks_that_say_nothing_flyable_are_refused_in_words() {
+fn type_masks_that_select_nothing_flyable_are_refused_in_words() {
     let x = Mask::POSITION_TARGET_TYPEMASK_X_IGNORE;
     let force = Mask::POSITION_TARGET_TYPEMASK_FORCE_SET;
     for mask in [

@@ -184,7 +184,7 @@ fn another_key_is_refused_wherever_unsigned_frames_are_not() {
 }
 
 #[test]
-fn refusals_are_told_once_a_second() {
+fn refusals_are_reported_once_a_second() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
     for step in 0..300 {
@@ -209,7 +209,7 @@ fn a_signature_that_is_cut_off_is_no_frame_and_the_next_one_is_found() {
 }
 
 #[test]
-fn what_was_heard_once_is_refused_for_ever() {
+fn a_frame_received_once_is_refused_for_ever() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
     fed.bytes(&bytes(STOP), NOW);
@@ -219,7 +219,7 @@ fn what_was_heard_once_is_refused_for_ever() {
         fed.bytes(&bytes(old), NOW + 2_000_000);
         assert!(!is_stopped(&shared) && shared.requests.take().is_none());
     }
-    assert_eq!(texts(&shared), ["Refused: its time stamp was heard before"]);
+    assert_eq!(texts(&shared), ["Refused: its time stamp was used before"]);
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn a_key_is_taken_over_usb_while_disarmed_and_nowhere_else() {
 }
 
 #[test]
-fn over_usb_nobody_has_to_sign_and_a_lost_key_is_replaced() {
+fn over_usb_frames_need_no_signature_and_a_lost_key_is_replaced() {
     let shared = keyed();
     shared.on_port.raise();
     let mut fed = Fed::new(&shared);
@@ -428,7 +428,7 @@ fn stamps_are_kept_twice_an_hour_at_most_and_never_while_a_motor_turns() {
 }
 
 #[test]
-fn a_key_that_cannot_be_kept_is_told() {
+fn a_key_that_cannot_be_stored_is_reported() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
     chip.borrow_mut().worn = true;
     report(&shared, Mode::Ready, 0);
@@ -459,7 +459,7 @@ fn stamped(system: u32, stamp: Stamp) -> Vec<u8> {
 }
 
 #[test]
-fn one_stamp_far_ahead_deafens_nobody() {
+fn one_stamp_far_ahead_blocks_no_other_sender() {
     let signing = Signing::<NoopRawMutex>::new();
     signing.set(key(), FIRST, 0);
     let year = LEAP;

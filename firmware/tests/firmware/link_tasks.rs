@@ -130,7 +130,7 @@ fn the_heartbeat_says_armed_in_the_armed_modes_only() {
 }
 
 #[test]
-fn attitude_and_position_go_out_in_mavlinks_frames_as_often_as_asked() {
+fn attitude_and_position_go_out_in_mavlinks_frames_at_requested_rates() {
     for rate in [10.0, 25.0, 50.0] {
         let shared = Local::new();
         shared.parameters.set(Name::TelemetryRate, rate).unwrap();
@@ -164,7 +164,7 @@ fn an_old_report_is_not_sent_as_the_present() {
 }
 
 #[test]
-fn the_battery_is_told_while_it_is_known() {
+fn the_battery_is_reported_while_its_reading_is_fresh() {
     let shared = Local::new();
     let written = transmitted(&shared, 3_000_000, |now| {
         flying(&shared, now);
@@ -244,7 +244,7 @@ const ARM: Asked =
     Asked { request: Request::Arm, order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)), setpoints: None };
 
 #[test]
-fn what_is_said_to_an_idle_line_goes_out_at_once() {
+fn a_message_for_an_idle_line_goes_out_at_once() {
     type Say = fn(&Local);
     let say: [(Say, u32); 3] = [
         (|shared| shared.answer(&ARM, Ok(())), COMMAND_ACK_DATA::ID),
@@ -268,7 +268,7 @@ fn what_is_said_to_an_idle_line_goes_out_at_once() {
 }
 
 #[test]
-fn the_time_is_asked_once_a_second_and_told_whoever_asks() {
+fn the_time_is_requested_once_a_second_and_sent_to_every_requester() {
     let shared = Local::new();
     shared.replies.put(Reply::TimeSync { asked: -5 }).unwrap();
     let messages: Vec<TIMESYNC_DATA> = sent(&transmitted(&shared, 1_900_000, |_| ()));
@@ -304,7 +304,7 @@ fn every_parameter_is_listed_with_its_place() {
 }
 
 #[test]
-fn too_many_events_lose_the_last_ones_and_say_how_many() {
+fn too_many_events_lose_the_last_ones_and_their_number_is_reported() {
     let shared = Local::new();
     for number in 0..11 {
         shared.announce(Event::new(Severity::Information, number));

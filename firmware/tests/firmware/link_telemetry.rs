@@ -58,7 +58,7 @@ fn angles_are_those_of_the_vehicle() {
 }
 
 #[test]
-fn a_place_on_the_globe_is_told_with_its_height_above_home() {
+fn a_global_position_is_sent_with_its_height_above_home() {
     let origin = Origin::new(473_977_420, 85_455_940, 488_000).unwrap();
     let place = motion::global_position(0, &report(), &origin).unwrap();
     // 1 m north, 2 m east, 3 m up.
@@ -88,7 +88,7 @@ fn a_vehicle_that_goes_down_by_the_imu_names_no_place_as_its_target() {
 }
 
 #[test]
-fn odometry_goes_out_as_it_would_come_in_and_says_how_sure_it_is() {
+fn odometry_goes_out_as_it_would_come_in_with_its_covariance() {
     let odometry = motion::odometry(5, &report()).unwrap();
     assert_eq!((odometry.x, odometry.y, odometry.z, odometry.time_usec), (1.0, 2.0, -3.0, 5));
     // East is to the right of a vehicle that points north; up is ahead of a nose that is up.
@@ -99,7 +99,7 @@ fn odometry_goes_out_as_it_would_come_in_and_says_how_sure_it_is() {
 }
 
 #[test]
-fn the_estimators_health_is_told() {
+fn the_estimators_health_is_reported() {
     use EstimatorStatusFlags as Flags;
     let status = motion::estimator_status(7, &report());
     assert!(status.flags.contains(Flags::ESTIMATOR_ATTITUDE | Flags::ESTIMATOR_POS_HORIZ_ABS));
@@ -161,7 +161,7 @@ fn a_position_is_not_controlled_without_a_pose() {
 }
 
 #[test]
-fn ground_and_air_are_told_apart() {
+fn ground_and_air_are_distinguished() {
     for (mode, is_airborne, landed) in [
         // Nobody knows yet, or any more.
         (Mode::Boot, false, MavLandedState::MAV_LANDED_STATE_UNDEFINED),

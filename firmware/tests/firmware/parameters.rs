@@ -154,7 +154,7 @@ pub fn chip_with(values: &[f32]) -> RefCell<Chip> {
 }
 
 #[test]
-fn a_stored_value_out_of_range_is_told_and_the_default_taken() {
+fn a_stored_value_out_of_range_is_reported_and_the_default_used() {
     for value in [0.0_f32, 256.0, f32::NAN] {
         let shared = booted::<4>(&chip_with(&[value, 25.0, 7.0, 2.0, 0.0]));
         assert_eq!(shared.parameters.get(Name::SystemId), 1.0);
@@ -179,7 +179,7 @@ fn records_of_firmware_with_fewer_parameters_and_with_more_are_read() {
 }
 
 #[test]
-fn flash_that_fails_is_told_and_flown_without() {
+fn flash_that_fails_is_reported_and_flown_without() {
     let chip = Chip::erased();
     chip.borrow_mut().fails = true;
     let shared = booted::<4>(&chip);

@@ -89,7 +89,7 @@ fn the_link_is_on_the_serial_line_until_the_port_is_opened_and_again_when_it_is_
 }
 
 #[test]
-fn nothing_of_the_line_that_is_not_the_link_is_heard() {
+fn nothing_is_received_from_the_line_that_is_not_the_link() {
     for open in [false, true] {
         let bench = Bench::new(true, 5 * SECOND, |bench, now| {
             bench.port.0.set(open);
@@ -132,12 +132,12 @@ fn a_board_without_the_port_keeps_the_serial_line() {
 }
 
 #[test]
-fn every_move_is_told_once() {
+fn every_frame_move_is_reported_once() {
     let (clock, shared, port) = (Simulated::default(), Local::new(), Opened(Cell::new(false)));
     clock.run(4 * SECOND, watch(&port, &clock, shared.for_port()), |now| {
         port.0.set((SECOND..2 * SECOND).contains(&now))
     });
-    assert_eq!(texts(&shared), ["Link: on USB, the serial line is not heard", "Link: on the serial line"]);
+    assert_eq!(texts(&shared), ["Link: on USB, the serial line is ignored", "Link: on the serial line"]);
 }
 
 /// A message that sets a key, and the last byte of which could begin a frame.

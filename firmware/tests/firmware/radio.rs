@@ -105,18 +105,18 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
     radio.take(&channels(HIGH, MIDDLE, LOW), 80_000);
     assert_eq!(requests(&shared), [Request::Hold]);
     // Silent for a while, it is as if it were turned on again.
-    radio.listen(80_001 + SILENCE);
+    radio.check_silence(80_001 + SILENCE);
     radio.take(&channels(LOW, LOW, LOW), 1_000_000);
     assert!(requests(&shared).is_empty());
-    assert_eq!(texts(&shared), ["Radio heard", "Radio lost", "Radio heard"]);
+    assert_eq!(texts(&shared), ["Radio received", "Radio lost", "Radio received"]);
 }
 
 #[test]
-fn the_kill_switch_stays_as_it_was_heard() {
+fn the_kill_switch_keeps_its_last_received_position() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(LOW, LOW, HIGH), 0);
-    radio.listen(10_000_000);
+    radio.check_silence(10_000_000);
     assert!(shared.killed.get().unwrap().value);
     radio.take(&AT_REST, 20_000_000);
     assert!(!shared.killed.get().unwrap().value);
@@ -136,7 +136,7 @@ fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>
 }
 
 #[test]
-fn sticks_ask_for_velocities_from_where_the_vehicle_points() {
+fn sticks_command_velocities_relative_to_the_heading() {
     let (setpoint, requests) = steered(Mode::Flying, true, [0.0, 1.0, 0.0, 0.0]);
     let Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(rate) }) = setpoint else { panic!() };
     // Ahead is world y.
@@ -187,7 +187,7 @@ fn offboard() -> COMMAND_LONG_DATA {
 }
 
 #[test]
-fn while_the_sticks_fly_nobody_else_does() {
+fn while_the_sticks_fly_no_other_source_does() {
     let shared = Local::new();
     Radio::new(shared.for_radio()).take(&channels(HIGH, HIGH, LOW), 0);
     let target = target();
@@ -207,7 +207,7 @@ fn while_the_sticks_fly_nobody_else_does() {
 }
 
 #[test]
-fn sticks_that_fly_do_not_stand_back_because_somebody_asks() {
+fn flying_sticks_keep_control_when_a_client_asks_for_it() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     let mut fed = Fed::new(&shared);
@@ -223,23 +223,23 @@ fn sticks_that_fly_do_not_stand_back_because_somebody_asks() {
 }
 
 /// What is asked for once a radio with its switch `flies` has fallen silent in a mode.
-fn asked_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
+fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(HIGH, flies, LOW), 0);
     report(&shared, mode, true);
-    radio.listen(SILENCE);
+    radio.check_silence(SILENCE);
     assert!(requests(&shared).is_empty());
-    (1..5).for_each(|wait| radio.listen(SILENCE + wait * 100_000));
+    (1..5).for_each(|wait| radio.check_silence(SILENCE + wait * 100_000));
     requests(&shared)
 }
 
 #[test]
-fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
+fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
     for mode in Mode::ALL {
         let flown = matches!(mode, Mode::Flying | Mode::TakingOff);
-        assert_eq!(asked_in_silence(mode, HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
-        assert_eq!(asked_in_silence(mode, LOW), [], "{mode:?}");
+        assert_eq!(requests_in_silence(mode, HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
+        assert_eq!(requests_in_silence(mode, LOW), [], "{mode:?}");
     }
     // Whatever the link asks for meanwhile.
     let shared = Local::new();
@@ -249,7 +249,7 @@ fn sticks_that_flew_and_fall_silent_ask_for_a_hold_once() {
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let mut fed = Fed::new(&shared);
     (0..20).for_each(|_| fed.message(&land, 0));
-    radio.listen(SILENCE + 1);
+    radio.check_silence(SILENCE + 1);
     assert_eq!(requests(&shared), [Request::Land, Request::Hold]);
 }
 
@@ -269,7 +269,7 @@ fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
                 channels[2] = if (230..236).contains(&tick) { 1400 } else { MIDDLE };
                 radio.take(&channels, now);
             }
-            radio.listen(now);
+            radio.check_silence(now);
             desk.tick();
         }
         shared.report.get().unwrap().value

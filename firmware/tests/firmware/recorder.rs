@@ -108,7 +108,7 @@ fn a_ground_station_lists_it_fetches_it_and_erases_it() {
     let unknown = transmitted(&shared, 50_000);
     assert!(sent::<LOG_DATA_DATA>(&unknown).is_empty());
     let texts: Vec<STATUSTEXT_DATA> = sent(&unknown);
-    assert_eq!(texts[0].text.to_str(), Ok("Log 1: there is none"));
+    assert_eq!(texts[0].text.to_str(), Ok("Log 1: not found"));
     fed.message(&LOG_REQUEST_DATA_DATA { target_system: 2, ..part(0, 90) }, 0);
     fed.message(&LOG_ERASE_DATA { target_system: 2, target_component: 1 }, 0);
     assert!(sent::<LOG_DATA_DATA>(&transmitted(&shared, 50_000)).is_empty());

@@ -92,7 +92,7 @@ fn nothing_is_sent_before_the_first_command() {
 }
 
 #[test]
-fn control_hears_of_a_frame_that_failed_or_hung() {
+fn control_receives_the_fault_of_a_frame_that_failed_or_hung() {
     for wrong in [Does::Fail, Does::Hang] {
         let does = Cell::new(wrong);
         let heard = RefCell::new(Vec::new());

@@ -51,7 +51,7 @@ fn it_waits_for_flash_and_needs_somebody_who_can() {
     let words = vec!["Restart: parameters are being saved".to_owned()];
     assert_eq!(asked(&shared, 1.0), (MavResult::MAV_RESULT_TEMPORARILY_REJECTED, words.clone(), false));
     assert_eq!(asked(&shared, 3.0), (MavResult::MAV_RESULT_TEMPORARILY_REJECTED, words, false));
-    let words = vec!["Restart: nobody here can do that".to_owned()];
+    let words = vec!["Restart: not supported here".to_owned()];
     assert_eq!(asked(&Local::new(), 1.0), (MavResult::MAV_RESULT_UNSUPPORTED, words, false));
 }
 

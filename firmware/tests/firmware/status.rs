@@ -37,7 +37,7 @@ fn pattern(mode: Option<Mode>) -> String {
 }
 
 #[test]
-fn what_somebody_nearby_must_know_has_a_pattern_of_its_own() {
+fn every_state_that_bystanders_must_see_has_its_own_light_pattern() {
     assert_eq!(pattern(Some(Mode::Ready)), "#...................");
     assert_eq!(pattern(Some(Mode::MotorTest)), "#...#...............");
     assert_eq!(pattern(Some(Mode::Stopped)), "#...#...#...........");

@@ -89,7 +89,7 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
 }
 
 #[test]
-fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_told() {
+fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_reported() {
     let shared = booted();
     let before = shared.parameters.get(Name::RotorThrustMax);
     let words = said(&shared, Name::RotorThrustMax, 3.2);
@@ -111,7 +111,7 @@ fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
     assert!(words[1].starts_with("limits.thrust_max: must be above 4.5"), "{words:?}");
     assert_eq!(said(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70 to 130 % by 10"]);
     assert_eq!(said(&shared, Name::Mass, f32::NAN), ["MASS: allowed are 0.01 to 100.00 kg"]);
-    assert_eq!(said(&shared, Name::TunedOn, 1.0), ["CFG_ID: is only told"]);
+    assert_eq!(said(&shared, Name::TunedOn, 1.0), ["CFG_ID: is read-only"]);
     assert_eq!(shared.parameters.set_by_hand().count(), 0);
 }
 
@@ -144,7 +144,7 @@ fn nothing_is_certified_while_a_motor_turns() {
 }
 
 #[test]
-fn nobody_arms_while_somebody_is_busy() {
+fn arming_is_refused_while_a_procedure_runs() {
     let flags: [fn(&Local) -> &Flag; 3] = [|s| &s.saving, |s| &s.judging, |s| &s.restarting];
     for flag in flags {
         let shared = Local::new();
@@ -193,7 +193,7 @@ fn stored_values_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
 }
 
 #[test]
-fn values_that_were_tuned_on_another_configuration_are_dropped_and_that_is_said() {
+fn values_tuned_on_another_configuration_are_dropped_and_reported() {
     let (grounded, texts, shared) =
         booted_with(configuration::IDENTITY ^ 1, &[(Name::Mass, 0.4), (Name::SystemId, 9.0)]);
     assert_eq!(grounded, None);

@@ -28,7 +28,7 @@ impl Chain<'_> {
     }
 
     /// The vertical acceleration that a thrust means with the force that the law knows of, m/s^2.
-    pub fn asked_acceleration(&self, flown: &Flown) -> f32 {
+    pub fn commanded_acceleration(&self, flown: &Flown) -> f32 {
         flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity + self.vertical_force()
     }
 }

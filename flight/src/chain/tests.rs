@@ -56,7 +56,7 @@ fn only_what_points_up_of_a_thrust_carries() {
     let tilted = State { attitude: Quaternion::new(0.75_f32.sqrt(), 0.5, 0.0, 0.0), ..at_rest() };
     let flown = chain.fly(&tilted).unwrap();
     let thrust = flown.wrench.thrust / 0.5;
-    assert!((chain.asked_acceleration(&flown) - (0.5 * thrust - 9.81)).abs() < 1e-4);
+    assert!((chain.commanded_acceleration(&flown) - (0.5 * thrust - 9.81)).abs() < 1e-4);
     // What the accelerometer says of it, and nothing else.
     let side = -thrust * 0.75_f32.sqrt();
     let acceleration = Vector3::new(0.0, side, 0.5 * thrust - 9.81);

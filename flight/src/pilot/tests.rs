@@ -174,7 +174,7 @@ fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
 }
 
 #[test]
-fn a_landing_is_still_wanted_whenever_the_pose_is_regained_until_somebody_holds() {
+fn a_landing_stays_requested_when_the_pose_is_regained_until_a_hold() {
     let (mut pilot, last, broken) = armed();
     let mut found = Estimate { state: sound(&broken), ..broken };
     found.state.as_mut().unwrap().state.position.z = 0.2;

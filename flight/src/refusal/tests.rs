@@ -66,7 +66,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
 }
 
 #[test]
-fn every_inequality_of_the_certificate_is_told_from_the_others_in_its_text() {
+fn every_inequality_of_the_certificate_has_a_text_of_its_own() {
     let certified = hummingbird::certified();
     let certificate = certified.certificate();
     let mut texts: Vec<_> =

@@ -3,7 +3,7 @@ use controller_core::governor::Turn;
 use nalgebra::Vector3;
 
 #[test]
-fn what_moves_ends_and_what_rests_does_not() {
+fn a_moving_vehicle_times_out_and_a_resting_one_does_not() {
     let mut newest = Newest::default();
     assert!(newest.has_ended(5) && newest.fresh(5).is_none());
     let zero = Vector3::zeros();

@@ -32,7 +32,7 @@ fn is_stopped(mode: Mode) -> bool {
 }
 
 #[test]
-fn conditions_are_told_apart() {
+fn conditions_are_distinguished() {
     for (index, condition) in Condition::ALL.into_iter().enumerate() {
         assert_eq!(condition as usize, index);
         let alone = Conditions::NONE.with(condition, true);

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn numbers_out_of_range_are_brought_back_and_none_is_the_default() {
+fn numbers_out_of_range_are_clamped_and_a_nan_becomes_the_default() {
     let wrong = FlightSettings {
         take_off_height: f32::NAN,
         landing_speed: -1.0,

@@ -148,7 +148,7 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
     let landed = |change: fn(&mut EstimatedState)| {
         let mut estimated = at(0.0);
         let mut chain = descending(&estimated);
-        let asked = chain.asked_acceleration(chain.flown().unwrap());
+        let asked = chain.commanded_acceleration(chain.flown().unwrap());
         assert!(asked < HELD_UP.1, "{asked} m/s^2");
         change(&mut estimated);
         seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE)).landed
@@ -183,7 +183,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         // As long as the law asks for something in between of what is on the ground.
         for _ in 0..3_000 {
             let seen = tick(&mut chain, &estimated, Mode::Descending, true);
-            let asked = chain.asked_acceleration(chain.flown().unwrap());
+            let asked = chain.commanded_acceleration(chain.flown().unwrap());
             if asked < HELD_UP.1 {
                 return false;
             }
@@ -220,7 +220,7 @@ fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
 }
 
 #[test]
-fn a_low_battery_is_told_until_it_is_acted_on() {
+fn a_low_battery_is_reported_until_it_is_acted_on() {
     let mut watch = Watch::default();
     let look = |watch: &mut Watch, now: u64| {
         let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
@@ -228,7 +228,7 @@ fn a_low_battery_is_told_until_it_is_acted_on() {
     };
     assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_DEBOUNCE));
     assert!(look(&mut watch, BATTERY_DEBOUNCE));
-    watch.tell_low();
+    watch.report_low();
     assert!(!look(&mut watch, BATTERY_DEBOUNCE + PERIOD));
     assert!(!look(&mut watch, 9 * BATTERY_DEBOUNCE));
 }

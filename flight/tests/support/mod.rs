@@ -163,8 +163,8 @@ pub struct Present {
     pub ground_station: bool,
 }
 
-/// What is told of the body at a time, us.
-pub type Told = Box<dyn FnMut(&Body, u64) -> Stamped<PoseMeasurement>>;
+/// The pose of the body that is sent at a time, us.
+pub type PoseSource = Box<dyn FnMut(&Body, u64) -> Stamped<PoseMeasurement>>;
 
 /// The truth, displaced by `offset` (m, world) and turned by `turn` on the left.
 pub fn displaced(body: &Body, time: u64, offset: &Vector3<f64>, turn: &Vector3<f64>) -> Stamped<PoseMeasurement> {
@@ -180,7 +180,7 @@ pub struct Flight {
     /// The next tick's requests; handed over once.
     pub inputs: Handed,
     /// What poses say; the truth, at first.
-    pub told: Told,
+    pub source: PoseSource,
     /// What becomes of the IMU's increments.
     pub imu: Box<dyn FnMut(&mut Increment)>,
     /// What the gyro shows beside the truth, rad/s.
@@ -206,7 +206,7 @@ impl Flight {
             body,
             present: Present { imu: true, pose: true, ground_station: true },
             inputs,
-            told: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
+            source: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
             imu: Box::new(|_| {}),
             gyro_bias: Vector3::zeros(),
             ground: GROUND,
@@ -258,7 +258,7 @@ impl Flight {
         }
         self.inputs.body_rate = self.body_rate;
         if self.present.pose {
-            self.inputs.poses = vec![(self.told)(&self.body, now)];
+            self.inputs.poses = vec![(self.source)(&self.body, now)];
         }
         if self.present.ground_station {
             self.ground_station = Some(now);
@@ -269,7 +269,7 @@ impl Flight {
 
         let wrench = match &outcome.output {
             Output::Thrusts(thrusts) => self.mixer.wrench(thrusts),
-            Output::Stop | Output::Idle | Output::Test { .. } | Output::Tell { .. } => {
+            Output::Stop | Output::Idle | Output::Test { .. } | Output::Word { .. } => {
                 Wrench { thrust: 0.0, torque: Vector3::zeros() }
             }
         };

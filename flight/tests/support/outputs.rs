@@ -20,6 +20,6 @@ pub fn check_output(outcome: &Outcome, rotors: &Rotors) {
             assert_eq!(outcome.mode, Mode::MotorTest);
             assert!(*rotor < rotors.len() && *level > 0.0 && *level <= MOTOR_TEST_LEVEL_MAX);
         }
-        Output::Tell { rotor, .. } => assert!(outcome.mode == Mode::MotorTest && *rotor < rotors.len()),
+        Output::Word { rotor, .. } => assert!(outcome.mode == Mode::MotorTest && *rotor < rotors.len()),
     }
 }

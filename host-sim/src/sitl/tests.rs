@@ -350,7 +350,7 @@ fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
     flown.pass(6.0);
     // The key outlasts a restart, and so does what was heard: this client did not hear how far the stamps have come.
     flown.command(ARM, 1.0);
-    assert_eq!((flown.mode(), flown.said("its time stamp was heard before")), (Mode::Checks, true));
+    assert_eq!((flown.mode(), flown.said("its time stamp was used before")), (Mode::Checks, true));
     flown.signing.set(key, key::now() + 2 * AHEAD, 0);
     flown.pass(1.0);
     flown.command(ARM, 1.0);

@@ -40,7 +40,7 @@ fn resting(position: Vector3<f32>) -> State {
 }
 
 #[test]
-fn hovering_asks_for_the_weight_and_no_torque() {
+fn hovering_commands_the_weight_and_no_torque() {
     let mut controller = of(&Craft::example(), &example::parameters());
     let hover = Hover::new(Vector3::new(1.0, 2.0, 3.0), Heading::FORWARD).unwrap();
     for _ in 0..500 {
@@ -261,7 +261,7 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random) -> bool {
 }
 
 #[test]
-fn no_sequence_of_states_makes_it_ask_for_more_than_limits_and_rotors_give() {
+fn no_sequence_of_states_exceeds_the_limits_or_the_rotors() {
     let mut random = Random(81);
     for number in 0..60 {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };

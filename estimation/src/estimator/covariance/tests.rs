@@ -118,7 +118,7 @@ fn apart(a: &Full, b: &Full) -> f64 {
 }
 
 #[test]
-fn the_covariance_moves_as_differences_of_the_motion_say() {
+fn the_covariance_propagates_as_differences_of_the_motion_do() {
     let (nominal, increment) = (somewhere(), increment());
     let f = transition(&nominal, &increment);
     let before = correlated();

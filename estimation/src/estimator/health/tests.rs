@@ -36,7 +36,7 @@ fn an_estimate_is_uncertain_by_its_position_its_velocity_or_its_attitude_alone()
 }
 
 #[test]
-fn positions_or_attitudes_that_are_noisier_than_they_say_are_a_fault_alone() {
+fn positions_or_attitudes_noisier_than_their_covariance_are_a_fault_each() {
     for noisy in [1.01 * NIS_MEAN_MAX, f32::NAN] {
         assert_eq!(faults(|_, statistics| statistics.nis.0 = noisy), Some(Fault::Inconsistent));
         assert_eq!(faults(|_, statistics| statistics.nis.1 = noisy), Some(Fault::Inconsistent));

@@ -29,7 +29,7 @@ fn shaken(frequency: f32) -> (f32, f32) {
 }
 
 #[test]
-fn a_shaken_body_moves_and_accelerates_as_the_table_says() {
+fn a_vibrating_body_is_attenuated_as_the_table_states() {
     for (frequency, left, force) in
         [(10.0, 0.976, 0.984), (70.0, 0.206, 0.368), (100.0, 0.0, 0.0), (130.0, 0.206, 0.198)]
     {
@@ -53,7 +53,7 @@ fn of_a_shaking_the_slow_force_keeps_less_than_a_twentieth() {
 }
 
 #[test]
-fn a_steady_acceleration_shakes_nothing_and_is_told_in_full() {
+fn a_steady_acceleration_passes_the_low_pass_in_full() {
     let (push, still) = (Vector3::new(1.0, -2.0, 9.81) * 5e-3, Vector3::zeros());
     let (before, last) = (increment(0, push, still), increment(H, push, still));
     let slow = slow_force(Some(&slow_force(None, &before)), &last);

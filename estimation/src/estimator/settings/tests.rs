@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn what_makes_no_sense_is_refused_by_name() {
+fn invalid_settings_are_refused_by_name() {
     type Set = fn(&mut EstimatorParameters);
     let cases: [(Set, &str, Reason); 5] = [
         (|p| p.gyro_noise = 0.0, "estimator.gyro_noise", Reason::NotPositive),

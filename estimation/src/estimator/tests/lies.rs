@@ -1,4 +1,4 @@
-//! Poses that lie: none of them moves the state, each is told by name, and the truth is found again.
+//! Poses that lie: none of them moves the state, each is rejected by name, and the truth is found again.
 
 use super::motion::{self, Rig, rest, tumble};
 use crate::estimator::{Fault, PoseMeasurement, Rejected, Taken};
@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 const STRAIGHT: UnitQuaternion<f64> = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0));
 
 /// Two seconds of truth, then of a lie; the state stays within what coasting leaves. Returns what became of the last.
-fn told(rig: &mut Rig, seconds: f64, lie: impl Fn(&Rig, f64, u64) -> PoseMeasurement) -> Rejected {
+fn rejection(rig: &mut Rig, seconds: f64, lie: impl Fn(&Rig, f64, u64) -> PoseMeasurement) -> Rejected {
     rig.fly(3_000_000, 20_000);
     let began = rig.now;
     let last = rig
@@ -22,13 +22,13 @@ fn told(rig: &mut Rig, seconds: f64, lie: impl Fn(&Rig, f64, u64) -> PoseMeasure
 }
 
 #[test]
-fn permanent_jumps_are_told_and_not_followed() {
+fn permanent_jumps_are_reported_and_not_followed() {
     for path in [rest as motion::Path, tumble] {
         for distance in [0.3, 5.0, 100.0] {
             let mut rig = Rig::new(path);
             let offset = Vector3::new(distance, 0.0, 0.0);
             let lie = |rig: &Rig, _, time| motion::pose(&rig.truth(time), &offset, &STRAIGHT);
-            assert_eq!(told(&mut rig, 0.7, lie), Rejected::Jump, "{distance} m");
+            assert_eq!(rejection(&mut rig, 0.7, lie), Rejected::Jump, "{distance} m");
             // Back, it is believed at once.
             let pose =
                 Stamped { value: motion::pose(&rig.truth(rig.now), &Vector3::zeros(), &STRAIGHT), time: rig.now };
@@ -43,7 +43,7 @@ fn those_who_know_better_follow_a_jump() {
     let offset = Vector3::new(5.0, 0.0, 0.0);
     let lie = |rig: &Rig, _, time| motion::pose(&rig.truth(time), &offset, &STRAIGHT);
     assert!(!rig.estimator.adopt());
-    told(&mut rig, 0.7, lie);
+    rejection(&mut rig, 0.7, lie);
     assert!(rig.estimator.adopt());
     assert!(!rig.estimator.adopt());
     let position = rig.state().unwrap().state.position.cast::<f64>();
@@ -54,7 +54,7 @@ fn those_who_know_better_follow_a_jump() {
 }
 
 #[test]
-fn flips_are_told() {
+fn flips_are_reported() {
     let half_turn = |axis: Vector3<f64>| UnitQuaternion::from_scaled_axis(axis * core::f64::consts::PI);
     for path in [rest as motion::Path, tumble] {
         for (axis, names) in [
@@ -64,23 +64,23 @@ fn flips_are_told() {
         ] {
             let mut rig = Rig::new(path);
             let lie = |rig: &Rig, _, time| motion::pose(&rig.truth(time), &Vector3::zeros(), &half_turn(axis));
-            let said = told(&mut rig, 0.7, lie);
-            assert!(names.contains(&said), "{said:?}");
+            let reason = rejection(&mut rig, 0.7, lie);
+            assert!(names.contains(&reason), "{reason:?}");
         }
     }
 }
 
 #[test]
-fn a_turn_that_the_gyro_has_not_felt_is_told_from_a_few_degrees_on() {
+fn a_turn_that_the_gyro_has_not_felt_is_detected_from_a_few_degrees_on() {
     for angle in [0.15, 0.5, -1.0] {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * angle);
         let lie = |rig: &Rig, _, time| motion::pose(&rig.truth(time), &Vector3::zeros(), &turn);
-        assert_eq!(told(&mut Rig::new(rest), 0.7, lie), Rejected::Turned, "{angle} rad");
+        assert_eq!(rejection(&mut Rig::new(rest), 0.7, lie), Rejected::Turned, "{angle} rad");
     }
 }
 
 #[test]
-fn a_frozen_stream_is_told_by_what_the_accelerometer_feels_alone() {
+fn a_frozen_stream_is_detected_by_the_accelerometer_alone() {
     for sign in [1.0, -1.0] {
         let mut rig = Rig::new(rest);
         rig.fly(3_000_000, 20_000);
@@ -92,20 +92,20 @@ fn a_frozen_stream_is_told_by_what_the_accelerometer_feels_alone() {
 }
 
 #[test]
-fn a_drift_is_told_and_not_followed() {
+fn a_drift_is_reported_and_not_followed() {
     for path in [rest as motion::Path, tumble] {
         let mut rig = Rig::new(path);
         let lie = |rig: &Rig, t: f64, time| motion::pose(&rig.truth(time), &(Vector3::x() * (0.5 * t)), &STRAIGHT);
-        let said = told(&mut rig, 0.9, lie);
-        assert!(said == Rejected::Drift, "{said:?}");
+        let reason = rejection(&mut rig, 0.9, lie);
+        assert!(reason == Rejected::Drift, "{reason:?}");
     }
 }
 
 #[test]
-fn a_frozen_stream_is_told_in_motion() {
+fn a_frozen_stream_is_detected_in_motion() {
     let mut rig = Rig::new(tumble);
     let lie = |rig: &Rig, _, _| motion::pose(&rig.truth(3_000_000), &Vector3::zeros(), &STRAIGHT);
-    assert_eq!(told(&mut rig, 0.7, lie), Rejected::Frozen);
+    assert_eq!(rejection(&mut rig, 0.7, lie), Rejected::Frozen);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Smooth motions with exact sensors, and an estimator that is told of them.
+//! Smooth motions with exact sensors, estimated.
 
 extern crate std;
 use crate::estimator::{

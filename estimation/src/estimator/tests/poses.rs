@@ -82,7 +82,7 @@ fn a_late_pose_is_judged_by_itself_and_not_by_those_after_it() {
 }
 
 #[test]
-fn a_frame_that_moves_is_followed_in_one_step_if_it_is_said() {
+fn a_frame_move_that_is_reported_is_followed_in_one_step() {
     let mut rig = Rig::new(tumble);
     rig.fly(4_000_000, 20_000);
     let (offset, turn) = (Vector3::new(30.0, -5.0, 1.0), UnitQuaternion::from_scaled_axis(Vector3::z() * 2.0));
@@ -137,9 +137,9 @@ fn velocities_are_believed_where_the_settings_give_them_a_deviation() {
         lie.value.velocity = lie.value.velocity.map(|velocity| velocity + Vector3::x());
         (health.deviations.1, rig.estimator.pose(&lie, rig.now))
     };
-    let (unheard, fused) = flown(0.0);
-    let (heard, refused) = flown(2e-3);
-    assert!(heard < 0.5 * unheard, "{heard} and {unheard} m/s");
+    let (without, fused) = flown(0.0);
+    let (with, refused) = flown(2e-3);
+    assert!(with < 0.5 * without, "{with} and {without} m/s");
     assert_eq!((fused, refused), (Ok(Taken::Fused), Err(Rejected::Velocity)));
 }
 

@@ -31,10 +31,10 @@ fn refused_after(path: Path, clipped: Clipped, push: &Vector3<f32>, turn: &Vecto
 
 #[test]
 fn a_velocity_that_a_shock_left_out_is_known_again_and_costs_no_pose() {
-    let (told, zero) = (Clipped { accelerometer: true, ..Clipped::NEITHER }, Vector3::zeros());
+    let (clipped, zero) = (Clipped { accelerometer: true, ..Clipped::NEITHER }, Vector3::zeros());
     for path in [rest as Path, tumble] {
         for missed in [Vector3::new(0.0, 0.0, 0.3), Vector3::new(-0.2, 0.3, 1.0), Vector3::new(1.0, 2.0, 3.0)] {
-            assert_eq!(refused_after(path, told, &missed, &zero), 0, "{missed}");
+            assert_eq!(refused_after(path, clipped, &missed, &zero), 0, "{missed}");
             assert!(refused_after(path, Clipped::NEITHER, &missed, &zero) > 5, "{missed}");
         }
     }
@@ -42,10 +42,10 @@ fn a_velocity_that_a_shock_left_out_is_known_again_and_costs_no_pose() {
 
 #[test]
 fn a_turn_that_a_whirl_left_out_is_known_again_and_costs_no_pose() {
-    let (told, zero) = (Clipped { gyro: true, ..Clipped::NEITHER }, Vector3::zeros());
+    let (clipped, zero) = (Clipped { gyro: true, ..Clipped::NEITHER }, Vector3::zeros());
     for path in [rest as Path, tumble] {
         for missed in [Vector3::new(0.17, 0.0, 0.0), Vector3::new(-0.1, 0.2, 0.3)] {
-            assert_eq!(refused_after(path, told, &zero, &missed), 0, "{missed}");
+            assert_eq!(refused_after(path, clipped, &zero, &missed), 0, "{missed}");
             assert!(refused_after(path, Clipped::NEITHER, &zero, &missed) > 5, "{missed}");
         }
     }
@@ -66,8 +66,8 @@ fn in_whichever_attitude_a_shock_finds_it_the_estimate_keeps_its_numbers() {
         rig.estimator.imu(&Increment { delta_velocity: truth.delta_velocity - missed * 4.0, clipped, ..truth });
         rig.now = end;
         for _ in 0..30 {
-            let said = rig.fly_with(10_000, 20_000, sure);
-            assert_ne!(said, Some(Err(Rejected::NotFinite)), "{phase} {missed}");
+            let verdict = rig.fly_with(10_000, 20_000, sure);
+            assert_ne!(verdict, Some(Err(Rejected::NotFinite)), "{phase} {missed}");
             assert!(rig.estimator.filter().unwrap().covariance.is_positive());
         }
     }

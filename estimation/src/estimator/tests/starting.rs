@@ -38,7 +38,7 @@ fn it_does_not_begin_where_accelerometer_and_poses_disagree_on_up() {
                 assert_eq!(rig.state(), None, "{angle} degrees");
             }
             assert!(!rig.estimator.health(rig.now).is_good());
-            // At rest one pose tells. In motion the candidate does, and may do so by a position before it does by its
+            // At rest one pose decides. In motion the candidate does, and may do so by a position before it does by its
             // bias.
             assert!(refused > 0 && (gravity > 0 || path(0.0).velocity != Vector3::zeros()), "{angle} degrees");
         }
@@ -105,7 +105,7 @@ fn a_gap_of_the_imu_ends_it_and_numbers_that_cannot_be_too() {
 }
 
 #[test]
-fn without_poses_it_coasts_and_says_so() {
+fn without_poses_it_coasts_and_reports_it() {
     let mut rig = Rig::new(tumble);
     rig.fly(5_000_000, 20_000);
     let began = rig.now;

@@ -8,8 +8,8 @@ fn rest(force: &Vector3<f64>) -> Rest {
     Rest { angular_velocity: Vector3::zeros(), specific_force: force.map(|x| x as f32) }
 }
 
-/// What an accelerometer with these errors says where `up` is up.
-fn says(up: &Vector3<f64>, offset: &Vector3<f64>, scale: &Vector3<f64>) -> Rest {
+/// What an accelerometer with these errors rest_at where `up` is up.
+fn rest_at(up: &Vector3<f64>, offset: &Vector3<f64>, scale: &Vector3<f64>) -> Rest {
     rest(&((up * 9.81).component_div(scale) + offset))
 }
 
@@ -28,7 +28,7 @@ fn offsets_and_scales_come_out_though_no_face_is_level() {
     let mut six = SixPoint::default();
     for up in faces() {
         assert_eq!(six.solve(9.81), Err(SixPointError::FaceMissing));
-        six.add(&says(&up, &OFFSET, &SCALE), 9.81).unwrap();
+        six.add(&rest_at(&up, &OFFSET, &SCALE), 9.81).unwrap();
     }
     let (offset, scale) = six.solve(9.81).unwrap();
     assert!((offset.cast::<f64>() - OFFSET).norm() < 1e-4, "{offset}");
@@ -38,15 +38,15 @@ fn offsets_and_scales_come_out_though_no_face_is_level() {
 #[test]
 fn what_is_no_face_or_no_accelerometer_is_refused() {
     let mut six = SixPoint::default();
-    six.add(&says(&Vector3::z(), &OFFSET, &SCALE), 9.81).unwrap();
-    assert_eq!(six.add(&says(&Vector3::z(), &OFFSET, &SCALE), 9.81), Err(SixPointError::FaceTwice));
+    six.add(&rest_at(&Vector3::z(), &OFFSET, &SCALE), 9.81).unwrap();
+    assert_eq!(six.add(&rest_at(&Vector3::z(), &OFFSET, &SCALE), 9.81), Err(SixPointError::FaceTwice));
     let askew = Vector3::new(1.0, 1.0, 0.0).normalize();
     for force in [askew * 9.81, Vector3::zeros(), Vector3::repeat(f64::NAN)] {
         assert_eq!(six.add(&rest(&force), 9.81), Err(SixPointError::NoFace));
     }
     for (offset, scale) in [(Vector3::new(1.0, 0.0, 0.0), SCALE), (OFFSET, Vector3::new(1.0, 1.0, 0.95))] {
         let mut six = SixPoint::default();
-        faces().iter().for_each(|up| six.add(&says(up, &offset, &scale), 9.81).unwrap());
+        faces().iter().for_each(|up| six.add(&rest_at(up, &offset, &scale), 9.81).unwrap());
         assert_eq!(six.solve(9.81), Err(SixPointError::Implausible));
     }
 }

@@ -12,14 +12,14 @@ fn stand(mut at: impl FnMut(f32) -> (Vector3<f32>, Vector3<f32>)) -> Result<Rest
         |deviation: f32| Vector3::from_fn(|_, _| (0..4).map(|_| random.signed()).sum::<f32>() * (deviation / 1.155));
     for n in 0..SAMPLES {
         let (rate, force) = at(f32::from(n) * 1e-3);
-        let said = standstill.take(&(rate + noise(3.3e-3)), &(force + noise(0.025)));
-        assert_eq!(said.is_some(), n + 1 == SAMPLES);
-        if let Some(said) = said {
+        let rest = standstill.take(&(rate + noise(3.3e-3)), &(force + noise(0.025)));
+        assert_eq!(rest.is_some(), n + 1 == SAMPLES);
+        if let Some(rest) = rest {
             assert_eq!(standstill, Standstill::default());
-            return said;
+            return rest;
         }
     }
-    panic!("it never said")
+    panic!("no result")
 }
 
 const UP: Vector3<f32> = Vector3::new(0.3, -0.2, 9.8);

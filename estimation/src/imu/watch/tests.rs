@@ -54,7 +54,7 @@ fn full_scale_is_a_fault_when_it_lasts() {
 }
 
 #[test]
-fn what_is_missing_or_no_number_is_said() {
+fn missing_and_non_finite_values_are_reported() {
     let mut watch = Watch::new(RANGES);
     let (rate, force) = noisy(1);
     assert_eq!(watch.see(&rate, None), Some(ImuFault::AccelerometerSilent));
@@ -64,9 +64,9 @@ fn what_is_missing_or_no_number_is_said() {
 }
 
 #[test]
-fn a_shock_is_told_by_its_leap_behind_the_sensors_own_filter_and_shaking_is_none() {
+fn a_shock_shows_as_a_leap_behind_the_sensors_own_filter_and_vibration_does_not() {
     // What 145 Hz leave of a millisecond at full scale, and of one at three fifths of it.
-    for (felt, told) in [(235.0, true), (0.6 * 235.0, false)] {
+    for (felt, is_clipped) in [(235.0, true), (0.6 * 235.0, false)] {
         let mut own = LowPass::new(145.0, 500.0, 1000.0);
         let mut watch = Watch::new(RANGES);
         let mut clipped = 0;
@@ -77,7 +77,7 @@ fn a_shock_is_told_by_its_leap_behind_the_sensors_own_filter_and_shaking_is_none
             assert!(shown.norm() < 100.0);
             clipped += u32::from(watch.clipped().accelerometer);
         }
-        assert_eq!(clipped > 0, told, "{felt} m/s^2");
+        assert_eq!(clipped > 0, is_clipped, "{felt} m/s^2");
     }
     let mut watch = Watch::new(RANGES);
     for n in 0..1_000 {

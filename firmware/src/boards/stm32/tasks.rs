@@ -108,7 +108,7 @@ pub fn run() -> ! {
     }
     spawner.spawn(show(shared.for_status(), board.light, board.battery).unwrap());
     spawner.spawn(keep(shared.for_storage(), parameters).unwrap());
-    spawner.spawn(restart_when_asked(shared.for_restart()).unwrap());
+    spawner.spawn(restart_on_request(shared.for_restart()).unwrap());
 
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
@@ -208,7 +208,7 @@ async fn keep(shared: StorageView<'static, Raw>, mut storage: Storage<ParameterF
 }
 
 #[embassy_executor::task]
-async fn restart_when_asked(shared: RestartView<'static, Raw>) {
+async fn restart_on_request(shared: RestartView<'static, Raw>) {
     crate::restart::run(shared, &SystemClock, &mut Chip).await;
 }
 

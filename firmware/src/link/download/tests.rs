@@ -50,7 +50,7 @@ fn counts(size: u32, offset: u32, wanted: u32) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_wanted_comes_in_parts_and_the_end_is_told() {
+fn a_log_is_sent_in_parts_and_its_end_is_marked() {
     assert_eq!(counts(200, 0, u32::MAX), [90, 90, 20]);
     assert_eq!(counts(180, 0, u32::MAX), [90, 90, 0]);
     assert_eq!(counts(1_000, 100, 180), [90, 90]);
@@ -64,7 +64,7 @@ fn what_is_wanted_comes_in_parts_and_the_end_is_told() {
 }
 
 #[test]
-fn the_next_chunk_is_asked_for_while_the_last_goes_out() {
+fn the_next_chunk_is_requested_while_the_last_goes_out() {
     let (messages, ticks) = messages(90 * 800, 0, u32::MAX);
     assert_eq!(messages.len(), 801);
     // One every 2 ms, and no wait between chunks.

@@ -125,8 +125,8 @@ impl<M: RawMutex> Receiver<'_, M> {
                 self.shared.reply(Reply::Requested(kind, order));
                 return None;
             }
-            Action::Tell(reply) => self.shared.reply(reply),
-            Action::TellModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
+            Action::Reply(reply) => self.shared.reply(reply),
+            Action::ReplyModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
         }
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }
@@ -136,7 +136,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     fn restart(&mut self, into_bootloader: bool) -> MavResult {
         let shared = self.shared;
         let (refused, result) = if !shared.can_restart().is_raised() {
-            ("Restart: nobody here can do that", MavResult::MAV_RESULT_UNSUPPORTED)
+            ("Restart: not supported here", MavResult::MAV_RESULT_UNSUPPORTED)
         } else if into_bootloader && !shared.has_bootloader().is_raised() {
             ("Restart: there is no bootloader", MavResult::MAV_RESULT_UNSUPPORTED)
         } else if shared.saving().is_raised() {

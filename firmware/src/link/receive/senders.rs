@@ -30,8 +30,8 @@ impl Default for Senders {
 }
 
 impl Senders {
-    /// Hears a sender, in place of the one that has been silent for longest.
-    pub fn hear(&mut self, sender: Sender, now: u64) {
+    /// Notes a sender, in place of the one that has been silent for longest.
+    pub fn receive(&mut self, sender: Sender, now: u64) {
         if let Some(place) =
             self.senders.iter_mut().min_by_key(|known| if known.value == sender { 0 } else { known.time })
         {

@@ -33,7 +33,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         let state = self.shared.report().get().and_then(|report| report.value.state);
         let value = setpoint(message, state.as_ref().and_then(Here::of).as_ref())?;
         let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
-        self.setpoints.hear(sender, time);
+        self.setpoints.receive(sender, time);
         if self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
             // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
             self.setpoints.kept = Some((sender, Stamped { value, time }));

@@ -64,7 +64,7 @@ fn a_clock_that_is_set_costs_four_frames_back_or_forward() {
 }
 
 #[test]
-fn who_forges_every_fourth_message_stops_nobody() {
+fn forging_every_fourth_message_stops_no_other_sender() {
     for forged in [50_000_i64, 150_000, 2_000_000, -600_000, -3_000_000] {
         let mut clock = SenderClock::new(5_000_000, 0);
         let mut refused = 0;
@@ -100,7 +100,7 @@ fn a_clock_that_does_not_keep_time_is_not_believed() {
 }
 
 #[test]
-fn what_a_line_held_back_and_delivers_at_once_is_not_taken_for_new() {
+fn messages_that_a_line_held_back_are_not_taken_as_fresh() {
     let mut clock = SenderClock::new(0, 0);
     assert_eq!(clock.stamp(10_000, 10_000), Some(10_000));
     // A second of frames in a moment: the last half of it may still be flown.

@@ -11,20 +11,20 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 /// Texts that are remembered.
 const REMEMBERED: usize = 8;
 
-/// How long a text is not said again, ms.
+/// How long a text is not sent again, ms.
 const SILENCE: u32 = 1_000;
 
-/// The last texts, each by its kind's hash, and when they were said, ms.
-pub(super) struct Lately<M: RawMutex> {
-    said: Mutex<M, Cell<[(u32, u32); REMEMBERED]>>,
+/// The last texts, each by its kind's hash, and when they were sent, ms.
+pub(super) struct RecentTexts<M: RawMutex> {
+    sent: Mutex<M, Cell<[(u32, u32); REMEMBERED]>>,
     /// The time of control's last tick, ms; zero before the first, when nothing is held back.
     now: AtomicU32,
 }
 
-impl<M: RawMutex> Lately<M> {
-    /// Nothing said.
+impl<M: RawMutex> RecentTexts<M> {
+    /// Nothing sent yet.
     pub const fn new() -> Self {
-        Self { said: Mutex::new(Cell::new([(0, 0); REMEMBERED])), now: AtomicU32::new(0) }
+        Self { sent: Mutex::new(Cell::new([(0, 0); REMEMBERED])), now: AtomicU32::new(0) }
     }
 
     /// It is `now`, us.
@@ -32,12 +32,12 @@ impl<M: RawMutex> Lately<M> {
         self.now.store((now / 1_000) as u32, Ordering::Relaxed);
     }
 
-    /// Whether the same words, or a refusal of that kind, were said within a second; if not, it is remembered. What
-    /// else there is to say control says once.
-    pub fn has_said(&self, event: &Event) -> bool {
+    /// Whether the same words, or a refusal of that kind, were sent within a second; if not, it is remembered. Control
+    /// sends every other event once.
+    pub fn repeats(&self, event: &Event) -> bool {
         let now = self.now.load(Ordering::Relaxed);
         let mut sum = Sum(0x811C_9DC5);
-        // Not put into words: that takes stack which control has not.
+        // Not formatted: that takes stack which control lacks.
         match event {
             _ if now == 0 => return false,
             Event::Words(_, text) => sum.write(text.as_str().as_bytes()),
@@ -45,16 +45,16 @@ impl<M: RawMutex> Lately<M> {
             _ => return false,
         }
         let sum = sum.0;
-        self.said.lock(|cell| {
-            let mut said = cell.get();
+        self.sent.lock(|cell| {
+            let mut sent = cell.get();
             let is_recent = |&(text, at): &(u32, u32)| text == sum && at != 0 && now.wrapping_sub(at) < SILENCE;
-            if said.iter().any(is_recent) {
+            if sent.iter().any(is_recent) {
                 return true;
             }
-            said.rotate_right(1);
-            let [first, ..] = &mut said;
+            sent.rotate_right(1);
+            let [first, ..] = &mut sent;
             *first = (sum, now);
-            cell.set(said);
+            cell.set(sent);
             false
         })
     }
