@@ -12,20 +12,20 @@
 //!                    nominal, covariance -> advance, test, fuse -> nominal alone, to the end
 //! ```
 //!
-//! - `present`: the state for the law, without the rotors' shaking;
+//! - `present`: the state for the law, without the rotors' vibration;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;
-//! - [`history`]: the ring; [`settings`]: what the sensors are like;
+//! - [`history`]: the ring; [`settings`]: the sensors' noise;
 //! - `checkpoints`: poses out of order; `stream`: time stamps, quality, frozen streams;
 //! - `candidate`: how an estimate begins, at rest or in motion, and how a lost body is found again;
 //! - `taking`: what becomes of a pose, step by step;
-//! - [`verdict`], [`health`]: what became of each pose, and what the estimate is worth, in words.
+//! - [`verdict`], [`health`]: the verdict on each pose, and the estimate's health, in words.
 //!
 //! # How a tick uses it
 //!
-//! The IMU task hands over [`Increment`]s, made by [`crate::imu`] from the samples since the last one; whoever receives
-//! poses hands them over with the time at which they were true, on the vehicle's clock. Once a control tick:
+//! The IMU task hands over [`Increment`]s, made by [`crate::imu`] from the samples since the last one. The link hands
+//! over poses with the time at which they were true, on the vehicle's clock. Once a control tick:
 //!
 //! ```text
 //! for increment in new increments { estimator.imu(&increment) }
@@ -34,8 +34,8 @@
 //! if let Some(estimated) = estimator.state(now, &newest_rate) { law.step(&estimated.state, …) }
 //! ```
 //!
-//! Without poses the state goes on, by IMU alone, for as long as anybody asks; [`health`](Estimator::health) says for
-//! how long that has been so and how uncertain it has become. A pose stream that jumps, turns or drifts against the IMU
+//! Without poses the state goes on by IMU alone, without a timeout; [`health`](Estimator::health) reports the age of
+//! the last pose and the uncertainty. A pose stream that jumps, turns or drifts against the IMU
 //! is not followed. Its poses are refused, with the reason, until they are again where coasting may have led;
 //! [`Estimator::adopt`] follows it all the same: on the ground, say.
 //!
@@ -77,9 +77,8 @@ use nalgebra::{Quaternion, Vector3};
 use present::Present;
 use stream::Stream;
 
-/// How long after a move of the sender's frame the next one is believed, us: a counter that runs is no frame that
-/// moves. Longer than anybody flies without a pose that is believed, or a stream of lies would be flown from one move
-/// to the next.
+/// How long after a move of the sender's frame the next one is believed, us: a running counter is no moving frame.
+/// Longer than the vehicle flies without a believed pose, or a stream of lies would be flown from one move to the next.
 pub const REBASE_EVERY: u64 = 3_000_000;
 
 /// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it
@@ -91,7 +90,7 @@ const TILT_COSINE: f32 = 0.984_807_8;
 const GYRO_CHANGE: f32 = 0.008;
 const ACCELEROMETER_CHANGE: f32 = 0.06;
 
-/// How long a vertical speed by the accelerometer is as good as that of poses which may lie, s.
+/// The time constant with which the vertical speed goes from the accelerometer's to that of the poses, s.
 const CLIMB_TIME: f32 = 8.0;
 
 /// Poses that may wait for the IMU.
@@ -100,15 +99,14 @@ const WAITING: usize = 4;
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatedState {
-    /// For the law. The body rate is the one handed over, less its bias; the velocity one that does not shake with the
-    /// rotors.
+    /// For the law. The body rate is the one handed over, less its bias; the velocity is without the rotors' vibration.
     pub state: State,
     /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
     /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
-    /// [`Estimator::adopt`]. Who differentiates the state, begins anew when it changes.
+    /// [`Estimator::adopt`]. A differentiator of the state begins anew when it changes.
     pub jumps: u32,
-    /// What the vertical speed has gained by the accelerometer alone, m/s: of use are differences.
+    /// What the vertical speed has gained by the accelerometer alone, m/s; only differences count.
     pub gained: f32,
 }
 
@@ -140,7 +138,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// One that knows nothing yet.
+    /// One without an estimate.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
@@ -162,8 +160,8 @@ impl Estimator {
         }
     }
 
-    /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an increment with numbers
-    /// that cannot be, everything begins anew, with the biases as they were: no state carries over a time
+    /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an invalid increment,
+    /// everything begins anew, with the biases as they were: no state carries over a time
     /// without measurements.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
@@ -244,7 +242,7 @@ impl Estimator {
     pub fn state(&self, now: u64, rate: &Vector3<f32>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX && is_measurable(rate))?;
-        let Present { force, shaking } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let Present { force, vibration } = Present::of(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
             start: last.end,
@@ -260,7 +258,7 @@ impl Estimator {
         let Nominal { position, velocity, attitude, gyro_bias, .. } = nominal;
         let angular_velocity = rate - gyro_bias;
         let state =
-            State { position, velocity: velocity - rotated(&latest.attitude, &shaking), attitude, angular_velocity };
+            State { position, velocity: velocity - rotated(&latest.attitude, &vibration), attitude, angular_velocity };
         let gained = self.gained + state.velocity.z - latest.velocity.z;
         Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps, gained })
     }

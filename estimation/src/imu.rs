@@ -1,11 +1,11 @@
 //! The inertial sensor's samples, made ready: integrated for the estimator, low-passed for the law, watched for faults.
 //!
-//! Two ways lead out of a sample, because two things are asked of it:
+//! A sample has two uses:
 //!
 //! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered:
 //!   an integral needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz
 //!   stays what it is, a motion to and fro.
-//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would pose as a constant
+//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would alias to a constant
 //!   rate. So the gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether, and the newest
 //!   of its values is the law's.
 //!
@@ -80,8 +80,8 @@ impl ImuParameters {
     ///
     /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order
     /// Butterworth filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is
-    /// not told apart. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
-    /// next, 52 m/s^2; some is left for shaking.
+    /// not distinguished. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
+    /// next, 52 m/s^2; some is left for vibration.
     pub const BMI088: Self = Self {
         rate: 1000.0,
         cutoff: 60.0,
@@ -115,12 +115,12 @@ impl ImuParameters {
     }
 }
 
-/// What a sample was good for.
+/// The result of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditioned {
     /// An increment that it completes.
     pub increment: Option<Increment>,
-    /// What is wrong with it, or with those before it.
+    /// Its fault, or that of those before it.
     pub fault: Option<ImuFault>,
 }
 
@@ -191,8 +191,8 @@ impl Conditioner {
     }
 
     /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that
-    /// one answered; the last specific force counts on where it did not. A sample that is no number, or not later than
-    /// the last, is left out.
+    /// one answered; the last specific force counts on where it did not. A sample that is not finite, or not later
+    /// than the last, is left out.
     pub fn sample(
         &mut self,
         time: u64,

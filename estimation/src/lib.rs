@@ -2,7 +2,7 @@
 //!
 //! - [`imu`]: samples integrated for the estimator, low-passed for the law, watched for faults, calibrated;
 //! - [`measurement`]: a pose, a sample, and the time at which they were true;
-//! - [`estimator`]: an error-state Kalman filter that says of every pose whether it is believed, and why not.
+//! - [`estimator`]: an error-state Kalman filter that accepts or refuses every pose, with the reason.
 //!
 //! Frames and units are [`controller_core`]'s. `no_std`, no allocation, no panics, single precision.
 //!

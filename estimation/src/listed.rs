@@ -1,4 +1,4 @@
-//! Enumerations that can be gone through, and that say themselves in words: each variant is written once.
+//! Enumerations with a list of their variants, and a text for each: each variant is written once.
 
 /// An enumeration with `ALL`, every variant in the order written.
 #[macro_export]

@@ -1,4 +1,4 @@
-//! What is measured, with the time at which it was true.
+//! Measurements, with the time at which they were true.
 //!
 //! A pose is checked once, where it is made: [`Pose::new`] is the only way to one, and its attitude is a unit
 //! quaternion from there on. Increments of the IMU are checked by the estimator, which begins anew where one cannot be.
@@ -12,7 +12,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 /// How far ahead of the clock a time stamp may be, us: a sample taken while the tick was beginning.
 pub const STAMP_LEAD_MAX: u64 = 1_000;
 
-/// How far from the origin a pose may be, m: single precision tells millimetres apart up to here.
+/// How far from the origin a pose may be, m: single precision resolves millimetres up to here.
 pub const DISTANCE_MAX: f32 = 10_000.0;
 
 /// How far from one the length of a pose's quaternion may be; closer ones are normalised.
@@ -21,7 +21,7 @@ pub const LENGTH_TOLERANCE: f32 = 0.05;
 /// A value and when it was true, microseconds of the vehicle's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamped<T> {
-    /// What.
+    /// The value.
     pub value: T,
     /// When, us.
     pub time: u64,
@@ -41,7 +41,7 @@ impl<T> Stamped<T> {
     }
 }
 
-/// What the inertial measurement unit says, body frame.
+/// A sample of the inertial measurement unit, body frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImuSample {
     /// omega, rad/s.
@@ -50,7 +50,7 @@ pub struct ImuSample {
     pub specific_force: Vector3<f32>,
 }
 
-/// What the pose source says. Whoever holds one holds numbers that can be.
+/// A checked pose: its numbers are finite and within range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     position: Vector3<f32>,
@@ -67,7 +67,7 @@ pub enum Velocity {
     Body(Vector3<f32>),
 }
 
-/// Why numbers are no pose.
+/// Why a pose is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PoseError {
     /// This field has a NaN or an infinity.
@@ -93,7 +93,7 @@ impl Pose {
     /// which is normalised.
     ///
     /// # Errors
-    /// Says which field is not finite, further than [`DISTANCE_MAX`], faster than [`SPEED_RANGE`], or no rotation.
+    /// Names the field that is not finite, further than [`DISTANCE_MAX`], faster than [`SPEED_RANGE`], or no rotation.
     pub fn new(position: Vector3<f32>, velocity: Velocity, attitude: Quaternion<f32>) -> Result<Self, PoseError> {
         let (Velocity::World(given) | Velocity::Body(given)) = velocity;
         within(&position, DISTANCE_MAX, "position")?;

@@ -1,7 +1,7 @@
 //! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
-//! `without_pose` levels and goes down, and takes a flight up again; `delivered` says what the rotors give of the
-//! commands.
+//! `without_pose` levels and goes down, and takes a flight up again; `delivered` estimates delivered over commanded
+//! thrust.
 //!
 //! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady
 //! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
@@ -157,7 +157,7 @@ impl<'m> Chain<'m> {
         Ok(())
     }
 
-    /// Makes for a place `height` above the one it is at, m.
+    /// Takes off to `height`, m, above the present place.
     ///
     /// # Errors
     /// Names the field the governor refuses.
@@ -184,7 +184,7 @@ impl<'m> Chain<'m> {
         (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
     }
 
-    /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be said again each
+    /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be called each
     /// tick. Both at once would brake as slowly as the vertical bounds have it.
     pub fn come_down(&mut self, speed: f32, may_brake: bool) {
         if may_brake && self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {

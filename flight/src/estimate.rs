@@ -1,7 +1,7 @@
-//! What is flown: the estimator's state, what it is worth, and since when.
+//! The state that is flown: the estimator's, its health, and since when it is healthy.
 //!
 //! Once a tick the estimator is given what the IMU did and the poses that came. On the ground it follows poses that
-//! have jumped and agree among themselves; in flight it does not: such poses are refused as long as they lie.
+//! have jumped and agree among themselves; in flight it refuses them.
 
 use super::exchange::Inputs;
 use super::rules::COASTING_MAX;
@@ -21,7 +21,7 @@ pub(super) struct Estimate {
     /// The state at the tick's instant; none without an IMU, or where the estimator has lost it.
     pub state: Option<EstimatedState>,
     pub health: Health,
-    /// What became of this tick's poses: the last refusal, or else what the last was taken for.
+    /// The verdict on this tick's poses: the last refusal, or else what the last was taken for.
     pub pose: Option<Result<Taken, Rejected>>,
     /// Where the state has jumped since the last tick: the one it would be, had it not.
     pub jumped_from: Option<State>,
@@ -64,13 +64,12 @@ impl<'m> Estimation<'m> {
         Self { estimator, counts: (0, 0), jumps: 0, last: None, since: None }
     }
 
-    /// How fast it climbs, m/s, as far as the accelerometer knows better than poses that lie.
+    /// The vertical speed, m/s, in the short term by the accelerometer rather than by poses that may lie.
     pub fn climb(&self) -> f32 {
         self.estimator.climb()
     }
 
-    /// Poses lie: what they have taught of the sensors since lift-off counts only where a sensor may have
-    /// changed so.
+    /// Poses lie: biases estimated since lift-off count only as far as a sensor may have changed.
     pub fn distrust(&mut self) {
         self.estimator.distrust();
     }
@@ -80,7 +79,7 @@ impl<'m> Estimation<'m> {
     pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool, given_up: bool) -> Estimate {
         let Inputs { increments, poses, now, .. } = *inputs;
         self.estimator.is_airborne(airborne);
-        // What ends in a time to come did not happen.
+        // An increment that ends in the future is invalid.
         for increment in increments.iter().filter(|increment| is_fresh(increment.end, u64::MAX, now)) {
             self.estimator.imu(increment);
         }

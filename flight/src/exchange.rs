@@ -42,7 +42,7 @@ pub struct Inputs<'a> {
     pub increments: &'a [Increment],
     /// The newest body rate, low-passed, rad/s, as the sensor has it.
     pub body_rate: Option<Stamped<Vector3<f32>>>,
-    /// What is, or was within the last second, wrong with gyro or accelerometer.
+    /// The fault of gyro or accelerometer, present or within the last second.
     pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.
     pub poses: &'a [Stamped<PoseMeasurement>],
@@ -54,7 +54,7 @@ pub struct Inputs<'a> {
     pub disarm: bool,
     /// Whether the kill switch is on.
     pub killed: bool,
-    /// Whether something is under way that may stall the processor: flash that is written.
+    /// Whether a flash write is under way, which may stall the processor.
     pub is_busy: bool,
     /// Whether the clock's accuracy is unknown: its crystal does not run.
     pub is_clock_doubtful: bool,
@@ -110,7 +110,7 @@ pub struct Outcome {
     pub home: Option<Vector3<f32>>,
     /// Whether the vehicle has left the ground where it was armed, and has not landed.
     pub is_airborne: bool,
-    /// Whether its motors were stopped in the air, and nothing says yet that it lies still.
+    /// Whether its motors were stopped in the air, and it may still fall.
     pub may_fall: bool,
     /// Whether the setpoint was accepted, where setpoints are flown; or why it begins no flight, where one is waited
     /// for.
@@ -119,9 +119,9 @@ pub struct Outcome {
     pub wants_setpoints: bool,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
-    /// What it is worth.
+    /// The estimate's health.
     pub health: Health,
-    /// What became of this tick's poses: the last refusal, or else what the last was taken for; none where none came,
+    /// The verdict on this tick's poses: the last refusal, or else what the last was taken for; none where none came,
     /// or where all of them wait for the IMU.
     pub pose: Option<Result<Taken, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.

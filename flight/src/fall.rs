@@ -1,6 +1,6 @@
 //! Whether a vehicle whose motors were stopped in the air may still fall.
 //!
-//! Nothing that falls is still for longer than a moment, so one that is still for a while lies somewhere.
+//! A falling vehicle is still for a moment at most, so one that stays still lies somewhere.
 
 use super::debounce::Debounce;
 use super::watch::{GROUND_DEBOUNCE, is_still};

@@ -12,7 +12,7 @@ fn turned(v: &Vector3<f32>, from: &Vector2<f32>, to: &Vector2<f32>) -> Vector3<f
     Vector3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z)
 }
 
-/// How far one may go from where, m.
+/// The place and its limits, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fence {
     home: Vector3<f32>,
@@ -25,7 +25,7 @@ impl Fence {
         Self { home: Vector3::zeros(), radius: settings.fence_radius, height: settings.fence_height }
     }
 
-    /// As wide and as high as other settings say, about the same place.
+    /// Takes radius and height from other settings, about the same place.
     pub fn choose(&mut self, settings: &FlightSettings) {
         *self = Self { home: self.home, ..Self::new(settings) };
     }
@@ -51,7 +51,7 @@ impl Fence {
         self.home = after.position + turned;
     }
 
-    /// Whether `position`, m, world, is inside. One that is made of no numbers is not.
+    /// Whether `position`, m, world, is inside. A NaN is not.
     pub fn contains(&self, position: &Vector3<f32>) -> bool {
         let away = position - self.home;
         away.xy().norm_squared() <= self.radius * self.radius && away.z <= self.height

@@ -1,20 +1,19 @@
 //! Flight: which of the law's outputs reach the motors, and when.
 //!
-//! - [`rules`]: the flight rules, a table of modes and transitions, with their time limits;
+//! - [`rules`]: the flight rules, a table of modes and transitions, with their timeouts;
 //! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
-//! - `permission`: what arming and turning a motor need; `motor`, `bench`: what is asked of one
-//!   motor while nothing else turns, and done with it;
+//! - `permission`: what arming and turning a motor need; `motor`, `bench`: the requests for one motor
+//!   while no other turns, and their output;
 //! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
-//! - `estimate`: what the [estimator](estimation::estimator) makes of a tick's increments and poses, and since when all
-//!   is well;
+//! - `estimate`: the [estimator](estimation::estimator)'s state in a tick, and how long it has been healthy;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `watch`: whether it follows, has landed, or lies on its back;
-//! - `fall`: whether a vehicle that was stopped in the air lies still again;
-//! - `fence`: how far it may go;
-//! - [`FlightSettings`]: what an operator may choose about failures;
+//! - `fall`: whether a vehicle whose motors were stopped in the air lies still again;
+//! - `fence`: the limits of position;
+//! - [`FlightSettings`]: the operator's settings for failures;
 //! - `trust`: whether a source of poses may still be believed;
-//! - `thrust_check`: whether the rotors give what they should;
+//! - `thrust_check`: delivered over commanded thrust, checked;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
 //!   are brought up, and how a vehicle without a pose goes down.
 //!
@@ -22,11 +21,11 @@
 //! thrusts within a second. A landing ends with the ground found and the motors stopped. A vehicle set down by its
 //! setpoint keeps turning its rotors until a command to land.
 //!
-//! The estimate is flown, never a pose: what a pose that lies does to a flight is what silence does. The estimator
-//! refuses it, says why, and goes on by IMU; the flight goes on with it for [`rules::COASTING_MAX`], then levels for
+//! The estimate is flown, never a pose: a wrong pose affects a flight as a missing one does. The estimator refuses it,
+//! reports why, and goes on by IMU. The flight goes on with it for [`rules::COASTING_MAX`], then levels for
 //! [`rules::LEVELLING_MAX`], then goes down. Poses that are believed again are flown at once. Where the estimate jumps,
-//! because the sender says that its frame has moved or because a lost body was found again, the reference jumps with
-//! it, and brakes from there: the vehicle does not lurch.
+//! because the sender reports a move of its frame or a lost body was found again, the reference jumps with it and
+//! brakes from there: the vehicle does not lurch.
 
 #![no_std]
 #![deny(unsafe_code)]

@@ -1,17 +1,16 @@
-//! The motion as a whole: what is left of it when the shaking of the rotors is taken away.
+//! The vehicle's motion without the vibration of its rotors, by a low-pass.
 //!
-//! What stands or lies is asked whether it moves, and rotors that are out of balance shake it while they turn. An
-//! average tells one from the other: each tick takes in a fifth of the new value, so that the average reaches nine
-//! tenths of a change after 0.1 s and keeps one eighth of a swing at 25 Hz. Accelerations shake most: theirs is the
-//! average of an average, which keeps one sixtieth. A hit at speed would stay in it for too long: an acceleration
-//! counts up to [`COUNTED`] only.
+//! Rotors out of balance vibrate a vehicle that stands or lies. A first-order low-pass, which takes in a fifth of each
+//! tick's value, reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25 Hz.
+//! Accelerations vibrate most: theirs is of second order, which passes one sixtieth. A hit at speed would stay in it
+//! for too long: an acceleration counts up to [`COUNTED`] only.
 
 use controller_core::math;
 use controller_core::state::State;
 use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
-/// What an average takes of each tick.
+/// The share of each tick's value that the low-pass takes in.
 const SHARE: f32 = 0.2;
 
 /// The greatest acceleration that counts along each axis, m/s^2. One tick of it leaves less in the average than wind

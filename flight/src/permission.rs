@@ -56,7 +56,7 @@ pub(super) fn to_hold(mode: Mode, must_land: bool) -> Result<(), Refusal> {
     }
 }
 
-/// Flying setpoints: from now on, or from arming on; not in place of a landing, which somebody has to end first.
+/// Flying setpoints: from now on, or from arming on; not in place of a landing, which a request has to end first.
 pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
     match mode {
         Mode::Landing => Err(Refusal::Landing),
@@ -65,8 +65,8 @@ pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
-/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and somebody
-/// at the other end of the link.
+/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and a
+/// ground station on the link.
 pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
     let faults = estimate.health.faults;
     // Without an IMU nothing else can be well.

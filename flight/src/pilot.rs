@@ -1,6 +1,6 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! `tick` is the order of it; `answers` says what is granted, `conditions` what the rules need to know.
+//! `tick` holds the order; `answers` grants requests, `conditions` evaluates the rules' inputs.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
@@ -35,10 +35,10 @@ pub struct Pilot<'m> {
     fall: Fall,
     fence: Fence,
     bench: Bench,
-    /// The newest setpoint that may be flown, and since when somebody wants setpoints flown, us.
+    /// The newest setpoint that may be flown, and since when flight by setpoints is requested, us.
     newest: Newest,
     wanted_since: Option<u64>,
-    /// Whether a vehicle without a pose was landing, or has been told to land: it does when there is one.
+    /// Whether a vehicle without a pose was landing, or was commanded to land: it lands once there is a pose.
     must_still_land: bool,
     /// Whether poses may still be believed in this flight.
     trust: Trust,
@@ -48,11 +48,11 @@ pub struct Pilot<'m> {
 }
 
 impl<'m> Pilot<'m> {
-    /// A pilot at boot for what the certificate said about a configuration, to tick every [`PERIOD`]; configuration
-    /// time. It flies on what `estimator` makes of the measurements; its governor and mixer lie in `memory`.
+    /// A pilot at boot for the verdict of the certificate on a configuration, to tick every [`PERIOD`]. It flies on the
+    /// state of `estimator`; its governor and mixer lie in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
-    /// never arms, and says why.
+    /// never arms, and reports why.
     #[must_use]
     pub fn new(
         certification: Result<&Certified, &Refused>,
@@ -104,7 +104,7 @@ impl<'m> Pilot<'m> {
         self.chain.as_ref().err().copied()
     }
 
-    /// Goes along where the estimate has jumped; in flight, whether that was possible.
+    /// Moves the reference along with a jump of the estimate; in flight, whether that was possible.
     fn follow(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
             (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
@@ -118,7 +118,7 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    /// What of the flight is to be acted on: a touchdown, a crash, a lost track, a battery.
+    /// What the watch detects: a touchdown, a crash, lost tracking, a low battery.
     fn observe(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
         if !self.mode.is_armed() {
             self.watch = Watch::default();
@@ -131,7 +131,7 @@ impl<'m> Pilot<'m> {
         seen
     }
 
-    /// Counts what speaks against the source of poses in this flight.
+    /// Counts the evidence against the source of poses in this flight.
     fn judge_poses(&mut self, estimate: &Estimate, seen: &Seen, now: u64) {
         if seen.lied {
             self.trust.give_up();
@@ -162,8 +162,8 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    /// Does what entering a mode takes. What a request and finding the pose again take is done where they are found
-    /// possible.
+    /// Prepares a mode that is entered. A request's preparation, and that of finding the pose again, is done where they
+    /// are granted.
     fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate, touched: bool) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {
@@ -172,7 +172,7 @@ impl<'m> Pilot<'m> {
         self.must_still_land |= transition.from == Mode::Landing;
         self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
-            self.watch.report_low();
+            self.watch.latch_low();
         }
         if transition.reason == Reason::LandingOver {
             self.trust.give_up();

@@ -28,7 +28,7 @@ estimation::worded! {
         MotorTestInterrupted = "Motor test stopped by another request",
         /// The motor test has had its time.
         MotorTestOver = "Motor test over",
-        /// Nobody wanted to fly for [`super::rules::IDLING_MAX`].
+        /// No flight was requested for [`super::rules::IDLING_MAX`].
         IdlingOver = "Disarmed: nothing commanded for 10 s",
         /// A take-off was requested and granted.
         TakeOffCommanded = "Taking off",
@@ -62,7 +62,7 @@ estimation::worded! {
         ImuDoubtful = "Stopped: IMU does not fit what was commanded",
         /// Poses are believed again.
         PoseRegained = "Pose regained: braking to hold position",
-        /// The same, of a vehicle that was landing or has been told to land.
+        /// The same, of a vehicle that was landing or was commanded to land.
         LandingResumed = "Pose regained: landing",
         /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
         DescendingOver = "Stopped: neither pose nor ground found in 30 s",
@@ -82,7 +82,7 @@ estimation::worded! {
         FenceBreached = "Outside the fence: landing",
         /// The vehicle does not follow its reference.
         TrackingLost = "Far from where it should be: landing",
-        /// The rotors do not give what the law asks for.
+        /// The rotors do not deliver the commanded wrench.
         Saturated = "Rotors at their limits for 1 s: landing",
         /// Control is late.
         Overrun = "Control late for 100 ms: landing",

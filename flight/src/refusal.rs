@@ -83,9 +83,9 @@ pub enum Refusal {
     NotInTheAir,
     /// A landing goes on until a hold request.
     Landing,
-    /// It goes down by the IMU alone, and knows of no place to hold or fly to.
+    /// It goes down by the IMU alone, without a position to hold or fly to.
     WithoutPose,
-    /// What made it land is still so.
+    /// The cause of its landing persists.
     MustLand,
     /// No setpoint that may be flown came in the last second.
     NoSetpoints,
@@ -99,9 +99,9 @@ pub enum Refusal {
     DisarmCommanded,
     /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
     ImuStale,
-    /// Gyro or accelerometer has failed, or had a moment ago.
+    /// Gyro or accelerometer fails, or did within a second.
     Imu(ImuFault),
-    /// The estimate is not healthy, for this before all.
+    /// The estimate is not healthy: its worst fault.
     Estimator(Fault),
     /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
     PosesUnsettled,

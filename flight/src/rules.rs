@@ -1,16 +1,15 @@
 //! The flight rules: a table of modes and transitions, and every time limit they use.
 //!
 //! Once a tick, the rows of the present mode are read from top to bottom and the first whose condition holds is taken:
-//! at most one transition a tick, and the order of the rows is the order of precedence. What the conditions mean is
-//! said at [`Condition`]; [`super::pilot`] works them out, and carries out what a mode means. Nothing else changes the
-//! mode.
+//! at most one transition a tick, and the order of the rows is the order of precedence. [`Condition`]
+//! defines the conditions; [`super::pilot`] evaluates them, and carries out a mode. Nothing else changes the mode.
 //!
-//! - [`mode`](Mode): what the vehicle is doing, with the picture of how the modes hang together;
+//! - [`mode`](Mode): what the vehicle is doing, with the diagram of the modes;
 //! - `condition`: what a transition can depend on;
 //! - `table`: the rows.
 //!
-//! What is lost in flight ends in the mildest way that what is left allows: holding, with an estimate and somebody who
-//! may come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
+//! A failure in flight ends in the mildest way that working sensors allow: holding, with an estimate and a link that may
+//! come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
 //! new arm request, with every check made anew.
 
 mod condition;
@@ -30,7 +29,7 @@ pub const COASTING_MAX: u64 = 1_000_000;
 
 /// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of
 /// its own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without
-/// rates nothing tells where up is.
+/// rates the attitude is unknown.
 pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
 
 /// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.
@@ -43,7 +42,7 @@ pub const DESCENDING_MAX: u64 = 30_000_000;
 pub const BRAKING_MAX: u64 = 5_000_000;
 
 /// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
-/// as the fence reaches, and so many seconds besides. Then its poses are no guide to the ground.
+/// as the fence reaches, and so many seconds besides. Then its poses do not lead to the ground.
 pub const LANDING_PATIENCE: f32 = 2.0;
 /// See [`LANDING_PATIENCE`], s.
 pub const LANDING_REST: f32 = 12.0;
@@ -55,11 +54,11 @@ pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
 /// How long an armed vehicle may idle on the ground, us, or fly setpoints that do not lift it.
 pub const IDLING_MAX: u64 = 10_000_000;
 
-/// How long setpoints that were asked for are wanted by a vehicle that is not armed, us: a client asks for them and
-/// arms within a second or two, and who arms later may not know that anybody did.
+/// How long a request for setpoints is kept while disarmed, us: a client requests them and arms within a second or two.
+/// An operator who arms later may not know of the request.
 pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
 
-/// How long a battery must be low before anything is done, us: it sags under a burst of thrust.
+/// How long a battery must be low before the vehicle lands, us: it sags under a burst of thrust.
 pub const BATTERY_DEBOUNCE: u64 = 3_000_000;
 
 /// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not

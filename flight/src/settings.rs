@@ -1,9 +1,8 @@
-//! What an operator may choose about failures, each with a default that a first flight can live with.
+//! The operator's settings for failures, with defaults for a first flight.
 
 use controller_core::math;
 
-/// Limits and answers to failures. Numbers outside what their fields say are brought to the nearest that is allowed;
-/// one that is not a number is the default.
+/// Limits and answers to failures. Numbers out of range are clamped; a NaN becomes the default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightSettings {
     /// How high a take-off goes that names no height, m, in [0.5, 50].

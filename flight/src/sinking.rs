@@ -6,8 +6,8 @@ use estimation::estimator::EstimatedState;
 /// The least speed of a descent by the IMU alone, m/s.
 const DESCENT: f32 = 0.6;
 
-/// What the vertical speed by the accelerometer alone may be wrong by, m/s in a second: an accelerometer's bias. After
-/// poses that lied, the lean that they may have taught as well: 8 degrees.
+/// The error of the vertical speed by the accelerometer alone, m/s in a second: an accelerometer's bias. After poses
+/// that lied, an attitude error of 8 degrees as well.
 const DRIFT: f32 = 0.05;
 const DRIFT_AFTER_LIES: f32 = 0.2;
 
@@ -43,12 +43,12 @@ impl Sinking {
         Self { speed, lied, ..Self::default() }
     }
 
-    /// Something has stopped it.
+    /// The vehicle was stopped.
     pub fn stop(&mut self) {
         self.speed = 0.0;
     }
 
-    /// One tick of `period`, s, on; the vertical speed, m/s. Poses that come meanwhile say nothing of it.
+    /// One tick of `period`, s, on; the vertical speed, m/s. Poses that come meanwhile do not count.
     pub fn advance(&mut self, estimated: &EstimatedState, period: f32) -> f32 {
         let now = estimated.gained;
         self.speed += now - self.last.unwrap_or(now);

@@ -1,21 +1,21 @@
-//! What a flight looks like: whether the vehicle follows its reference, has landed, or lies on its back.
+//! Detectors: whether the vehicle follows its reference, has landed, or lies on its back.
 //!
 //! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer
 //!   than a vehicle does that turns round in the air: where wind carries it upwards faster than it may go down, say.
-//! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now asks for less thrust
+//! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now commands less thrust
 //!   than carries it. Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not.
-//!   Rotors that give 8 % more than the law knows would look the same: with the law's thrust scale and force they do
+//!   Rotors that deliver 8 % more than commanded would look the same: with the law's thrust scale and force they do
 //!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
 //!   false speed.
-//! - *The IMU is doubtful*, where nothing else is left: it feels another force than the rotors are asked for, and not
-//!   as the ground's, or the vehicle does not come upright, or turns on.
+//! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the
+//!   ground's, or the vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a
 //!   vehicle turns or falls.
 //! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
 //!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
 //!
-//! Rotors out of balance shake what stands: whether it moves, turns or feels a force is asked of the
-//! [average](super::low_pass). A jerk is over too soon for that.
+//! Rotors out of balance vibrate a standing vehicle: its motion and force are therefore
+//! [low-passed](super::low_pass). A jerk is over too soon for that.
 
 use super::chain::{Chain, Flown};
 use super::debounce::Debounce;
@@ -26,7 +26,7 @@ use super::tilt::up;
 use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
-/// The speed, m/s, at which poses that lie may show a vehicle that stands.
+/// The speed, m/s, that poses which lie may show of a standing vehicle.
 const LIED: f32 = 0.5;
 
 /// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
@@ -36,8 +36,8 @@ const SINKING: f32 = 0.2;
 const FOLLOWING: f32 = 0.15;
 
 /// How long after a jerk a landing may have met the ground, and for how long after the first jerk a vehicle without a
-/// pose takes each for the ground, us: as long as it bounces, and so short that what only shakes keeps count of its
-/// speed.
+/// pose takes each for the ground, us: as long as it bounces, and so short that vibration alone does not stop the
+/// summing of its speed.
 const TOUCHED_DEBOUNCE: u64 = 3_000_000;
 const TOUCHING_DEBOUNCE: u64 = 200_000;
 
@@ -74,7 +74,7 @@ const JERKING: u64 = 30_000;
 /// The upward acceleration of a hit, m/s^2.
 const HIT: f32 = 10.0;
 
-/// The vertical acceleration that the law asks for at most on the ground, m/s^2, after a jerk and without one; and the
+/// The greatest vertical acceleration that the law commands on the ground, m/s^2, after a jerk and without one; and the
 /// greatest that is measured instead.
 const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
@@ -94,7 +94,7 @@ const UNEXPECTED: f32 = 4.0;
 const TURNING: f32 = 4.0;
 const TURNING_DEBOUNCE: u64 = 800_000;
 
-/// How long an IMU may not fit, us.
+/// How long the IMU may disagree, us.
 const DOUBT_DEBOUNCE: u64 = 300_000;
 
 /// The cosine of the least tilt of a crash, 60 degrees.
@@ -103,7 +103,7 @@ const LYING_COSINE: f32 = 0.5;
 /// The least part of theta~ across, of a vehicle that lies beside where the law wants it: tan(30 degrees / 4).
 const LYING_BESIDE: f32 = 0.131_652_5;
 
-/// Since when what holds.
+/// The detectors' memory.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Watch {
     tracking: Debounce,
@@ -128,11 +128,11 @@ pub(super) struct Watch {
     lied: Debounce,
     /// What poses had added to the vertical speed before something stopped it, m/s.
     taught: f32,
-    /// Whether a low battery has caused its landing: a flight that goes on after it is the pilot's choice.
-    low_is_reported: bool,
+    /// Whether a low battery has caused a landing: a flight that goes on after it is the pilot's choice.
+    low_is_latched: bool,
 }
 
-/// What is so.
+/// The detectors' outputs.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Seen {
     pub tracking_lost: bool,
@@ -150,7 +150,7 @@ pub(super) struct Seen {
     pub imu_doubtful: bool,
 }
 
-/// What there is to look at in a tick: the estimate as it is on average, and what the last tick flew.
+/// The inputs of a tick: the low-passed estimate, and what the last tick flew.
 struct Look<'a> {
     mode: Mode,
     state: Option<&'a EstimatedState>,
@@ -170,7 +170,7 @@ impl Look<'_> {
         within(&state.state.velocity, STILL.0) && flown.reference.position.z > state.state.position.z + HELD_DOWN
     }
 
-    /// Whether the rotors do not give what the law asks for.
+    /// Whether the rotors do not deliver the commanded wrench.
     fn is_inexact(&self) -> bool {
         self.mode.flies() && self.chain.is_some_and(|chain| !chain.is_exact())
     }
@@ -198,7 +198,7 @@ impl Look<'_> {
         !within(&chain.unexpected(flown, state), STRUCK)
     }
 
-    /// What the IMU feels beside the rotors, m/s^2, world; and the vertical acceleration that the law asks for.
+    /// The force that the IMU measures beside the rotors', m/s^2, world; and the commanded vertical acceleration.
     fn feels(&self) -> Option<(Vector3<f32>, f32, &EstimatedState)> {
         let (Some(state), Some(chain), Some(flown)) = (self.state, self.chain, self.flown) else { return None };
         Some((chain.unexpected(flown, state), chain.commanded_acceleration(flown), state))
@@ -231,21 +231,21 @@ impl Look<'_> {
         let (after_a_jerk, without, measured) = HELD_UP;
         let falling = if jerked { after_a_jerk } else { without };
         let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
-        self.feels().filter(|_| may).is_some_and(|(_, asked, state)| {
+        self.feels().filter(|_| may).is_some_and(|(_, commanded, state)| {
             let moves = match self.mode {
                 Mode::Landing => self.moves_landing(),
                 _ => !hit && self.chain.is_some_and(Chain::moves),
             };
             !moves
                 && self.chain.is_some_and(Chain::sinks)
-                && asked < falling
+                && commanded < falling
                 && state.acceleration.z.abs() <= measured
                 && within(&state.acceleration, if touched { LEANING } else { measured })
                 && within(&state.state.angular_velocity, STILL.1)
         })
     }
 
-    /// Whether the IMU feels what the rotors cannot be the reason of.
+    /// Whether the IMU measures a force that the rotors do not explain.
     fn is_unexpected(&self) -> bool {
         self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED))
     }
@@ -259,7 +259,7 @@ impl Look<'_> {
 }
 
 impl Watch {
-    /// Looks at what the last tick led to.
+    /// Runs every detector on the last tick.
     pub fn tick(
         &mut self,
         mode: Mode,
@@ -298,7 +298,7 @@ impl Watch {
             touches,
             lied,
             crashed: self.lying.holds_for(look.lies(), GROUND_DEBOUNCE, now),
-            battery_low: self.low.holds_for(is_low, BATTERY_DEBOUNCE, now) && !self.low_is_reported,
+            battery_low: self.low.holds_for(is_low, BATTERY_DEBOUNCE, now) && !self.low_is_latched,
             battery_critical: self.critical.holds_for(battery == Battery::Critical, BATTERY_DEBOUNCE, now),
             imu_doubtful: doubtful || turning,
             overrun: self.late.holds_for(is_late, OVERRUN_DEBOUNCE, now),
@@ -325,7 +325,7 @@ impl Watch {
     }
 
     /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and
-    /// that is none of a vehicle which stands or goes on down.
+    /// that neither a standing nor a descending vehicle has.
     fn is_taught(&mut self, jerked: bool, look: &Look, state: Option<&EstimatedState>) -> bool {
         let (Some(state), Some(flown)) = (state, look.flown) else { return false };
         let speed = state.state.velocity.z;
@@ -337,7 +337,7 @@ impl Watch {
         (taught - self.taught).abs() > TAUGHT && !possible.contains(&speed)
     }
 
-    /// Whether something has stopped it that may be the ground: without a pose nothing says otherwise later.
+    /// Whether something has stopped it that may be the ground: without a pose that is not revised later.
     fn has_jerked(&self, mode: Mode, now: u64) -> bool {
         let recently = |last: u64| now.saturating_sub(last) < TOUCHED_DEBOUNCE;
         self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
@@ -352,9 +352,9 @@ impl Watch {
         look.mode.is_guided() && jumps && recently
     }
 
-    /// A low battery has been acted on.
-    pub fn report_low(&mut self) {
-        self.low_is_reported = true;
+    /// Latches that a low battery has been acted on.
+    pub fn latch_low(&mut self) {
+        self.low_is_latched = true;
     }
 }
 
@@ -364,7 +364,7 @@ pub(super) fn is_still(state: &EstimatedState) -> bool {
     within(&state.state.velocity, speed) && within(&state.state.angular_velocity, rate)
 }
 
-/// Whether a vector is at most so long. One that is made of no numbers is not.
+/// Whether a vector is at most so long. A NaN is not.
 fn within(vector: &Vector3<f32>, most: f32) -> bool {
     vector.norm_squared() <= most * most
 }

@@ -1,5 +1,4 @@
-//! Where an estimate begins: a candidate, at first, that must prove itself; at rest or in motion, for the first time or
-//! again.
+//! How an estimate begins: with a candidate that must prove itself, at rest or in motion, for the first time or again.
 //!
 //! A candidate is a filter that starts at a pose and knows no velocity. It fuses the poses that come, through the same
 //! gates as any filter, and may pass over [`MISSES_MAX`] in a row; one more is the start of a new candidate. After
@@ -17,8 +16,8 @@
 //! at position    0.1 + 0.1 T + 0.15 T^2 m
 //! ```
 //!
-//! Otherwise the poses lie, or their frame has moved without a report. Nothing here decides which:
-//! [`super::Estimator::adopt`] is for those who know.
+//! Otherwise the poses lie, or their frame has moved without a report. Nothing here decides which: the caller of
+//! [`super::Estimator::adopt`] does.
 
 use super::filter::{Biases, Filter};
 use super::history::History;

@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 /// The greatest NIS of a pose that is believed: chi-square with 3 degrees of freedom, 1 - 1e-5.
 pub const GATE: f32 = 25.9;
 
-/// The greatest residuals that are an error of estimation and no other matter, m and rad (as error vectors).
+/// The greatest residuals that may be errors of estimation, m and rad (as error vectors).
 const POSITION_RESIDUAL_MAX: f32 = 1.0;
 const ATTITUDE_RESIDUAL_MAX: f32 = 0.52;
 
@@ -57,7 +57,7 @@ pub(super) struct Biases {
 }
 
 impl Biases {
-    /// None that is known, within the deviations of the settings.
+    /// Zero, with the deviations of the settings.
     pub fn unknown(settings: &Settings) -> Self {
         let variance = |deviation: f32| Matrix3::from_diagonal_element(deviation * deviation);
         let parameters = settings.parameters();
@@ -142,7 +142,7 @@ impl Filter {
     /// Weighs a pose that was true at the horizon.
     ///
     /// # Errors
-    /// Where it is too far from the state to be an error of estimation, or a covariance is none.
+    /// Where it is too far from the state to be an error of estimation, or a covariance is invalid.
     pub(super) fn test(&self, pose: &PoseMeasurement, settings: &Settings) -> Result<Tested, Rejected> {
         let parameters = settings.parameters();
         let (position, attitude) = settings.deviations(pose.deviations);
@@ -175,11 +175,10 @@ impl Filter {
         })
     }
 
-    /// Takes a pose into account that has been weighed: position, attitude, velocity, each with what the last one
-    /// taught.
+    /// Fuses a weighed pose: position, attitude, velocity, one after the other.
     ///
     /// # Errors
-    /// Where a covariance is none; the filter is then of no use.
+    /// Where a covariance is invalid; the filter is then of no use.
     pub(super) fn fuse(&mut self, pose: &PoseMeasurement, tested: &Tested) -> Result<(), Rejected> {
         let (apart, _) = self.residuals(pose);
         self.take(Part::Position, &apart, &tested.position.noise)?;

@@ -1,5 +1,4 @@
-//! What the estimate is worth: how long it has been without poses, how uncertain it is, and whether its sensors are
-//! plausible.
+//! The estimate's health: the age of its last pose, its uncertainty, and whether its sensors are plausible.
 //!
 //! Uncertainties are those at the horizon, which is as far back as the last pose, or as the history goes where none
 //! comes. Means of NIS run over the last 50 poses that were weighed (an exponential average, each NIS cut at
@@ -17,10 +16,10 @@ use nalgebra::Matrix3;
 pub const COASTING_AFTER: u64 = 300_000;
 
 /// Deviations beyond which an estimate is not good enough to fly on: m, m/s, rad (each the root of a trace). As with
-/// poses, not for longer than [`COASTING_AFTER`]: what a shock has left out is known again after a few poses.
+/// poses, not for longer than [`COASTING_AFTER`]: a few poses restore what a shock has left out.
 const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
-/// The mean NIS beyond which poses are noisier than they say: by a factor of 1.7, or not white.
+/// The mean NIS beyond which poses are noisier than their covariance: by a factor of 1.7, or not white.
 pub const NIS_MEAN_MAX: f32 = 9.0;
 
 /// What a single NIS counts for at most.
@@ -29,7 +28,7 @@ pub const NIS_MAX: f32 = 50.0;
 /// One over the poses that a mean runs over.
 const AVERAGING: f32 = 0.02;
 
-/// What is wrong, as a set.
+/// A set of faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faults(u8);
 
@@ -53,14 +52,14 @@ impl Faults {
     }
 }
 
-/// What the estimate is worth at an instant.
+/// The estimate's health at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Health {
-    /// What is wrong; none of it where the estimate may be flown.
+    /// Its faults; none where the estimate may be flown.
     pub faults: Faults,
     /// The age of the last pose that was fused, us; none before the first.
     pub pose_age: Option<u64>,
-    /// What became of the last pose that did not have to wait.
+    /// The verdict on the last pose that did not have to wait.
     pub last: Option<Result<Taken, Rejected>>,
     /// Poses that were believed, and not.
     pub counts: (u32, u32),
@@ -95,7 +94,7 @@ impl Statistics {
         Self { jumps: self.jumps, ..Self::NONE }
     }
 
-    /// What became of a pose that was true at `time`, us.
+    /// Takes the verdict on a pose that was true at `time`, us.
     pub fn record(&mut self, verdict: Result<Taken, Rejected>, time: u64) {
         if verdict == Ok(Taken::Waiting) {
             return;
@@ -112,14 +111,14 @@ impl Statistics {
         }
     }
 
-    /// What `filter` is like after a pose.
+    /// Takes the uncertainty of `filter` after a pose.
     pub fn look(&mut self, filter: &Filter) {
         if is_certain(deviations(filter)) {
             self.certain_at = filter.time;
         }
     }
 
-    /// The filter is another one: what the poses were to the last says nothing of it.
+    /// The filter is another one: the last one's innovations do not count.
     pub fn forget_nis(&mut self) {
         self.nis = Self::NONE.nis;
     }
@@ -132,7 +131,7 @@ impl Statistics {
 }
 
 impl Health {
-    /// Of an estimate that there is not.
+    /// The health without an estimate.
     pub const NONE: Self = Self {
         faults: Faults(0).with(Fault::NotStarted, true).with(Fault::ImuStale, true),
         pose_age: None,

@@ -1,4 +1,4 @@
-//! What the IMU did lately: increments in a ring, whole or in part, for poses that come late.
+//! The recent history of the IMU: increments in a ring, whole or in part, for poses that come late.
 //!
 //! An increment spans [start, end], us of the vehicle's clock; each begins where the last one ended. Inside one, body
 //! rate and specific force count as constant. A part f of it, taken from anywhere inside, is then
@@ -22,7 +22,7 @@ const SLOW: f32 = 0.05;
 /// Increments that are kept: 320 ms of them at 5 ms.
 pub const CAPACITY: usize = 64;
 
-/// Which of the IMU's sensors were at full scale: there the truth is beyond what they show, nobody knows how far.
+/// Which of the IMU's sensors were at full scale: the truth is beyond, by an unknown amount.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Clipped {
     /// The gyro.
@@ -97,7 +97,7 @@ impl Increment {
     }
 }
 
-/// Whether a vector can have been measured: finite, and far from where a square would not be.
+/// Whether a vector can have been measured: finite, and small enough to be squared.
 pub(super) fn is_measurable(vector: &Vector3<f32>) -> bool {
     vector.iter().all(|component| component.abs() < 1e4)
 }

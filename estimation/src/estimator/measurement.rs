@@ -4,7 +4,7 @@
 use crate::measurement::Pose;
 use nalgebra::{Quaternion, Vector3};
 
-/// A checked pose with what its sender says about it.
+/// A checked pose with its sender's velocity, deviations, quality and reset counter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseMeasurement {
     /// p, m, world.
@@ -15,7 +15,7 @@ pub struct PoseMeasurement {
     pub(super) velocity: Option<Vector3<f32>>,
     /// Deviations of position (m) and attitude (rad) on each axis; those of the settings if none.
     pub(super) deviations: Option<(f32, f32)>,
-    /// Whether the sender says that its tracking has failed.
+    /// Whether the sender reports failed tracking.
     pub(super) failed: bool,
     /// Counts the times that the sender's frame has moved.
     pub(super) resets: u8,
@@ -54,7 +54,7 @@ impl PoseMeasurement {
     }
 
     /// The same with the sender's deviations of position (m) and attitude (rad). Numbers that are not finite or
-    /// negative say nothing (MAVLink: NaN for unknown), and the settings' stay.
+    /// negative are unknown (MAVLink: NaN), and the settings' stay.
     #[must_use]
     pub fn deviations(self, position: f32, attitude: f32) -> Self {
         let says = |deviation: f32| deviation.is_finite() && deviation >= 0.0;
@@ -73,7 +73,7 @@ impl PoseMeasurement {
         Self { resets, ..self }
     }
 
-    /// Whether it says the same of the vehicle as `other`, to the last bit.
+    /// Whether its values equal those of `other`, to the last bit.
     pub(super) fn is_identical(&self, other: &Self) -> bool {
         self.position == other.position && self.attitude == other.attitude
     }

@@ -46,7 +46,7 @@ pub(super) struct Motion {
     pub turn_rate: Vector3<f32>,
     /// h, s.
     pub seconds: f32,
-    /// What of it was beyond the sensors' ranges.
+    /// Which sensors were at full scale.
     pub clipped: Clipped,
 }
 

@@ -1,4 +1,4 @@
-//! What the sensors are like: noise, biases, and what is believed of a pose.
+//! The sensors' noise and biases, and the limits on poses.
 //!
 //! ```text
 //! gyro            omega_m = omega + b_g + n_g       b_g' = w_g
@@ -18,7 +18,7 @@
 use controller_core::error::{ParameterError, Reason, require, require_finite, require_positive};
 use controller_core::vehicle::Vehicle;
 
-/// What the sensors are like. SI units, radians.
+/// The sensors' noise and limits. SI units, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatorParameters {
     /// Density of n_g, rad/s/sqrt(Hz).
@@ -72,8 +72,7 @@ impl EstimatorParameters {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings(EstimatorParameters);
 
-/// The least deviation of a position and of an attitude that single precision tells from zero with room to spare, m and
-/// rad.
+/// The least deviation of a position and of an attitude that single precision resolves with room to spare, m and rad.
 const DEVIATION_LEAST: f32 = 1e-4;
 
 /// The greatest of any deviation or density.
@@ -126,8 +125,8 @@ impl Settings {
         &self.0
     }
 
-    /// The deviations of a pose that says `given` of itself (position m, attitude rad): never better than the usual
-    /// ones. What claims to be more exact than it is would be refused for its own noise.
+    /// The deviations of a pose that reports `given` (position m, attitude rad), at least the settings'. A pose that
+    /// claims to be more exact than it is would be refused for its own noise.
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {

@@ -1,6 +1,6 @@
-//! The stream of poses, judged by itself: what its sender says of it, its time stamps, and whether it moves at all.
+//! The stream of poses, judged by itself: its sender's quality, its time stamps, and whether it moves at all.
 //!
-//! - A pose whose sender says that tracking has failed is refused.
+//! - A pose whose sender reports failed tracking is refused.
 //! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those
 //!   forgotten.
 //! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved

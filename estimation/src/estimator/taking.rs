@@ -1,4 +1,4 @@
-//! What becomes of a pose: fused at the horizon, or before it; a frame that moved; a candidate; or refused.
+//! The verdict on a pose: fused at the horizon, or before it; a frame that moved; a candidate; or refused.
 //!
 //! ```text
 //!                     no filter ──────────────────────────────────────────> candidate ─ proven ─> started
@@ -108,7 +108,7 @@ impl Estimator {
         filter.fuse(&pose.value, &tested)
     }
 
-    /// Whether the sender says that its frame has moved, and can be believed.
+    /// Whether the sender reports a move of its frame, and can be believed.
     fn is_moved_frame(&mut self, pose: &Stamped<Pose>) -> bool {
         let (resets, since) = *self.frame.get_or_insert((pose.value.resets, 0));
         resets != pose.value.resets && pose.time.saturating_sub(since) >= REBASE_EVERY
@@ -180,7 +180,7 @@ impl Estimator {
         });
     }
 
-    /// Whether up is where the accelerometer says, as far as one increment can tell: of a vehicle at rest.
+    /// Whether up is where the accelerometer says, by one increment: of a vehicle at rest.
     fn check_up(&self, pose: &Pose) -> Result<(), Rejected> {
         let Some(newest) = self.history.newest().filter(|newest| !self.moves(newest)) else { return Ok(()) };
         let force = rotated(&pose.attitude, &newest.delta_velocity);
@@ -190,15 +190,15 @@ impl Estimator {
 
     /// Whether an increment is of a vehicle that moves, beyond any noise at rest.
     pub(super) fn moves(&self, increment: &Increment) -> bool {
-        /// rad/s: a plausible bias, which nobody knows before the first pose, and six times a BMI088's noise over 5 ms.
+        /// rad/s: a plausible bias, unknown before the first pose, and six times a BMI088's noise over 5 ms.
         const RATE: f32 = 0.045;
         /// m/s^2: the same.
         const ACCELERATION: f32 = 0.5;
         self.differs(increment, RATE, ACCELERATION)
     }
 
-    /// Whether an increment is of a sensor that says anything but what it does at perfect rest: in the air a real one
-    /// has its noise, and an exact one that is simulated says as little as its poses.
+    /// Whether an increment differs from that of perfect rest. In the air a real sensor has its noise; a simulated
+    /// one without noise may repeat itself as its poses do.
     pub(super) fn stirs(&self, increment: &Increment) -> bool {
         /// rad/s: less than a BMI088's noise over 5 ms.
         const RATE: f32 = 0.002;

@@ -1,17 +1,17 @@
-//! What became of a pose, and what is wrong with the estimate, in words that fit a MAVLink STATUSTEXT (50 characters).
+//! The verdict on a pose, and the faults of the estimate, in words that fit a MAVLink STATUSTEXT (50 characters).
 
 worded! {
     /// What a pose was taken for.
     pub enum Taken {
         /// Fused.
         Fused = "Poses: believed",
-        /// Kept until the IMU's increments reach its time; [`super::Health::last`] tells then.
+        /// Kept until the IMU's increments reach its time; then [`super::Health::last`] has the verdict.
         Waiting = "Poses: waiting for the IMU",
         /// One of the first: the estimate begins when enough of them agree.
         Aligning = "Poses: aligning",
         /// The estimate begins with it.
         Started = "Poses: the estimate begins",
-        /// The sender's frame had moved, and it says so: the estimate is in the new frame.
+        /// The sender reported a move of its frame: the estimate is in the new frame.
         Rebased = "Poses: the sender's frame has moved",
         /// The body was lost and is found again, no further away than coasting explains: the estimate was reset to it.
         Refound = "Poses: body found again, estimate reset to it",
@@ -21,9 +21,9 @@ worded! {
 worded! {
     /// Why a pose was not believed.
     pub enum Rejected {
-        /// The sender says that its tracking has failed.
+        /// The sender reports failed tracking.
         Quality = "Pose refused: its sender says tracking failed",
-        /// Its time is still to come.
+        /// Its time is in the future.
         Future = "Pose refused: its time is still to come",
         /// Its time was that of an earlier pose.
         Repeated = "Pose refused: a pose of this time was here before",
@@ -49,7 +49,7 @@ worded! {
         Gravity = "Pose refused: up is elsewhere for accelerometer",
         /// Its source has been refused too often in this flight.
         GivenUp = "Pose refused: its source is given up",
-        /// The filter had lost its numbers, and begins anew.
+        /// The filter had become non-finite, and begins anew.
         NotFinite = "Pose refused: the estimate lost its numbers",
     }
 }
@@ -67,8 +67,7 @@ impl Taken {
 }
 
 impl Rejected {
-    /// Whether it was refused for what it says of the vehicle: not for its time, nor for what its sender thinks of it,
-    /// nor because there was nothing to compare it with.
+    /// Whether it was refused for its values: not for its time or quality, nor for want of an estimate.
     #[must_use]
     pub const fn is_lie(self) -> bool {
         match self {
@@ -92,10 +91,10 @@ impl Rejected {
 }
 
 worded! {
-    /// What is wrong with the estimate, the worst first.
+    /// The faults of the estimate, the worst first.
     #[derive(PartialOrd, Ord)]
     pub enum Fault {
-        /// There is none yet, or the IMU's data broke off.
+        /// There is no estimate yet, or the IMU's data broke off.
         NotStarted = "Estimator: not started, no consistent poses",
         /// No IMU increment for [`super::EXTRAPOLATION_MAX`].
         ImuStale = "Estimator: no IMU",
@@ -105,9 +104,9 @@ worded! {
         Uncertain = "Estimator: too uncertain",
         /// The gyro's bias is not plausible.
         GyroBias = "Estimator: gyro bias not plausible",
-        /// The accelerometer's bias is not plausible, or up is elsewhere for the poses.
+        /// The accelerometer's bias is not plausible, or poses and accelerometer disagree on up.
         AccelerometerBias = "Estimator: accelerometer and poses disagree on up",
-        /// The poses are noisier than they are said to be.
+        /// The poses are noisier than their covariance.
         Inconsistent = "Estimator: poses noisier than they say",
     }
 }

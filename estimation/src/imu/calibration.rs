@@ -1,5 +1,4 @@
-//! What turns a sensor's numbers into the body's: the gyro's bias, the accelerometer's offsets and scales, and how
-//! level it sits.
+//! The calibration of a sensor: the gyro's bias, the accelerometer's offsets and scales, and the tilt at which it sits.
 //!
 //! ```text
 //! omega = L (omega_m - b)          f = L S (f_m - o)          S diagonal, L a small rotation
@@ -79,7 +78,7 @@ impl Calibration {
     pub fn levelled(&self, rest: &Rest) -> Result<Self, NotLevel> {
         let force = (rest.specific_force - self.offset).component_mul(&self.scale);
         let up = force / math::sqrt(force.norm_squared());
-        // Without gravity there is no direction up: not a number, and not level.
+        // Without gravity the direction up is NaN, and not level.
         let level = up.z >= LEVEL_COSINE;
         if !level {
             return Err(NotLevel);

@@ -19,13 +19,13 @@ use nalgebra::Vector3;
 /// A sample that has been corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// When what it shows was so, us.
+    /// The time of the motion it shows, us.
     pub time: u64,
     /// Body rate, rad/s.
     pub rate: Vector3<f32>,
     /// Specific force, m/s^2; none where the accelerometer did not answer.
     pub force: Option<Vector3<f32>>,
-    /// What of it is beyond its range.
+    /// Which sensors were at full scale.
     pub clipped: Clipped,
 }
 

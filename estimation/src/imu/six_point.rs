@@ -25,7 +25,7 @@ const SCALE_ERROR_MAX: f64 = 0.04;
 /// Newton's steps: four suffice from anywhere within those.
 const STEPS: usize = 6;
 
-/// A calibration that was not.
+/// Why a calibration failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SixPointError {
@@ -77,7 +77,7 @@ impl SixPoint {
     /// Offset (m/s^2) and scale on each axis.
     ///
     /// # Errors
-    /// If a face is missing, or what comes out is no accelerometer.
+    /// If a face is missing, or no accelerometer of this kind has the result.
     pub fn solve(&self, gravity: f32) -> Result<(Vector3<f32>, Vector3<f32>), SixPointError> {
         let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = self.faces else {
             return Err(SixPointError::FaceMissing);

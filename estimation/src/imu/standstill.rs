@@ -7,7 +7,7 @@
 //! - the halves' means agree: a slow rotation moves gravity between them, by 9.81 m/s^2 times the angle;
 //! - the mean rate is one that a bias can be: the data sheet allows a BMI088 1 deg/s.
 //!
-//! A rotation of less than that about the vertical passes for a bias. Nothing at standstill could tell the two apart.
+//! A rotation of less than that about the vertical passes for a bias. Nothing at standstill distinguishes the two.
 
 use core::fmt;
 use nalgebra::Vector3;
@@ -27,7 +27,7 @@ const FORCE_DRIFT: f32 = 0.034;
 /// The greatest bias on an axis, rad/s: 2 deg/s, twice the data sheet's.
 const RATE_MEAN: f32 = 0.035;
 
-/// What a sensor says that stands still, before calibration.
+/// The means of a sensor at standstill, before calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
     /// The mean rate, rad/s.
@@ -40,11 +40,11 @@ pub struct Rest {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Moved {
-    /// Rates or forces spread by more than noise, or are no numbers.
+    /// Rates or forces spread by more than noise, or are not finite.
     Shaken,
     /// Gravity was elsewhere in the second half.
     Turning,
-    /// Its mean rate is no bias.
+    /// Its mean rate is too large for a bias.
     TooFast,
 }
 
@@ -78,8 +78,8 @@ pub struct Standstill {
 }
 
 impl Standstill {
-    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, says what they were, and
-    /// begins anew.
+    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, returns their means,
+    /// and begins anew.
     pub fn take(&mut self, rate: &Vector3<f32>, force: &Vector3<f32>) -> Option<Result<Rest, Moved>> {
         let first = *self.first.get_or_insert(Rest { angular_velocity: *rate, specific_force: *force });
         let (rate, force) = (rate - first.angular_velocity, force - first.specific_force);

@@ -1,9 +1,9 @@
 //! Invalid samples: what a failed sensor delivers.
 //!
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two
-//! triples in a row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale says that the
-//! truth is beyond. So may a lesser one of the accelerometer that leaps: it is what the sensor's own filter leaves of a
-//! peak at full scale. Shaking differs from that by its slope, not by its size.
+//! triples in a row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale hides a
+//! larger truth. So may a lesser one of the accelerometer that leaps: the sensor's own filter flattens a peak at full
+//! scale. Vibration differs from that by its slope, not by its size.
 
 use crate::estimator::Clipped;
 use nalgebra::Vector3;
@@ -14,21 +14,21 @@ pub const STUCK_AFTER: u8 = 20;
 /// Samples at full scale in a row that are a fault: a shock is over sooner.
 pub const SATURATED_AFTER: u8 = 5;
 
-/// What of a range counts as its end.
+/// The share of a range that counts as its end.
 const FULL_SCALE: f32 = 0.999;
 
 worded! {
     /// What is wrong with the sensor, the worst first.
     pub enum ImuFault {
-        /// A sample that is no number: left out.
+        /// A sample that is not finite: left out.
         NotFinite = "IMU: sample is not a number",
-        /// The gyro says the same thing over and over.
+        /// The gyro repeats one value.
         GyroStuck = "IMU: gyro stuck",
         /// The gyro has been at full scale.
         GyroSaturated = "IMU: gyro at full scale",
-        /// The accelerometer does not answer: its last word counts on.
+        /// The accelerometer does not answer: its last value is held.
         AccelerometerSilent = "IMU: accelerometer does not answer",
-        /// The accelerometer says the same thing over and over.
+        /// The accelerometer repeats one value.
         AccelerometerStuck = "IMU: accelerometer stuck",
         /// The accelerometer has been at full scale.
         AccelerometerSaturated = "IMU: accelerometer at full scale",
@@ -40,13 +40,13 @@ worded! {
 }
 
 impl ImuFault {
-    /// Whether the gyro is what fails.
+    /// Whether the gyro fails.
     #[must_use]
     pub const fn is_of_the_gyro(self) -> bool {
         matches!(self, Self::GyroStuck | Self::GyroSaturated)
     }
 
-    /// Whether the accelerometer is what fails.
+    /// Whether the accelerometer fails.
     #[must_use]
     pub const fn is_of_the_accelerometer(self) -> bool {
         matches!(self, Self::AccelerometerSilent | Self::AccelerometerStuck | Self::AccelerometerSaturated)
@@ -90,7 +90,7 @@ impl Seen {
     }
 }
 
-/// Both sensors, as they have been.
+/// The history of both sensors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Watch {
     ranges: Ranges,
@@ -112,7 +112,7 @@ impl Watch {
         Clipped { gyro: self.gyro.saturated > 0, accelerometer: self.accelerometer.saturated > 0 || self.leapt }
     }
 
-    /// The worst that can be said of the sensors, given one more sample, before calibration.
+    /// The sensors' worst fault after one more sample, before calibration.
     pub fn see(&mut self, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) -> Option<ImuFault> {
         let finite = rate.iter().chain(force.into_iter().flatten()).all(|component| component.is_finite());
         if !finite {

@@ -1,4 +1,4 @@
-//! The rotors' thrust against the commands, as the law's estimates know it.
+//! Delivered against commanded thrust, by the law's estimates.
 
 use super::{Chain, Flown};
 use crate::tilt::up;
@@ -11,8 +11,7 @@ impl Chain<'_> {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
-    /// The rotors' thrust over the commanded thrust, by what the law has learnt in steady flight; 1 if it learns
-    /// nothing.
+    /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 if it estimates nothing.
     ///
     /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
     /// takes up a steady lack of thrust.
@@ -27,7 +26,7 @@ impl Chain<'_> {
         estimated.acceleration + Vector3::z() * (self.gravity - self.vertical_force()) - asked
     }
 
-    /// The vertical acceleration that a thrust means with the force that the law knows of, m/s^2.
+    /// The vertical acceleration of the commanded thrust and the estimated force, m/s^2.
     pub fn commanded_acceleration(&self, flown: &Flown) -> f32 {
         flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity + self.vertical_force()
     }

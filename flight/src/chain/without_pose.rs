@@ -109,7 +109,7 @@ impl Chain<'_> {
         self.reference.velocity.z < 0.0
     }
 
-    /// Without a pose, the vehicle has met what stops it: it stands.
+    /// Without a pose, the vehicle was stopped: it stands.
     pub fn stop_sinking(&mut self) {
         self.sinking.stop();
     }

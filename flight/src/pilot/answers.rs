@@ -23,7 +23,7 @@ impl<'m> Pilot<'m> {
         require(!inputs.motors_fail, Refusal::MotorsFail)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
-        // An accelerometer that has failed says what it said last, which is what one at rest says.
+        // A failed accelerometer repeats its last value, which looks like rest.
         inputs.imu_fault.map_or(Ok(()), |fault| Err(Refusal::Imu(fault)))?;
         permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
     }
@@ -35,8 +35,8 @@ impl<'m> Pilot<'m> {
         chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(error.field()))
     }
 
-    /// Setpoints are no longer wanted where anything else is asked for but arming, or somebody stops the motors, or
-    /// they have been wanted on the ground for too long.
+    /// Ends a request for flight by setpoints: at any other request but arming, when the motors are stopped, or on the
+    /// ground after a timeout.
     pub(super) fn take_back(&mut self, inputs: &Inputs) {
         let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
         let stops = inputs.disarm || inputs.killed;
@@ -56,7 +56,7 @@ impl<'m> Pilot<'m> {
         // Requests in the tick of a disarm command came before it.
         require(!inputs.disarm, Refusal::DisarmCommanded)?;
         match request {
-            // It is so already: a client whose answer was lost asks again.
+            // It is so already: a client whose answer was lost repeats its request.
             Request::Arm if self.mode.is_armed() => require(!inputs.killed, Refusal::Killed),
             Request::Arm => {
                 permission::to_turn_motors(self.mode)?;
@@ -146,15 +146,15 @@ impl<'m> Pilot<'m> {
     }
 
     /// Whether a setpoint may be flown.
-    #[inline(never)] // it would be copied to where setpoints are heard, asked for and taken
+    #[inline(never)] // or its three callers would each get a copy
     pub(super) fn check(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
-        // First, because what is no place is outside of any fence.
+        // First, because a position that is not finite is outside of any fence.
         setpoint.check().map_err(|error| Refusal::Setpoint(error.field()))?;
         require(self.fence.allows(setpoint), Refusal::OutsideFence)
     }
 
     /// Remembers a setpoint, or why it is refused: that one does not keep a stream alive. The fence is placed by
-    /// arming, so before that it is not asked.
+    /// arming, so it is not checked before.
     pub(super) fn keep_setpoint(&mut self, inputs: &Inputs) {
         let Some(setpoint) = &inputs.setpoint else { return };
         match self.check(setpoint) {
@@ -165,7 +165,7 @@ impl<'m> Pilot<'m> {
         }
     }
 
-    /// Gives the governor a setpoint where setpoints are flown; where somebody waits for a flight, why it does not
+    /// Gives the governor a setpoint where setpoints are flown; where a requested flight waits for one, why it does not
     /// begin.
     pub(super) fn fly_setpoint(&mut self, inputs: &Inputs, estimate: &Estimate) -> Option<Result<(), Refusal>> {
         let setpoint = inputs.setpoint?;

@@ -1,4 +1,4 @@
-//! What the rules need to know in a tick.
+//! The conditions of the rules, evaluated in a tick.
 
 use super::Pilot;
 use crate::chain::Chain;
@@ -24,7 +24,7 @@ impl Pilot<'_> {
     ) -> Conditions {
         let granted = inputs.request.filter(|_| answer == Some(Ok(())));
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
-        // What was granted since goes before a landing that could not go on.
+        // A later request overrides a landing that could not go on.
         self.must_still_land &= granted.is_none_or(|request| request == Request::Land);
         let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now).is_ok();
         let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
@@ -60,7 +60,7 @@ impl Pilot<'_> {
         let may =
             believed && (elapsed < LEVELLING_MAX || !self.trust.lied_until(self.since.saturating_add(LEVELLING_MAX)));
         if let (true, Ok(chain), Some(EstimatedState { state, .. })) = (may, &self.chain, &estimate.state) {
-            // What cannot hold above the ground lands.
+            // A vehicle that cannot hold above the ground lands.
             self.must_still_land |= !chain.stops_within(state.position.z - self.fence.home().z, state);
         }
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
@@ -119,6 +119,6 @@ impl Pilot<'_> {
 
     /// Whether the ground station has been silent for so long, us.
     pub(super) fn is_silent(&self, inputs: &Inputs, patience: u64) -> bool {
-        !inputs.ground_station.is_some_and(|heard| is_fresh(heard, patience.saturating_sub(1), inputs.now))
+        !inputs.ground_station.is_some_and(|last| is_fresh(last, patience.saturating_sub(1), inputs.now))
     }
 }

@@ -27,7 +27,7 @@ fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, 
     (estimate, outcome)
 }
 
-/// A tick in which nothing comes but the ground station's word.
+/// A tick in which only the ground station's heartbeat comes.
 fn quiet(now: u64) -> Inputs<'static> {
     Inputs { now, ground_station: Some(now), ..Inputs::default() }
 }
@@ -40,7 +40,7 @@ fn pilot() -> Pilot<'static> {
     Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory)
 }
 
-/// Taking off, with the number of the last tick, and its estimate with an attitude that is none.
+/// Taking off, with the number of the last tick, and its estimate with an attitude of NaNs.
 fn armed() -> (Pilot<'static>, u64, Estimate) {
     let mut pilot = pilot();
     for tick in 1..SETTLING {
@@ -189,12 +189,12 @@ fn a_landing_stays_requested_when_the_pose_is_regained_until_a_hold() {
     assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));
     assert_eq!(next(&mut pilot, &lost, Some(Request::Land)), None);
     assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandingResumed)));
-    // Asked for in the very tick in which the pose is lost.
+    // Requested in the very tick in which the pose is lost.
     pilot.trust = Trust::default();
     assert_eq!(next(&mut pilot, &found, Some(Request::Hold)), Some((Mode::Holding, Reason::HoldCommanded)));
     assert_eq!(next(&mut pilot, &lost, Some(Request::Land)), Some((Mode::Descending, Reason::PoseLost)));
     assert_eq!(next(&mut pilot, &found, None), Some((Mode::Landing, Reason::LandingResumed)));
-    // Who holds no longer lands.
+    // A vehicle that holds no longer lands.
     pilot.trust = Trust::default();
     assert_eq!(next(&mut pilot, &found, Some(Request::Hold)), Some((Mode::Holding, Reason::HoldCommanded)));
     assert_eq!(next(&mut pilot, &lost, None), Some((Mode::Descending, Reason::PoseLost)));

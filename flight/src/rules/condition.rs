@@ -56,7 +56,7 @@ estimation::listed! {
         ImuDoubtful,
         /// Poses are believed again, and the governor has started from the estimate.
         PoseRegained,
-        /// The same, of a vehicle that was landing when it lost them, or has been told to land since.
+        /// The same, of a vehicle that was landing when it lost them, or was commanded to land since.
         PoseRegainedToLand,
         /// Descending has lasted [`super::DESCENDING_MAX`].
         DescendingOver,

@@ -148,8 +148,8 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
     let landed = |change: fn(&mut EstimatedState)| {
         let mut estimated = at(0.0);
         let mut chain = descending(&estimated);
-        let asked = chain.commanded_acceleration(chain.flown().unwrap());
-        assert!(asked < HELD_UP.1, "{asked} m/s^2");
+        let commanded = chain.commanded_acceleration(chain.flown().unwrap());
+        assert!(commanded < HELD_UP.1, "{commanded} m/s^2");
         change(&mut estimated);
         seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE)).landed
     };
@@ -180,25 +180,25 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         tick(&mut chain, &estimated, Mode::Descending, descends);
         estimated.acceleration.z = 0.0;
         tick(&mut chain, &estimated, then, descends);
-        // As long as the law asks for something in between of what is on the ground.
+        // As long as the law commands something in between, of what is on the ground.
         for _ in 0..3_000 {
             let seen = tick(&mut chain, &estimated, Mode::Descending, true);
-            let asked = chain.commanded_acceleration(chain.flown().unwrap());
-            if asked < HELD_UP.1 {
+            let commanded = chain.commanded_acceleration(chain.flown().unwrap());
+            if commanded < HELD_UP.1 {
                 return false;
             }
             if seen.landed {
                 return true;
             }
         }
-        panic!("the law never asks for less");
+        panic!("the law never commands less");
     };
     assert!(landed(true, 5.5, Mode::Descending) && !landed(true, 4.5, Mode::Descending));
     assert!(!landed(false, 5.5, Mode::Descending), "it was only levelled");
     assert!(!landed(true, 5.5, Mode::Holding), "a jerk of an earlier descent");
 }
 
-/// What is seen in the last of so many ticks on the ground, at a speed that is none, after an upward acceleration.
+/// What is seen in the last of so many ticks on the ground, at a speed of NaN, after an upward acceleration.
 fn seen_after(jerk: f32, ticks: u64) -> Seen {
     let mut chain = descending(&at(0.0));
     let (mut watch, mut last, mut estimated) = (Watch::default(), Seen::default(), at(0.0));
@@ -228,7 +228,7 @@ fn a_low_battery_is_reported_until_it_is_acted_on() {
     };
     assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_DEBOUNCE));
     assert!(look(&mut watch, BATTERY_DEBOUNCE));
-    watch.report_low();
+    watch.latch_low();
     assert!(!look(&mut watch, BATTERY_DEBOUNCE + PERIOD));
     assert!(!look(&mut watch, 9 * BATTERY_DEBOUNCE));
 }

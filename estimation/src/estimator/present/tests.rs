@@ -22,7 +22,7 @@ fn shaken(frequency: f32) -> (f32, f32) {
     for start in (0..1_000_000).step_by(1_000) {
         let (before, last) = (along(start), along(start + H));
         let present = Present::of(&last, Some(&before), &Vector3::zeros());
-        left = left.max((speed(last.end) - present.shaking.x).abs());
+        left = left.max((speed(last.end) - present.vibration.x).abs());
         force = force.max(present.force.x.abs() / (TAU * frequency));
     }
     (left, force)
@@ -39,7 +39,7 @@ fn a_vibrating_body_is_attenuated_as_the_table_states() {
 }
 
 #[test]
-fn of_a_shaking_the_slow_force_keeps_less_than_a_twentieth() {
+fn the_slow_force_keeps_less_than_a_twentieth_of_a_vibration() {
     for frequency in [70.0, 100.0, 130.0] {
         let speed = |time: u64| (TAU * frequency * time as f32 * 1e-6 + 0.5).sin();
         let (mut slow, mut most) = (None, 0.0_f32);
@@ -59,7 +59,7 @@ fn a_steady_acceleration_passes_the_low_pass_in_full() {
     let slow = slow_force(Some(&slow_force(None, &before)), &last);
     assert!((slow - push / 5e-3).norm() < 1e-5);
     for present in [Present::of(&last, Some(&before), &slow), Present::of(&last, None, &slow)] {
-        assert!((present.force - push / 5e-3).norm() < 1e-5 && present.shaking.norm() < 1e-7, "{present:?}");
+        assert!((present.force - push / 5e-3).norm() < 1e-5 && present.vibration.norm() < 1e-7, "{present:?}");
     }
 }
 
@@ -86,7 +86,7 @@ fn a_force_of_the_world_stays_one_while_the_body_turns() {
         attitude *= whole;
         let (wanted, found) = (attitude.inverse() * world, Present::of(&last, before.as_ref(), slow.as_ref().unwrap()));
         assert!((found.force - wanted).norm() < 0.01 * wanted.norm(), "{} {wanted}", found.force);
-        assert!(found.shaking.norm() < 0.1 * wanted.norm() * 5e-3, "{}", found.shaking);
+        assert!(found.vibration.norm() < 0.1 * wanted.norm() * 5e-3, "{}", found.vibration);
         before = Some(last);
     }
 }
