@@ -26,11 +26,11 @@ impl Clock for Jumping {
     }
 }
 
-/// A data-ready pin that rises when asked, a little before whoever waits for it wakes up, or never.
+/// A data-ready pin that rises when waited for, a little before the waiting task wakes up, or never.
 pub struct Pin {
     /// Whether it rises.
     pub rises: Rc<Cell<bool>>,
-    /// How much later who waits wakes up, us.
+    /// How much later the waiting task wakes up, us.
     pub late: u64,
     /// The time.
     pub clock: Jumping,

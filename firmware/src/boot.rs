@@ -5,7 +5,7 @@
 //!
 //! It takes two to six seconds on a Cortex-M4F (350 to 930 million instructions: double precision is software there),
 //! and more of the stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration
-//! boots as well: it answers, tests motors, and never arms, and says which inequality fails.
+//! boots as well: it answers, tests motors, never arms, and names the inequality that fails.
 
 use crate::configuration;
 use crate::outputs::Outputs;
@@ -119,7 +119,7 @@ fn pilot(
     place.pilot.init_with(|| Pilot::new(certification, limits, settings, estimator, memory))
 }
 
-/// The numbers of every inequality that decides, and the verdict. `host-sim certify` says what they mean.
+/// The numbers of every inequality that decides, and the verdict. `host-sim certify` explains them.
 #[cfg(target_os = "none")]
 fn log(certification: &Result<Certified, Refused>) {
     defmt::info!("scenario {=str}", configuration::NAME);

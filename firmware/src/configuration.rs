@@ -20,5 +20,5 @@ pub fn embedded() -> Result<Configuration, ParameterError> {
     built()
 }
 
-/// What is said of a scenario without rotors.
+/// The error for a scenario without rotors.
 pub const NO_ROTORS: ParameterError = ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) };

@@ -28,6 +28,6 @@ pub async fn send(line: &mut impl Write, clock: &impl Clock, limit: u64, frame: 
             }
         }
     };
-    // Whoever sends goes on with the next frame either way.
+    // The sender goes on with the next frame either way.
     let _ = within(clock, limit, all).await;
 }

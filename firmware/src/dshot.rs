@@ -1,7 +1,7 @@
 //! DShot300: from motor commands to the pulse widths that a timer's four channels put out.
 //!
-//! A frame is 16 bits, most significant first: 11 of value, one that asks for telemetry (set in words alone: they are
-//! not believed without), four of checksum. Value 0 is the stop command, 1 to 47 are words to a controller whose motor
+//! A frame is 16 bits, most significant first: 11 of value, one that requests telemetry (set in words alone: they are
+//! ignored without), four of checksum. Value 0 is the stop command, 1 to 47 are words to a controller whose motor
 //! stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a second, high for 3/8 of it if zero and for 6/8
 //! if one. [`Waveform`] holds one frame for each of the four channels, one row a bit, in the order in which the timer's
 //! burst transfer wants them.

@@ -1,4 +1,4 @@
-//! The order of a board's last acts, whatever went wrong: stop the motors, say why, keep them stopped while that is
+//! The order of a board's last acts, whatever went wrong: stop the motors, report why, keep them stopped while that is
 //! fetched.
 //!
 //! Saying why comes second because it may fail: a panic in the middle of logging makes the logger panic again. Whatever
@@ -6,10 +6,10 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Stop frames before anything is said: controllers may miss some, and want a few in a row.
+/// Stop frames before anything is reported: controllers may miss some, and want a few in a row.
 pub const FRAMES: usize = 10;
 
-/// Stop frames while what was said is fetched.
+/// Stop frames while the report is fetched.
 pub const LAST_FRAMES: usize = 200;
 
 /// Whether the last acts have begun.
@@ -22,7 +22,7 @@ impl Ending {
         Self(AtomicBool::new(false))
     }
 
-    /// Acts, the first time: `stop` sends so many stop frames, `say` says why.
+    /// Acts, the first time: `stop` sends so many stop frames, `say` reports why.
     pub fn act(&self, stop: impl Fn(usize), say: impl FnOnce()) {
         if !self.0.swap(true, Ordering::Relaxed) {
             stop(FRAMES);
@@ -55,9 +55,9 @@ mod tests {
     fn a_panic_while_reporting_is_not_reported_again() {
         let (acts, ending) = (RefCell::new(Vec::new()), Ending::new());
         let stop = |frames| acts.borrow_mut().push(format!("stop {frames}"));
-        let said_again = || panic!("said again");
+        let reported_again = || panic!("said again");
         // As on a board: a panic in there comes back to the same acts, and a restart follows them.
-        ending.act(stop, || ending.act(stop, said_again));
+        ending.act(stop, || ending.act(stop, reported_again));
         assert_eq!(*acts.borrow(), ["stop 10", "stop 200"]);
     }
 }

@@ -1,4 +1,4 @@
-//! What the tasks ask of a board: narrow traits, one for each thing that can fail on its own.
+//! A board's peripherals: narrow traits, one for each part that can fail on its own.
 //!
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.

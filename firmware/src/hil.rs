@@ -1,15 +1,15 @@
-//! Hardware in the loop: a simulator takes the motors' commands and answers with what the sensors would say.
+//! Hardware in the loop: a simulator takes the motors' commands and answers with sensor samples.
 //!
 //! It can be turned on while the motors are stopped ([`SelectedMotors`]) and stays on until reboot: the motors' own
 //! outputs carry stop, and their commands go to the simulator.
 //!
 //! | message | way | what |
 //! |---|---|---|
-//! | HIL_ACTUATOR_CONTROLS | out, one a tick | its time; commands 0 to 1 in the rotors' order; armed unless told to stop |
+//! | HIL_ACTUATOR_CONTROLS | out, one a tick | its time; commands 0 to 1 in the rotors' order; armed unless stopped |
 //! | ODOMETRY | in | a pose, as from any source of poses; may come late, may be left out |
 //! | HIL_SENSOR | in | gyro and accelerometer; as many of them as the simulator likes, in order; taken as a sensor's: [`Flow`] |
 //!
-//! The time of either answer is when what it says is true, by the vehicle's clock: the simulator adds to the time of a
+//! The time of either answer is that of its values, by the vehicle's clock: the simulator adds to the time of a
 //! command. The HIL_SENSOR that is true a period after the last command ends the exchange; the simulator then stands
 //! still until the next one. Ten of them a tick are a sensor at 1 kHz, and one a tick will do. So the two run in
 //! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in
@@ -47,13 +47,13 @@ const SENDING_MAX: u64 = 8_000;
 /// Bytes taken from the line at once.
 const CHUNK: usize = 64;
 
-/// How long the line may be silent before it is asked again, us.
+/// The timeout of a read of the line, us.
 const SILENCE: u64 = 100_000;
 
-/// Pause before the line is asked again, us.
+/// Pause before the line is read again, us.
 const RETRY: u64 = 1_000;
 
-/// What a simulator must know: accelerometer and gyro, all axes.
+/// What a simulator must send: accelerometer and gyro, all axes.
 const INERTIAL: HilSensorUpdatedFlags = HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_XACC
     .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_YACC)
     .union(HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_ZACC)
@@ -110,7 +110,7 @@ impl<M: RawMutex> Hil<M> {
         (active && time <= commanded + PERIOD).then_some(time)
     }
 
-    /// The sensors have said what they say at `time`, us.
+    /// The sensors' sample of `time`, us, has come.
     fn answered(&self, time: u64) {
         self.state.lock(|cell| {
             let state = cell.get();
@@ -125,7 +125,7 @@ impl<M: RawMutex> Default for Hil<M> {
     }
 }
 
-/// A board's motors, or the simulator's. The change is made between a stop and a stop, whatever asked for it.
+/// A board's motors, or the simulator's. The change is made between two stops, whatever requested it.
 pub struct SelectedMotors<'a, M: RawMutex, P, C> {
     /// The board's own.
     pub pins: P,
@@ -209,7 +209,7 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
     }
 }
 
-/// The message that tells the simulator a command.
+/// The message with a command for the simulator.
 fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     let mut controls = [0.0; 16];
     let motors = command.value.levels();
@@ -222,7 +222,7 @@ fn controls(command: &Stamped<MotorCommand>) -> HIL_ACTUATOR_CONTROLS_DATA {
     HIL_ACTUATOR_CONTROLS_DATA { time_usec: command.time, flags, controls, mode }
 }
 
-/// What the sensors say at `time`, us, if the simulator knows all of it.
+/// The sensors' sample at `time`, us, if the simulator sent all of it.
 fn sample(message: &HIL_SENSOR_DATA, time: u64) -> Option<RawImu> {
     let &HIL_SENSOR_DATA { xacc, yacc, zacc, xgyro, ygyro, zgyro, fields_updated: known, .. } = message;
     let (force, rates) = (Vector3::new(xacc, yacc, zacc), Vector3::new(xgyro, ygyro, zgyro));

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! While a simulator stands in for the sensors, what these say counts for nothing. The first fault after good samples,
+//! While a simulator stands in for the sensors, these do not count. The first fault after good samples,
 //! and the first good sample after faults, are events; so is a second sensor that takes over, and one that does not
 //! answer on the ground.
 
@@ -97,7 +97,7 @@ fn finite(sample: RawImu) -> Result<RawImu, Fault> {
     if numbers { Ok(sample) } else { Err(Fault) }
 }
 
-/// What a task does whose sensor's parameters make no sense: it says so, and delivers nothing. Nothing arms without
+/// A task whose sensor's parameters are invalid: it reports that, and delivers nothing. Nothing arms without
 /// samples.
 pub async fn refuse<M: RawMutex>(shared: SamplesView<'_, M>, clock: &impl Clock, error: &ParameterError) -> ! {
     shared.announce(Event::new(Severity::Critical, error));

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A board's last acts put them there ([`crate::ending`]), and its next start takes them away.
-//! [`RestartReport`](crate::status::RestartReport) says them.
+//! [`RestartReport`](crate::status::RestartReport) sends them.
 
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
@@ -35,12 +35,12 @@ impl LastWords {
     #[must_use]
     pub fn new(words: impl fmt::Display) -> Self {
         let mut kept = Self { bytes: [0; LENGTH], length: 0 };
-        // An error says that it is full.
+        // An error means that it is full.
         let _ = write!(kept, "{words}");
         kept
     }
 
-    /// The words of a panic: where, and what it says.
+    /// The words of a panic: its place and message.
     #[must_use]
     pub fn panic(info: &PanicInfo<'_>) -> Self {
         let (file, line) = info.location().map_or(("", 0), |location| (location.file(), location.line()));

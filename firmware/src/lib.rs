@@ -11,23 +11,23 @@
 //! | [`dshot`] | motor commands as pulse widths |
 //! | [`ending`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
-//! | [`hardware`] | what the tasks ask of a board, as narrow traits |
+//! | [`hardware`] | a board's peripherals, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
 //! | [`imu`] | the IMU task: samples to increments, faults in words, calibration |
-//! | [`last_words`] | why the vehicle restarted by itself, kept over the reset and told |
+//! | [`last_words`] | why the vehicle restarted by itself, kept over the reset and reported |
 //! | [`link`] | MAVLink: frames, what comes in, what goes out |
 //! | [`mounting`] | how a sensor sits in the vehicle |
 //! | [`outputs`] | thrusts to motor commands |
 //! | `pace` | when a sensor has a new sample: by its edges, or by the clock |
 //! | [`parameters`] | the numbers that may be set from the ground, certified where that matters, kept in flash |
-//! | [`radio`] | a transmitter in somebody's hands: arming, kill switch, sticks |
+//! | [`radio`] | the operator's transmitter: arming, kill switch, sticks |
 //! | [`recorder`] | the last seconds of the last flight, in memory that outlives a reset |
 //! | [`redundant`] | two inertial sensors as one |
 //! | `registers` | registers of a sensor behind SPI, and powering it up through them |
 //! | [`repeat`] | motor commands sent again while they are young |
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
-//! | [`restart`] | the restart that a command asked for |
-//! | [`shared`] | what the tasks tell each other, every value with its time, and which task may write and read it |
+//! | [`restart`] | the commanded restart |
+//! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
 //! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`

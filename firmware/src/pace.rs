@@ -34,7 +34,7 @@ impl<P: DataReady> Pace<P> {
             if self.polled { (self.last + self.period).saturating_sub(now) } else { 2 * self.period + self.period / 2 };
         let edge = within(clock, limit, self.data_ready.rise()).await;
         if matches!(edge, Ok(Err(_))) {
-            // A pin that fails at once is none.
+            // A pin that fails at once counts as missing.
             clock.until(now + limit).await;
         }
         let edge = edge.ok().and_then(Result::ok);

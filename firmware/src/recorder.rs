@@ -63,7 +63,7 @@ impl<M: RawMutex> Recorder<M> {
         });
     }
 
-    /// The length of the last recording as a file, bytes; none while one is made, or if there is none.
+    /// The length of the last recording as a file, bytes; none while one is made, or without one.
     #[must_use]
     pub fn size(&self) -> Option<u32> {
         let count = self.with(|recording| (recording.left == 0).then(|| recording.ring.len())).flatten();

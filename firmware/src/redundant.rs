@@ -30,11 +30,11 @@ pub struct Redundant<First, Second> {
     first: First,
     second: Second,
     unit: Unit,
-    /// Whether the second answered when it was last asked.
+    /// Whether the second answered its last read.
     is_ready: bool,
     /// The first's samples.
     watch: Watch,
-    /// The first's faults in a row. One under way counts: whoever is tired of waiting for it drops it.
+    /// The first's faults in a row. One under way counts: a caller with a timeout drops it.
     faults: u8,
     /// The first's samples in a row that had no force.
     silent: u8,

@@ -3,8 +3,8 @@
 //! Many speed controllers refuse or stutter on less than 250 frames a second, and control decides a hundred times a
 //! second. In between, its last command is repeated every [`INTERVAL`]; a new one goes out at once. A command of
 //! [`COMMAND_AGE_MAX`] is repeated no more: without frames a speed controller stops its motor, so a control task that
-//! hangs silences the motors, whatever it said last. One that hangs without giving way keeps this task from running at
-//! all, which is silence too.
+//! hangs silences the motors, whatever it commanded last. One that hangs without giving way keeps this task from
+//! running at all, which is silence too.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors};

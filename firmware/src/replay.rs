@@ -38,7 +38,7 @@ pub const NUMBERS: usize = 13;
 /// Bytes of one recorded state.
 pub const RECORD: usize = 4 * NUMBERS;
 
-/// What the paper's Table I and Section VI say; `scenarios/paper.toml` has the same numbers.
+/// The numbers of the paper's Table I and Section VI; `scenarios/paper.toml` has the same numbers.
 const VEHICLE: VehicleParameters =
     VehicleParameters { mass: 0.46, inertia: Vector3::new(2.24e-3, 2.9e-3, 5.3e-3), gravity: 9.81 };
 const LIMITS: LimitParameters = LimitParameters { thrust_max: 7.0, torque_max: Vector3::new(0.5, 0.5, 0.5) };

@@ -1,4 +1,4 @@
-//! The restart that a command asked for, into the firmware or into a bootloader.
+//! The commanded restart, into the firmware or into a bootloader.
 //!
 //! The link refuses one while a motor turns or parameters are written; from its yes on arming is refused. The restart
 //! waits for the answer to go out, and for what was set just before to be saved.
@@ -7,13 +7,13 @@ use crate::hardware::{Clock, Restart};
 use crate::shared::{Event, RestartView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// How often somebody looks whether a restart is wanted, us.
+/// The interval of polls for a requested restart, us.
 const LOOK: u64 = 100_000;
 
 /// Time for the answer to go out, and for parameters to be saved, us.
 pub const GRACE: u64 = 500_000;
 
-/// Restarts when that was asked for, for ever where it does not end the program.
+/// Restarts on request, for ever where it does not end the program.
 pub async fn run<M: RawMutex, R: Restart>(shared: RestartView<'_, M>, clock: &impl Clock, machine: &mut R) -> ! {
     shared.can_restart().raise();
     if R::HAS_BOOTLOADER {

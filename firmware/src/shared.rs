@@ -1,9 +1,9 @@
-//! What the tasks tell each other, and which task may read and write what.
+//! The values that tasks exchange, and each task's access to them.
 //!
-//! Every value comes with the time it was taken, and every reader says how old is too old. A task has no reference to
+//! Every value has the time it was taken, and every reader sets its greatest age. A task has no reference to
 //! the [values](Values) but a view of them: [`ControlView`] is the control task's. A view has a method for each value
 //! that its task has to do with, and what comes from that method can be [read](Read), [written](Write) or
-//! [taken](Take), and no more than that. Every view can [announce](Values::announce) something to people.
+//! [taken](Take), and no more than that. Every view can [announce](Values::announce) an event to the operator.
 //!
 //! The tables in this file say which task may do what, and the views are made of them: [`Values`] shows for each value
 //! who writes and who reads it, and each view what its task can do.
@@ -13,7 +13,7 @@
 //! fn fly<M: RawMutex>(shared: firmware::shared::RadioView<'_, M>) {
 //!     shared.killed().put(true, 0);
 //!     let report = shared.report().get().unwrap();
-//!     shared.report().put(report.value, 0); // the radio does not say what control did
+//!     shared.report().put(report.value, 0); // the radio does not write the report
 //! }
 //! ```
 //!
@@ -79,10 +79,10 @@ pub const EVENTS: usize = 8;
 /// Replies that wait to be sent, and as many answers of control: more than there can be requests on their way.
 pub const REPLIES: usize = 8;
 
-/// Everything that passes between tasks, for whoever starts them.
+/// Everything that passes between tasks, for the code that starts them.
 pub struct Shared<M: RawMutex>(Values<M>);
 
-// Who there is.
+// The tasks.
 views! {
     /// What a board may do before its tasks begin.
     BootView = for_boot;
@@ -90,7 +90,7 @@ views! {
     ControlView = for_control;
     /// What the [IMU](crate::imu)'s task may do besides passing samples on.
     ImuView = for_imu;
-    /// What may be done by whoever has inertial samples: the IMU's task or a simulator's.
+    /// The task with inertial samples: the IMU's or a simulator's.
     SamplesView = for_samples;
     /// What a [simulator](crate::hil)'s tasks may do besides that.
     SimulatorView = for_simulator;
@@ -123,15 +123,15 @@ values! {
     pub increments: Queue<M, Increment, INCREMENTS> { Take: ControlView }
     /// Increments that were dropped for want of room.
     pub lost_increments: Count { Read: StatusView }
-    /// Calibrations that somebody asked for.
+    /// Requested calibrations.
     pub calibrations: Queue<M, Calibration, CALIBRATIONS> { Write: ReceiveView; Take: ImuView }
     /// Poses in the order in which they came, with the times at which they were true;
     /// [`estimator`](estimation::estimator) decides how old they may be. Without room a pose is dropped: the next will
     /// do.
     pub poses: Queue<M, Stamped<PoseMeasurement>, POSES> { Write: ReceiveView, SimulatorView; Take: ControlView }
-    /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` knows.
+    /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` gives.
     pub pose_delay_unknown: Flag { Write: ReceiveView; Read: ControlView }
-    /// Its time says when a ground station was last heard.
+    /// Its time is that of the last heartbeat of a ground station.
     pub ground_station: Latest<M, ()> { Write: ReceiveView, RadioView; Read: ControlView, StatusView }
     /// The newest setpoint. An unread one is replaced: only the last counts.
     pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView; Take: ControlView }
@@ -139,22 +139,22 @@ values! {
     pub requests: Requests<M> { Take: ControlView }
     /// Raised by a disarm command with force; no full queue can lose it. Raised with [`Values::request_disarm`].
     pub disarm: Flag { Take: ControlView }
-    /// Whether the kill switch of a radio was on when it was heard last; so it stays.
+    /// Whether the kill switch was on in the radio's last frame: latched through silence.
     pub killed: Latest<M, bool> { Write: RadioView; Read: ControlView }
-    /// Whether a radio's sticks fly, by its switch. So it stays when the radio falls silent, until somebody on the link
-    /// asks to fly setpoints.
+    /// Whether a radio's sticks fly, by its switch. Latched through silence until a client on the link
+    /// requests to fly setpoints.
     pub sticks: Latest<M, bool> { Write: RadioView, ReceiveView }
-    /// What the last control tick did. More views tell from it whether the vehicle [is armed](Values::is_armed) or a
+    /// What the last control tick did. More views read from it whether the vehicle [is armed](Values::is_armed) or a
     /// motor [turns](Values::is_turning).
     pub report: Latest<M, Report> { Write: ControlView; Read: RadioView, ReceiveView, TransmitView, StatusView }
-    /// The station on the link that armed the vehicle, by system and component, and when; none if somebody else did.
+    /// The station on the link that armed the vehicle, by system and component, and when; none if none did.
     pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView }
     /// Whose setpoints are flown, or will be once they come, by system and component; none without such a request on
     /// the link.
     pub setpoint_owner: SetpointOwner { Write: ControlView; Read: ReceiveView }
     /// Answers to requests. Put in with [`Values::answer`].
     pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
-    /// What the receiving half of the link gives the sending half to say. Put in with [`Values::reply`].
+    /// Replies from the receiving half of the link to the sending half. Put in with [`Values::reply`].
     pub replies: Queue<M, Reply, REPLIES> { Take: TransmitView }
     /// Events on their way to the ground station. Put in with [`Values::announce`], as the next two are.
     pub events: Queue<M, Event, EVENTS> { Take: TransmitView }
@@ -168,7 +168,7 @@ values! {
     pub outgoing: Signal<M, ()> { Write: CardView; Take: TransmitView }
     /// What the link received.
     pub traffic: Latest<M, Traffic> { Write: ReceiveView; Read: TransmitView, StatusView }
-    /// Where the local frame is on the globe, if a ground station has said so.
+    /// Where the local frame is on the globe, if a ground station has set it.
     pub origin: Latest<M, Origin> { Write: ReceiveView; Read: TransmitView }
     /// The battery, V. It counts for 1 s.
     pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView }
@@ -185,11 +185,11 @@ values! {
     pub restarting: Flag { Write: ReceiveView, RestartView }
     /// Raised with it where a bootloader is to start and not the firmware.
     pub into_bootloader: Flag { Write: ReceiveView; Read: RestartView }
-    /// Raised where somebody can restart the vehicle.
+    /// Raised where the board can restart.
     pub can_restart: Flag { Write: RestartView; Read: ReceiveView }
     /// Raised where there is a bootloader to start.
     pub has_bootloader: Flag { Write: RestartView; Read: ReceiveView }
-    /// Raised at boot where the clock's crystal does not run: nobody arms.
+    /// Raised at boot where the clock's crystal does not run: arming is refused.
     pub clock_doubtful: Flag { Write: BootView; Read: ControlView }
     /// Why the vehicle restarted by itself, where it did.
     pub last_words: Latest<M, LastWords> { Write: BootView; Read: StatusView }
@@ -198,13 +198,13 @@ values! {
         All: BootView, StorageView; Write: ImuView, ReceiveView;
         Read: ControlView, SimulatorView, TransmitView, StatusView
     }
-    /// Who may speak on the link. Its key is set with [`Values::set_signing`].
+    /// The link's signing. Its key is set with [`Values::set_signing`].
     pub signing: Signing<M> { All: StorageView; Read: ReceiveView, TransmitView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
     /// The memory card, where the board has one. Its task may be silent for [`CARD_SILENCE`].
     pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
-    /// What the link wants to know of the card's files.
+    /// The link's questions about the card's files.
     pub library: Library<M> { Write: CardView; Read: TransmitView }
     recent_texts: RecentTexts<M> {}
 }
@@ -236,14 +236,14 @@ offers! {
 
 impl<M: RawMutex> Values<M> {
     /// Hands control what the IMU did. Without room it is dropped and counted: the next one does not begin where the
-    /// last one in the queue ended, which is how control knows.
+    /// last one in the queue ended, by which control detects a gap.
     pub fn increment(&self, increment: Increment) {
         if self.increments.put(increment).is_err() {
             self.lost_increments.add();
         }
     }
 
-    /// Asks control for something, in place of what the link, or the radio, asked for of that kind. That is answered:
+    /// Sends a request to control, in place of the link's or the radio's last of that kind. That one is answered:
     /// as this is, if it is the same.
     pub fn request(&self, asked: Asked) {
         match (self.requests.put(asked), asked.order) {
@@ -264,7 +264,7 @@ impl<M: RawMutex> Values<M> {
 
     /// Answers a request that came by a command, and announces a refusal; setpoints that are granted are flown from now
     /// on. An answer that finds no room is dropped: its
-    /// sender asks again for want of one.
+    /// sender repeats its command.
     pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
         match result {
             Err(refusal) => self.announce(Event::Refused(refusal)),
@@ -284,7 +284,7 @@ impl<M: RawMutex> Values<M> {
         self.outgoing.signal(());
     }
 
-    /// Replies to somebody on the line. Without room the sender gets no reply, and asks again.
+    /// Replies to a sender on the line. Without room the sender gets no reply, and repeats its question.
     pub fn reply(&self, reply: Reply) {
         let _ = self.replies.put(reply);
         self.outgoing.signal(());
@@ -295,8 +295,8 @@ impl<M: RawMutex> Values<M> {
         self.recent_texts.pass(now);
     }
 
-    /// Tells people what they were not told within the last second: the ground station, the log and the card. Where a
-    /// queue is full the event is dropped and counted: what came first is the cause, what follows is mostly its
+    /// Announces an event, unless it was announced within the last second, to the ground station, the log and the card.
+    /// Where a queue is full the event is dropped and counted: what came first is the cause, what follows is mostly its
     /// consequence.
     pub fn announce(&self, event: Event) {
         if self.recent_texts.repeats(&event) {
@@ -315,19 +315,19 @@ impl<M: RawMutex> Values<M> {
         self.parameters.save_soon();
     }
 
-    /// Whether somebody has something to do during which nothing may begin to turn.
+    /// Whether a task is busy with work during which no motor may start.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         [&self.saving, &self.judging, &self.restarting].iter().any(|flag| flag.is_raised())
     }
 
-    /// Whether the last report says that the law drives the motors. Until there is a report, nothing does.
+    /// Whether the law drives the motors, by the last report; false before the first.
     #[must_use]
     pub fn is_armed(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed())
     }
 
-    /// Whether the last report says that a motor turns, or may within a tick.
+    /// Whether a motor turns, or may within a tick, by the last report.
     #[must_use]
     pub fn is_turning(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed() || report.value.mode == Mode::MotorTest)
@@ -335,7 +335,7 @@ impl<M: RawMutex> Values<M> {
 }
 
 impl<M: RawMutex> Shared<M> {
-    /// Nothing told yet, parameters at their defaults.
+    /// No values yet, parameters at their defaults.
     #[must_use]
     pub const fn new() -> Self {
         Self(Values::new())

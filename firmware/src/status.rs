@@ -1,10 +1,10 @@
-//! Status: a light for people nearby, the battery for everybody, and the log.
+//! Status: the light, the battery's voltage, and the log.
 //!
 //! | light | means |
 //! |---|---|
 //! | a short flash once a second | disarmed |
 //! | two short flashes once a second | motor test |
-//! | three short flashes once a second | stopped or locked: somebody has to look |
+//! | three short flashes once a second | stopped or locked: inspect the vehicle |
 //! | slow blinking (1 Hz) | armed, on the ground |
 //! | on | flying |
 //! | fast blinking (5 Hz) | going down without a pose |
@@ -39,7 +39,7 @@ const SUMMARY_INTERVAL: u64 = 1_000_000;
 /// Time between warnings of a low battery, us.
 const WARNING_INTERVAL: u64 = 10_000_000;
 
-/// A report older than this is none, us.
+/// The greatest age of a report that counts, us.
 pub const REPORT_AGE_MAX: u64 = 1_000_000;
 
 /// Whether the light is on at `now` (us), a multiple of [`STEP`] or close behind one; no mode without a fresh report.

@@ -75,7 +75,7 @@ pub type BoardBattery = NoBattery;
 /// There is no slot for a memory card.
 pub type BoardCard = NoCard;
 
-/// The watchdog's registers, for whoever must have its patience.
+/// The watchdog's registers, for code that outlasts its timeout.
 pub const WATCHDOG: Iwdg = pac::IWDG;
 
 /// What it is called.

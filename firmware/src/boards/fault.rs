@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-/// What the core says of a fault.
+/// The core's account of a fault.
 pub struct Fault {
-    /// Where it was, and where that was called from; none where the stack that says so is no stack.
+    /// Where it was, and where that was called from; none where the stack pointer is invalid.
     pub place: Option<(u32, u32)>,
     /// The configurable fault status register: what it was.
     pub status: u32,

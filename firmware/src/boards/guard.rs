@@ -52,9 +52,9 @@ pub fn watch(mpu: &mut MPU) {
     cortex_m::asm::isb();
 }
 
-/// What the core says of the fault that it saved at `frame`.
+/// The core's account of the fault that it saved at `frame`.
 fn fault_at(frame: *const ExceptionFrame) -> Fault {
-    // SAFETY: registers that only tell; reading has no effect.
+    // SAFETY: status registers; reading has no effect.
     let core = unsafe { &*SCB::PTR };
     let (status, memory_address) = (core.cfsr.read(), core.mmfar.read() as usize);
     let (first, end) = ((&raw const _stack_end).addr(), (&raw const _stack_start).addr());

@@ -90,7 +90,7 @@ pub type BoardBattery = DividedBattery;
 /// The slot for a memory card.
 pub type BoardCard = CardSlot;
 
-/// The watchdog's registers, for whoever must have its patience.
+/// The watchdog's registers, for code that outlasts its timeout.
 pub const WATCHDOG: Iwdg = pac::IWDG1;
 
 /// What it is called.
@@ -202,7 +202,7 @@ fn clocks(has_crystal: bool) -> embassy_stm32::Config {
         divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
         divr: None,
     });
-    // The same 8 MHz times 60, for the port: the crystal is more exact than USB asks for. A PLL that is fed more than 2
+    // The same 8 MHz times 60, for the port: the crystal is more exact than USB requires. A PLL that is fed more than 2
     // MHz must run in its wide range, which the driver chooses above 420 MHz.
     rcc.pll3 = Some(rcc::Pll {
         source,

@@ -7,7 +7,7 @@
 //! | SysTick, timer 0 | [`time`]: what embassy-time counts, and when it wakes |
 //! | LED | [`bench`], which also stands in for what is not there |
 //! | watchdog | [`watchdog`]: ends the emulation |
-//! | two interrupt lines nobody is connected to | the executors, flight above link ([`executors`]); all lines: [`lines`] |
+//! | two unconnected interrupt lines | the executors, flight above link ([`executors`]); all lines: [`lines`] |
 //!
 //! Thread mode only sleeps ([`idle`]). Panics and faults end the emulation with status 1 ([`exit`]).
 

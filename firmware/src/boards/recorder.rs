@@ -16,7 +16,7 @@ unsafe extern "C" {
 #[must_use]
 pub fn take(cleared: bool) -> Option<&'static mut [Slot]> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
-    // Boot is one thread: nobody comes in between.
+    // Boot is one thread: nothing comes in between.
     if TAKEN.load(Ordering::Relaxed) {
         return None;
     }

@@ -1,9 +1,9 @@
-//! The card's files for whoever asks over the link: counted, measured, read a chunk at a time, between two looks for
+//! The card's files, read over the link: counted, measured, read a chunk at a time, between two looks for
 //! records.
 //!
 //! Offered are the newest [`OFFERED`] files, in the order of their numbers, and behind them the flight recorder's
 //! recording. What a number stands for is settled when they are counted. Files are opened for reading only. One that
-//! cannot be read is said to be unreadable, and the card goes on logging: an old file's damage is no reason not to log
+//! cannot be read is reported as unreadable, and the card goes on logging: an old file's damage is no reason not to log
 //! the next flight.
 
 use super::log;
@@ -27,7 +27,7 @@ pub struct Library {
     /// In the order of their numbers; none until they have been counted.
     files: Option<Vec<Entry, OFFERED>>,
     open: Option<Open>,
-    /// Until when somebody is reading, us.
+    /// Until when a client is reading, us.
     busy_until: u64,
 }
 
@@ -40,7 +40,7 @@ struct Open {
 }
 
 impl Library {
-    /// Whether somebody is reading at `now`, us.
+    /// Whether a client is reading at `now`, us.
     #[must_use]
     pub fn is_busy(&self, now: u64) -> bool {
         now < self.busy_until
@@ -135,7 +135,7 @@ fn files<C: Card>(volume: &Volume<'_, C>, next: u32) -> Result<Vec<Entry, OFFERE
             if shift > 0 {
                 files.remove(0);
             }
-            // There is room, and the place is none beyond the end.
+            // There is room, and the place is not beyond the end.
             let _ = files.insert(place - shift, entry);
         }
         ControlFlow::Continue(())

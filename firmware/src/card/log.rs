@@ -159,7 +159,7 @@ impl Log {
         Ok(())
     }
 
-    /// Adds what somebody was told at `time`, us.
+    /// Adds an event of `time`, us.
     ///
     /// # Errors
     /// If a sector cannot be written.

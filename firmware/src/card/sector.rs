@@ -3,7 +3,7 @@
 //! ```text
 //! sector = messages | filler to its end, the last two bytes of which are a checksum of all that stands before them
 //! blank  = filler from its beginning to its end
-//! filler = message of a kind that ULog does not know, so that readers skip it, all its bytes set
+//! filler = message of a kind that ULog does not define, so that readers skip it, all its bytes set
 //! ```
 //!
 //! A sector that power cut short while it was written keeps blank bytes at one end: its checksum is wrong, and where a

@@ -1,6 +1,6 @@
 //! The card's file system: numbered files in its root directory, over the `embedded-sdmmc` crate.
 //!
-//! What may be written is said before each step, and anything else fails: a new file's name never makes the root
+//! Each step declares what it may write, and any other write fails: a new file's name never makes the root
 //! directory longer (the crate links a directory's new part before it clears it, so a cut in between would fill it with
 //! what was there before), and a record's sector goes nowhere but among the data.
 //!
@@ -203,7 +203,7 @@ impl<'c, C: Card> Volume<'c, C> {
     /// Opens the file system of a card that has started.
     ///
     /// # Errors
-    /// [`Trouble::Foreign`] if there is none that can be used, [`Trouble::Failed`] if the card fails.
+    /// [`Trouble::Foreign`] if it has no usable file system, [`Trouble::Failed`] if the card fails.
     pub fn open(card: &'c mut C) -> Result<Self, Trouble> {
         let mut sector = [0; SECTOR];
         card.read(0, &mut sector)?;
@@ -328,7 +328,7 @@ impl<'c, C: Card> Volume<'c, C> {
         done
     }
 
-    /// The crate forgets the sector that it holds when the card is asked for, which costs one reading.
+    /// The crate drops its cached sector when the card is borrowed, which costs one reading.
     fn permit(&self, permission: Permission) {
         self.manager.device(|sectors| sectors.permission.set(permission));
     }

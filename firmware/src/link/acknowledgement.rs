@@ -1,19 +1,19 @@
 //! COMMAND_ACK as it is sent: of commands that the dialect does not have as well, and with whom it is for, which the
 //! crate's type cannot hold.
 //!
-//! More than one may command. Whose command was granted and whose was refused is told apart by whom the answer is for.
+//! More than one station may command. The target of an answer shows whose command it grants or refuses.
 
 use super::frame::{Frame, Header};
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavMessage, MavResult};
 use mavlink::{MavlinkVersion, error::ParserError};
 
-/// A command of somebody's, to be answered.
+/// A command to be answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Order {
     /// Its number, whether the dialect has that one or not.
     pub command: u16,
-    /// Who sent it: system and component.
+    /// The sender: system and component.
     pub sender: (u8, u8),
     /// In which frame: its system, its sequence number, and its checksum over all of it.
     pub frame: u32,
@@ -37,9 +37,9 @@ impl Order {
 /// COMMAND_ACK, with its extension fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Acknowledgement {
-    /// What it answers.
+    /// The answered command.
     pub order: Order,
-    /// What became of it.
+    /// The result.
     pub result: MavResult,
 }
 
@@ -66,7 +66,7 @@ impl MessageData for Acknowledgement {
     const ID: u32 = COMMAND_ACK_DATA::ID;
     const NAME: &'static str = COMMAND_ACK_DATA::NAME;
     const EXTRA_CRC: u8 = COMMAND_ACK_DATA::EXTRA_CRC;
-    /// Behind the result: progress and a second result, which are not said, and the target.
+    /// Behind the result: progress and a second result, which are not set, and the target.
     const ENCODED_LEN: usize = COMMAND_ACK_DATA::ENCODED_LEN + 7;
 
     fn ser(&self, _: MavlinkVersion, payload: &mut [u8]) -> usize {
@@ -79,11 +79,11 @@ impl MessageData for Acknowledgement {
 
     fn deser(version: MavlinkVersion, payload: &[u8]) -> Result<Self, ParserError> {
         let byte = |place: usize| payload.get(place).copied().unwrap_or(0);
-        // The crate's type reads the result, of a command that it knows.
+        // The crate's type reads the result, of a command that it has.
         let [low, high] = (MavCmd::MAV_CMD_NAV_WAYPOINT as u16).to_le_bytes();
         let COMMAND_ACK_DATA { result, .. } = COMMAND_ACK_DATA::deser(version, &[low, high, byte(2)])?;
         let command = u16::from_le_bytes([byte(0), byte(1)]);
-        // Which frame, an answer does not say.
+        // An answer does not name the frame.
         let order = Order { command, sender: (byte(8), byte(9)), frame: 0 };
         Ok(order.answered(result))
     }

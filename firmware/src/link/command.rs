@@ -1,16 +1,16 @@
-//! Commands: COMMAND_LONG and COMMAND_INT, and SET_MODE, which means 176; and what this vehicle makes of them.
+//! Commands: COMMAND_LONG and COMMAND_INT, and SET_MODE, which means 176; and their actions.
 //!
 //! | command | does |
 //! |---|---|
-//! | 400 COMPONENT_ARM_DISARM | asks the flight rules to arm (1) or disarm (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
-//! | 22 NAV_TAKEOFF | asks to take off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT` says. By COMMAND_INT in a global frame, and from here only |
-//! | 21 NAV_LAND | asks to land here |
-//! | 176 DO_SET_MODE | PX4's custom modes: asks to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
-//! | 209 DO_MOTOR_TEST | asks the flight rules for one motor (1 to 4), throttle in percent, for a time in seconds |
-//! | 311 CONFIGURE_ACTUATOR | asks the flight rules to let one motor (parameter 5, 1 to 4) beep (1), or turn as it is wired (4) or the other way (5) from now on |
+//! | 400 COMPONENT_ARM_DISARM | requests arming (1) or disarming (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
+//! | 22 NAV_TAKEOFF | requests a take-off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT`. By COMMAND_INT in a global frame, and from here only |
+//! | 21 NAV_LAND | requests a landing here |
+//! | 176 DO_SET_MODE | PX4's custom modes: requests to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
+//! | 209 DO_MOTOR_TEST | requests a test of one motor (1 to 4), throttle in percent, for a time in seconds |
+//! | 311 CONFIGURE_ACTUATOR | requests one motor (parameter 5, 1 to 4) to beep (1), or turn as wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning; 3: into the chip's bootloader. Anything else is not done here |
-//! | 192 DO_REPOSITION | by COMMAND_INT: asks to fly to a latitude, longitude and altitude and to hold there |
+//! | 192 DO_REPOSITION | by COMMAND_INT: requests a flight to a latitude, longitude and altitude and to hold there |
 //! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
 //! | any other | is answered as unsupported |
 
@@ -51,23 +51,23 @@ const RELATIVE_YAW: u32 = 2;
 /// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
 const REPETITION: u64 = 1_000_000;
 
-/// Commands that are remembered to know one again.
+/// Commands that are remembered to detect repetitions.
 const REMEMBERED: usize = 8;
 
-/// What to do about a command.
+/// The action of a command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Put it to the flight rules, which answer.
     Ask(Request),
-    /// Disarm at once, in the air as well, and say so.
+    /// Disarm at once, in the air as well, and acknowledge.
     ForceDisarm,
-    /// Take sensors from a simulator from now on, and say so.
+    /// Take sensors from a simulator from now on, and acknowledge.
     EnterHil,
     /// Restart the vehicle.
     Restart,
     /// Restart it into a bootloader.
     StartBootloader,
-    /// Say this, and answer so.
+    /// Announce this, and answer so.
     Refuse(MavResult, &'static str),
     /// Calibrate, or end a calibration; the IMU task answers.
     Calibrate(Option<Procedure>),
@@ -75,7 +75,7 @@ pub enum Action {
     Answer(MavResult),
     /// Send this message, and answer whether there was anything to send.
     Send(Kind),
-    /// Accept, and say something besides.
+    /// Accept, and send a reply besides.
     Reply(Reply),
     /// Accept, and name every mode.
     ReplyModes,
@@ -88,7 +88,7 @@ pub struct Call {
     pub command: MavCmd,
     /// Its parameters; of a COMMAND_INT the fifth and sixth are not numbers of this kind.
     pub parameters: [f32; 7],
-    /// The place, units of degrees, and the frame that COMMAND_INT says.
+    /// The place, units of degrees, and the frame of COMMAND_INT.
     pub place: Option<(i32, i32, MavFrame)>,
 }
 
@@ -115,7 +115,7 @@ impl From<&COMMAND_INT_DATA> for Call {
     }
 }
 
-/// What to do about a command while armed or not, where the local frame is at `origin` and home at `home`, m, NED.
+/// The action of a command while armed or not, where the local frame is at `origin` and home at `home`, m, NED.
 #[must_use]
 pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) -> Action {
     let [first, second, ..] = call.parameters;
@@ -142,14 +142,14 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
         MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Reply(Reply::IntervalOf(kind))),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => of_kind(first, |kind| match kind {
-            // By it others know that the vehicle is there.
+            // Other systems detect the vehicle by it.
             Kind::Heartbeat if !(0.0..=HEARTBEAT).contains(&second) => {
                 denied("HEARTBEAT: once a second, or more often")
             }
             _ => Action::Reply(Reply::Interval { kind, interval: second as i64 }),
         }),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is no number"),
-        // What older clients say for REQUEST_MESSAGE.
+        // Older clients' REQUEST_MESSAGE.
         MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Send(Kind::HomePosition),
         MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Send(Kind::AutopilotVersion),
         MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION => Action::Send(Kind::ProtocolVersion),
@@ -163,9 +163,9 @@ const MODES_NUMBER: f32 = 435.0;
 /// The longest time between heartbeats, us.
 const HEARTBEAT: f32 = 1e6;
 
-/// Something about the message of this number; unsupported if it is none of ours.
+/// An action on the message of this number; unsupported if the vehicle does not send it.
 fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
-    // A number that is none, or negative, becomes that of HEARTBEAT: not asked for that way.
+    // NaN or a negative number becomes that of HEARTBEAT, which is not requested that way.
     let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| streams::of_number(number as u32));
     kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), act)
 }
@@ -179,7 +179,7 @@ fn above_home(frame: MavFrame, altitude: f32, home: f32) -> Option<f32> {
     }
 }
 
-/// How far from home a take-off may be asked for, m.
+/// How far from home a take-off may be requested, m.
 const HERE: f32 = 2.0;
 
 /// Taking off, straight up. Most clients that name no height or place send NaN or the greatest number, some zero.
@@ -187,7 +187,7 @@ fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     let [.., latitude, longitude, altitude] = call.parameters;
     let is_named = !altitude.is_nan() && altitude != 0.0;
     let (place, height) = match call.place {
-        // What COMMAND_LONG says of a place is degrees, rounded to half a metre; NaN and zero are none.
+        // A place of COMMAND_LONG is in degrees, rounded to half a metre; NaN and zero are missing.
         None => {
             let degrees = [latitude, longitude].map(|degrees| (degrees * 1e7) as i32);
             ((degrees[0], degrees[1]), Some(altitude))
@@ -242,7 +242,7 @@ const fn unsupported(words: &'static str) -> Action {
     Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
 }
 
-/// The test of one motor that a command asks for. What is too much or too long is the flight rules' to refuse; negative
+/// The test of one motor that a command requests. The flight rules refuse what is too much or too long; negative
 /// times become zero, which is refused as well.
 fn motor_test(call: &Call) -> Action {
     let [number, unit, throttle, seconds, count, ..] = call.parameters;
@@ -257,7 +257,7 @@ fn motor_test(call: &Call) -> Action {
     }
 }
 
-/// What a command tells one motor's controller. Modes in which a motor turns both ways are not for rotors.
+/// A command's setting for one motor's controller. Modes in which a motor turns both ways are not for rotors.
 fn configure_actuator(call: &Call) -> Action {
     let [configuration, _, _, _, function, ..] = call.parameters;
     let asked = |kind: ActuatorConfiguration| configuration == kind as u32 as f32;
@@ -310,10 +310,10 @@ fn calibration(call: &Call) -> Action {
     Action::Calibrate(procedure)
 }
 
-/// What clients hear that have other numbers, ArduPilot's say.
+/// The answer to clients with other numbers, such as ArduPilot's.
 const NO_MODE: Action = Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only");
 
-/// PX4's clients say the custom mode, and echo what flags the heartbeat has. Without one, the HIL flag asks for a
+/// PX4's clients send the custom mode, and echo the heartbeat's flags. Without one, the HIL flag requests a
 /// simulator and the guided flag for flight by setpoints.
 fn set_mode(call: &Call, armed: bool) -> Action {
     let [base, main, sub, ..] = call.parameters;
@@ -337,7 +337,7 @@ fn set_mode(call: &Call, armed: bool) -> Action {
     if guided { Action::Ask(Request::FlySetpoints) } else { NO_MODE }
 }
 
-/// Knows a command that was delivered twice.
+/// Detects a command that was delivered twice.
 ///
 /// A command sent again on purpose carries a new sequence number and acts again. The same frame twice may be the link's
 /// doing, and must not start a second motor test, nor arm what was disarmed in between: it is acknowledged once more,
@@ -354,7 +354,7 @@ struct Delivered {
     time: u64,
 }
 
-/// What a command's frame is.
+/// The kind of a command's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delivery {
     /// One to act on.
@@ -366,7 +366,7 @@ pub enum Delivery {
 }
 
 impl Repetitions {
-    /// What this frame of a command is.
+    /// The kind of this frame of a command.
     pub fn look(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
         let Frame { header, checksum, time, .. } = *frame;
         let is_same = |before: &Delivered| {

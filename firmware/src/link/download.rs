@@ -1,8 +1,8 @@
-//! The logs that somebody wants, a message at a time: their list, or one of them.
+//! Requested logs, a message at a time: their list, or one of them.
 //!
-//! Where a card is ready its task answers ([`Library`](crate::shared::Library)): what it offers is asked for chunk by
-//! chunk, the next one while the last goes out. Nobody waits for it: what it does not say within [`ANSWER_WITHIN`] ends
-//! the download. Elsewhere there is the flight recorder's recording, which is at hand. Nothing goes out while the
+//! Where a card is ready its task answers ([`Library`](crate::shared::Library)): a file is requested chunk by chunk,
+//! the next one while the last goes out. After [`ANSWER_WITHIN`] without an answer the download ends. Elsewhere there
+//! is the flight recorder's recording, which is in memory. Nothing goes out while the
 //! vehicle is armed.
 
 use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, TransmitView};
@@ -30,7 +30,7 @@ pub enum Message {
     Data(LOG_DATA_DATA),
 }
 
-/// What somebody wants.
+/// A client's request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Job {
     /// The entries from one number to another; as soon as it is known also how many there are.
@@ -39,15 +39,15 @@ enum Job {
     Data { id: u16, next: u32, end: u32 },
 }
 
-/// What is being sent. The newest wish replaces the one before.
+/// What is being sent. The newest request replaces the one before.
 #[derive(Debug)]
 pub struct Download {
     job: Option<Job>,
-    /// Whether the card is asked, or the recorder.
+    /// Whether the card answers, or the recorder.
     from_card: bool,
     /// When the next message may go out, us.
     due: u64,
-    /// What the card was asked, and until when it may take, us.
+    /// The question to the card, and its timeout, us.
     asked: Option<(Question, u64)>,
     /// Whether nothing can go out before it answers.
     is_waiting: bool,
@@ -103,7 +103,7 @@ impl Download {
         let message = match job {
             Job::Entries { next, last, count: None } => {
                 let Answer::Count(count) = self.answer(Question::Count, now, shared)? else { return None };
-                // Whoever wants what is beyond the end learns where that is.
+                // A request beyond the end is answered with the end.
                 let end = count.saturating_sub(1);
                 self.job = Some(Job::Entries { next: next.min(end), last: last.min(end), count: Some(count) });
                 self.job = self.job.filter(|_| count > 0);
@@ -175,10 +175,10 @@ impl Download {
         Some((data, count))
     }
 
-    /// What the recorder says, or the card; asks the card, and gives up where it says nothing.
+    /// The answer of the recorder or the card; sends the question to the card, and gives up after the timeout.
     fn answer<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) -> Option<Answer> {
         if self.from_card != (shared.card().state() == CardState::Ready) {
-            // What the numbers stand for has changed.
+            // The numbers have changed their meaning.
             self.give_up(shared, "Log: the card has come or gone, list again");
             return None;
         }

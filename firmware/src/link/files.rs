@@ -1,4 +1,5 @@
-//! MAVLink's file transfer: there are no files here, and whoever asks for one is told at once instead of asking again.
+//! MAVLink's file transfer: there are no files here, and a request is refused at once so that its client does not
+//! retry.
 //!
 //! A request and its answer are FILE_TRANSFER_PROTOCOL, whose payload has a header of its own:
 //!
@@ -6,9 +7,9 @@
 //! |---|---|
 //! | 0, 1 | sequence number; an answer's is the request's and one |
 //! | 2 | session |
-//! | 3 | operation; an answer's says whether it went well |
+//! | 3 | operation; an answer's is success or failure |
 //! | 4 | bytes of data |
-//! | 5 | in an answer: the operation that was asked for |
+//! | 5 | in an answer: the requested operation |
 //! | 12 … | data; in a refusal: why |
 
 use super::frame::Frame;
@@ -26,16 +27,16 @@ const REFUSED: u8 = 129;
 /// Why: no such operation here.
 const UNKNOWN_OPERATION: u8 = 7;
 
-/// What somebody asked for, and with what to answer it.
+/// A request, and the fields of its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileRequest {
-    /// Who asked: system and component.
+    /// The client: system and component.
     pub sender: (u8, u8),
     /// The sequence number of the request.
     pub sequence: u16,
     /// Its session.
     pub session: u8,
-    /// What was asked for.
+    /// The requested operation.
     pub operation: u8,
 }
 

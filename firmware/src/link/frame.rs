@@ -4,7 +4,7 @@
 //! Nothing that lies within another frame's payload is taken for a frame:
 //!
 //! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped
-//!   whole. Nothing says whether it is one, but where a frame has just ended, or been skipped, another begins.
+//!   whole. It has no mark of its own, but where a frame has just ended, or been skipped, another begins.
 //! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may
 //!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX`] bytes
 //!   at most.
@@ -13,8 +13,8 @@
 //! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an
 //! old pose never comes out as a fresh one.
 //!
-//! Checksums need a number for each message that only the dialect knows, so frames of messages outside `common` cannot
-//! be told from noise. A sender that pauses in a frame for longer than [`FRAME_AGE_MAX`] begins anew, for all we know.
+//! Checksums need a number for each message that only the dialect defines, so frames of messages outside `common` look
+//! like noise. After a pause of [`FRAME_AGE_MAX`] within a frame, the sender is taken to begin anew.
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
@@ -52,7 +52,7 @@ pub enum Version {
     V2,
 }
 
-/// Who sends, and in which order.
+/// Sender and sequence number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Header {
     /// System, 1 to 255.
@@ -68,7 +68,7 @@ pub struct Header {
 pub struct Frame<'a> {
     /// Protocol version.
     pub version: Version,
-    /// Who sent it.
+    /// The sender.
     pub header: Header,
     /// The message's number.
     pub message: u32,
@@ -76,7 +76,7 @@ pub struct Frame<'a> {
     pub payload: &'a [u8],
     /// All of it, from its first byte to its checksum or signature.
     pub bytes: &'a [u8],
-    /// The frame's own checksum, which tells frames with equal headers apart.
+    /// The frame's own checksum, which distinguishes frames with equal headers.
     pub checksum: u16,
     /// No byte of it arrived before this, us.
     pub time: u64,
@@ -128,8 +128,8 @@ impl Parser {
         Self { buffer: [0; FRAME_MAX], length: 0, taken: 0, is_aligned: true, barred: 0, since: 0, discarded: 0 }
     }
 
-    /// Takes the next byte, which arrived at `now` (us), and returns a frame if there is one. There may be more: ask
-    /// [`Self::next_frame`] until there is none.
+    /// Takes the next byte, which arrived at `now` (us), and returns a frame if there is one. There may be more: call
+    /// [`Self::next_frame`] until it returns none.
     pub fn push(&mut self, byte: u8, now: u64) -> Option<Frame<'_>> {
         self.remove(self.taken);
         self.taken = 0;
@@ -226,7 +226,7 @@ fn candidate(bytes: &[u8]) -> Candidate {
     let (Some(&payload), Some(message)) = (bytes.get(1), message(bytes)) else { return Candidate::Incomplete };
     let end = header + usize::from(payload);
     let length = end + CHECKSUM + signature;
-    // Messages without such a number, in the dialect or not, cannot be told from noise.
+    // Messages without such a number, in the dialect or not, look like noise.
     let Some(extra) = extra(message).filter(|_| is_understood(bytes)) else { return Candidate::Foreign(length) };
     let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
         return Candidate::Incomplete;
@@ -242,7 +242,7 @@ fn is_understood(bytes: &[u8]) -> bool {
     !matches!(*bytes, [START_V2, _, flags, ..] if flags & !SIGNED != 0)
 }
 
-/// What a message's definition puts into its checksum; none for a message outside the dialect.
+/// A message definition's part of the checksum; none for a message outside the dialect.
 fn extra(message: u32) -> Option<u8> {
     Some(MavMessage::extra_crc(message)).filter(|&extra| extra != 0)
 }

@@ -1,11 +1,11 @@
-//! Latitude and longitude for a vehicle that knows neither: its local frame, put on a globe.
+//! Latitude and longitude of a vehicle without GPS: its local frame, put on a globe.
 //!
 //! ```text
 //! lat = lat_0 + north / R        lon = lon_0 + east / (R cos lat_0)        R = 6,371 km
 //! ```
 //!
-//! Many clients know no other places. Where a ground station has set an origin (SET_GPS_GLOBAL_ORIGIN), it is what its
-//! maps show; until then it is 0 N, 0 E at sea level, and nothing but the distances means anything. A degree is 1e7
+//! Many clients have no other coordinates. Where a ground station has set an origin (SET_GPS_GLOBAL_ORIGIN), it is what
+//! its maps show; until then it is 0 N, 0 E at sea level, and nothing but the distances means anything. A degree is 1e7
 //! units.
 
 use controller_core::math;

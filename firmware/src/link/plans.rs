@@ -1,7 +1,7 @@
 //! Lists of mission items: the mission, the fence and the rally points, each empty here.
 //!
 //! Which list a message is about, MAV_MISSION_TYPE, is an extension field, and the crate's types have none. It is read
-//! and written here, behind the other fields: clients drop an answer about another list than the one they asked about.
+//! and written here, behind the other fields: clients drop an answer about another list than the requested one.
 
 use super::frame::Frame;
 use mavlink::dialects::common::MavMessage;

@@ -1,7 +1,7 @@
 //! Two lines, one link: the serial line, or a computer's USB port while a program there has it open.
 //!
-//! One at a time. So there is one receiver, which knows who commands, and one place where answers go; whoever is on the
-//! line that is not the link is not heard, poses included. The link moves when the port is opened or closed, never
+//! One at a time. So there is one receiver, which holds the commander, and one place where answers go; input on
+//! the other line is ignored, poses included. The link moves when the port is opened or closed, never
 //! while a motor turns: who flies over one line keeps it, and a cable that is pulled is a ground station that falls
 //! silent. Every move is reported, on the line that it leads to.
 
@@ -28,14 +28,14 @@ impl<S, P> ErrorType for Line<'_, S, P> {
 }
 
 impl<S: Read, P: Read> Read for Line<'_, S, P> {
-    /// Who waits on one line does not hear of a move to the other, and has to ask again within bounded time, as the
+    /// A task that waits on one line does not notice a move to the other, and has to retry within bounded time, as the
     /// link does.
     async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
         match self.port.as_mut().filter(|_| self.on_port.is_raised()) {
             Some(port) => port.read(bytes).await.map_err(|error| error.kind()),
             None => {
                 let count = self.serial.read(bytes).await.map_err(|error| error.kind())?;
-                // The port may have been opened meanwhile, and this was not said there.
+                // The port may have been opened meanwhile, and this was not sent there.
                 let is_heard = self.port.is_none() || !self.on_port.is_raised();
                 Ok(if is_heard { count } else { 0 })
             }

@@ -13,10 +13,10 @@
 //! and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
-//! like jumps. What numbers make a pose is [`Pose::new`]'s to say, and what it refuses makes the message worthless.
+//! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count.
 //! Velocities and body rates must be finite too, though the IMU's are flown. Of the covariance the greatest variances
 //! of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender left it
-//! out). Who says that they are infinite says that it knows of no pose, and is refused.
+//! out). Infinite ones mean that the sender has no pose, and are refused.
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
@@ -60,13 +60,13 @@ const fn is_vision(message: u32) -> bool {
 /// Why a pose was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PoseRefusal {
-    /// Its numbers are none.
+    /// Its numbers are invalid.
     Numbers(PoseError),
     /// Frames that are not converted here, or a message cut short.
     Frame,
     /// The sender's time is not after that of its last message.
     Repeated,
-    /// It was under way for more than [`LATE_MAX`], says TIMESYNC.
+    /// It was under way for more than [`LATE_MAX`], by TIMESYNC.
     Late,
     /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC the two
     /// look alike.
@@ -99,7 +99,7 @@ struct Source {
     sync: TimeSync,
     /// When its last message arrived, us.
     arrived: u64,
-    /// When what that said was true, us; none before the first.
+    /// When its pose was true, us; none before the first.
     stamped: Option<u64>,
     /// What it was taken to have been under way, us, and whether by TIMESYNC.
     delay: u64,
@@ -151,12 +151,12 @@ impl Poses {
             }
             _ => return Ok(None),
         };
-        Ok(self.listen(frame, time, delay)?.map(|time| Stamped { value, time }))
+        Ok(self.true_time(frame, time, delay)?.map(|time| Stamped { value, time }))
     }
 
     /// Decides whether this sender is the one listened to and whether its message is a new one; when it was true, us,
     /// or none where that is not after what was taken last.
-    fn listen(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<Option<u64>, PoseRefusal> {
+    fn true_time(&mut self, frame: &Frame<'_>, time: u64, delay: u64) -> Result<Option<u64>, PoseRefusal> {
         let (system, component) = (frame.header.system, frame.header.component);
         let sender = (system, component, frame.message);
         let fresh = Source {
@@ -209,7 +209,7 @@ impl Poses {
 }
 
 impl Source {
-    /// What a message that says `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps
+    /// What a message of `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps
     /// the messages.
     fn delay(&self, time: u64) -> Option<u64> {
         let clock = self.clock.as_ref().filter(|_| time != 0)?;
@@ -220,7 +220,7 @@ impl Source {
         plausible.then(|| u64::try_from(delay).unwrap_or(0))
     }
 
-    /// Whether a message that says `time` and arrived at `arrived`, us, is too late by what TIMESYNC says. A time that
+    /// Whether a message of `time` that arrived at `arrived`, us, is too late by TIMESYNC. A time that
     /// does not advance is not late: it is no new one, or its clock was set.
     fn is_late(&self, time: u64, arrived: u64) -> bool {
         let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
@@ -230,8 +230,7 @@ impl Source {
         })
     }
 
-    /// The sender's clock was set: what TIMESYNC said is of another. The line is what it was, until the next answer
-    /// says better.
+    /// The sender's clock was set: TIMESYNC's offset is of the old one. The line's delay is kept until the next answer.
     fn begin_anew(&mut self) {
         let value =
             self.clock.as_ref().filter(|_| self.synchronised).map(|clock| clock.offset() - i128::from(self.delay));
@@ -282,7 +281,7 @@ fn vision(frame: &Frame<'_>, message: &VISION_POSITION_ESTIMATE_DATA) -> Result<
     Ok(measured.reset_counter(extension(VISION_RESET_COUNTER)))
 }
 
-/// With what a covariance says, if it does.
+/// With the deviations of a covariance, if it is known.
 ///
 /// # Errors
 /// [`PoseRefusal::Numbers`] if any variance is infinite.
@@ -295,7 +294,7 @@ fn deviations(measured: PoseMeasurement, covariance: &[f32; 21]) -> Result<PoseM
     Ok(measured.deviations(deviation([xx, yy, zz]), deviation([rr, pp, hh])))
 }
 
-/// The root of the greatest of three variances; NaN if any of them says nothing.
+/// The root of the greatest of three variances; NaN if any of them is unknown.
 fn deviation(variances: [f32; 3]) -> f32 {
     if !variances.iter().all(|&variance| variance > 0.0) {
         return f32::NAN;

@@ -1,22 +1,22 @@
 //! A sender's clock against the vehicle's: when a message was true, and whether its time is a new one.
 //!
-//! A message that arrives at a (the vehicle's clock) and says s (the sender's) was true at s + o, where o is what the
-//! clocks differ by. Every arrival is late by what the line took: a - s = o + delay. So the least a - s seen is nearest
+//! A message that arrives at a (the vehicle's clock) with the time s (the sender's) was true at s + o, where o is the
+//! clocks' offset. Every arrival is late by the line's delay: a - s = o + delay. So the least a - s seen is nearest
 //! to o:
 //!
 //! ```text
 //! o_k = min(a_k - s_k, o_(k-1) + drift (a_k - a_(k-1)))      drift: 200 ppm, more than two quartz clocks part
 //! ```
 //!
-//! What every message takes at least is not seen that way and stays part of o: [`super::time_sync`] may know it, or
-//! somebody who has measured it. A message is never stamped later than it arrived.
+//! The least delay is not observable that way and stays part of o: [`super::time_sync`] may give it, or a
+//! measurement. A message is never stamped later than it arrived.
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
 //! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
 //! [`LEAD_MAX`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
 //! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`STEADY`] such frames, and more
-//! than were taken meanwhile, it is believed, and o is found anew: who forges fewer messages than are true never gets
-//! so far. A line that is that late from some time on looks the same; who knows better by TIMESYNC must refuse its
+//! than were taken meanwhile, it is believed, and o is found anew: forging fewer messages than are true does not
+//! suffice. A line that is that late from some time on looks the same; with TIMESYNC the caller must refuse its
 //! messages first.
 
 /// Frames that prove a clock that is not where it was: 50 ms at 100 Hz.
@@ -36,7 +36,7 @@ const SPACING_ERROR: u64 = 20_000;
 /// One over the drift between two clocks.
 pub(super) const DRIFT: u64 = 5_000;
 
-/// What is known of a sender's clock.
+/// The estimate of a sender's clock.
 #[derive(Debug, Clone, Copy)]
 pub struct SenderClock {
     /// o, us.
@@ -83,13 +83,13 @@ impl SenderClock {
         self.begun
     }
 
-    /// Whether a message that says `time` comes after the last one by its sender's clock.
+    /// Whether a message of `time` comes after the last one by its sender's clock.
     #[must_use]
     pub fn advances(&self, time: u64) -> bool {
         time > self.last.0
     }
 
-    /// When a message that says `time` and arrived at `arrived` was true, us of the vehicle's clock; none if its time
+    /// When a message of `time` that arrived at `arrived` was true, us of the vehicle's clock; none if its time
     /// is not a new one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
         let parted = arrived.saturating_sub(self.last.1) / DRIFT;

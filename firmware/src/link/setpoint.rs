@@ -1,4 +1,4 @@
-//! Setpoints: SET_POSITION_TARGET_LOCAL_NED and its type mask, turned into what the governor understands.
+//! Setpoints: SET_POSITION_TARGET_LOCAL_NED and its type mask, turned into setpoints of the governor.
 //!
 //! | used, of position / velocity / acceleration | becomes |
 //! |---|---|
@@ -8,8 +8,8 @@
 //! | position on some axes, velocity on the others, or both | go there on those, move like that on these |
 //! | anything else: acceleration alone or with some axes only, nothing on an axis, forces | refused |
 //!
-//! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask sets aside are not
-//! looked at. Ranges are the governor's business: everything from here goes through it.
+//! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask ignores are not
+//! read. The governor checks ranges.
 //!
 //! | frame | position | velocity, acceleration | yaw |
 //! |---|---|---|---|
@@ -17,8 +17,8 @@
 //! | LOCAL_OFFSET_NED | from where the vehicle is | north, east, down | from where it points |
 //! | BODY_NED, BODY_OFFSET_NED, BODY_FRD | from where it is, ahead, right, down | ahead, right, down | from where it points |
 //!
-//! Ahead is where the vehicle points, level: it does not matter how it leans. Axes that turn with the vehicle are none
-//! of the world's: there, what is asked ahead must be asked across too.
+//! Ahead is where the vehicle points, level: its tilt does not matter. Axes that turn with the vehicle are not
+//! the world's: there a setpoint ahead needs one across too.
 
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};
@@ -33,13 +33,13 @@ use nalgebra::{RealField, UnitQuaternion, Vector2, Vector3};
 pub enum SetpointRefusal {
     /// A field in use is NaN or infinite.
     NotFinite,
-    /// A combination of fields that says nothing the governor could do.
+    /// A combination of fields that the governor cannot fly.
     Mask,
-    /// A frame that is not understood, or one of a vehicle that does not know where it is.
+    /// A frame that is not understood, or one that needs a position, without an estimate.
     Frame,
     /// A radio's sticks fly.
     Sticks,
-    /// It is not this sender whose setpoints are flown.
+    /// Another sender's setpoints are flown.
     Others,
 }
 
@@ -126,7 +126,7 @@ fn axes(frame: MavFrame, here: Option<&Here>) -> Result<Axes<'_>, SetpointRefusa
     }
 }
 
-/// What a SET_POSITION_TARGET_LOCAL_NED asks for, of a vehicle that is `here`.
+/// The setpoint of a SET_POSITION_TARGET_LOCAL_NED, for a vehicle that is `here`.
 ///
 /// # Errors
 /// [`SetpointRefusal`] for what cannot be done or is not finite.
@@ -181,7 +181,7 @@ fn mixed(
     })
 }
 
-/// What of a vector a mask leaves: zero where it sets an axis aside.
+/// A vector under a mask: zero where it ignores an axis.
 struct Used {
     vector: [f32; 3],
     axes: [bool; 3],

@@ -5,13 +5,13 @@
 //! frame in counts only if its signature is right and its stamp is above that of the frame before it. Stamps rise for
 //! each stream (link, system, component) by itself. The vehicle's own clock of stamps has no calendar: it begins where
 //! it was left off, goes on with the time, and jumps to every accepted stamp that is ahead of it. One that is further
-//! ahead than [`LEAP`] is accepted only as the first since the start, and none from [`LATEST`] on: somebody whose clock
+//! ahead than [`LEAP`] is accepted only as the first since the start, and none from [`LATEST`] on: a sender whose clock
 //! is broken would deafen the vehicle to everybody else, or use up the 48 bits.
 //!
 //! A frame that was accepted once is refused for ever after, also from a stream that was forgotten for want of room and
 //! after a restart: stamps at or below a floor are refused from streams that are not known. The floor is the newest
-//! stamp of any forgotten stream, and at boot what flash says. That is kept ahead of the clock, by [`AHEAD`] when it is
-//! written and [`LEAST_AHEAD`] at least, because nothing can be written in flight.
+//! stamp of any forgotten stream, and at boot the one in flash. That is kept ahead of the clock, by [`AHEAD`] when it
+//! is written and [`LEAST_AHEAD`] at least, because nothing can be written in flight.
 
 use super::frame::{FRAME_MAX, Frame, SIGNED, Version};
 use core::cell::RefCell;
@@ -28,7 +28,7 @@ pub const KEY: usize = 32;
 /// Words that are kept in flash: the key, and the floor.
 pub const WORDS: usize = KEY / size_of::<u32>() + 2;
 
-/// 10 us since 2015 began, by somebody's clock; 48 bits.
+/// 10 us since 2015 began, by the sender's clock; 48 bits.
 pub type Stamp = u64;
 
 /// A minute. A stream that is not known is refused if it is further behind the vehicle's clock.
@@ -59,7 +59,7 @@ const LINK_AND_STAMP: usize = 7;
 /// The number of the vehicle's own link.
 const LINK: u8 = 0;
 
-/// What both ends share. It is never shown, and zeros are none.
+/// The secret of both ends. It is never shown; zeros are no key.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Key([u32; KEY / size_of::<u32>()]);
 
@@ -102,7 +102,7 @@ pub enum Refusal {
     Unsigned,
     /// It was signed with another key, or changed on its way.
     Forged,
-    /// Its stamp is not above what its stream, or the vehicle, has heard before.
+    /// Its stamp is not above the last of its stream, or of the vehicle.
     Replayed,
     /// Its stamp is too far ahead: its sender's clock is wrong.
     Ahead,
@@ -119,7 +119,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// A stream that was heard.
+/// A stream that was received.
 #[derive(Clone, Copy)]
 struct Stream {
     /// Link, system, component.
@@ -133,11 +133,11 @@ struct State {
     /// The clock: this stamp, at this time, us.
     newest: Stamp,
     since: u64,
-    /// Whether somebody's clock was heard since the start.
+    /// Whether a sender's clock was received since the start.
     is_set: bool,
     streams: [Stream; STREAMS],
     floor: Stamp,
-    /// What flash says that the floor is after a boot.
+    /// The floor after a boot, as flash has it.
     kept: Stamp,
     /// Whether flash has another key.
     changed: bool,
@@ -189,7 +189,7 @@ impl State {
     }
 }
 
-/// The key, and what was heard under it.
+/// The key, and the stamps received under it.
 pub struct Signing<M: RawMutex>(Mutex<M, RefCell<State>>);
 
 impl<M: RawMutex> Signing<M> {
@@ -211,7 +211,7 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// Takes a key, or none any more, and a stamp below which nothing was signed with it yet; one that is too late is
-    /// none. What was heard under the same key before stays heard.
+    /// none. Stamps received under the same key before stay used.
     pub fn set(&self, key: Option<Key>, stamp: Stamp, now: u64) {
         let stamp = if stamp < LATEST { stamp } else { 0 };
         self.with(|state| {
@@ -262,14 +262,14 @@ impl<M: RawMutex> Signing<M> {
         }
     }
 
-    /// Moves the clock on to the stamp of a frame that somebody trusts.
+    /// Moves the clock on to the stamp of a trusted frame.
     pub fn follow(&self, frame: &Frame<'_>, now: u64) {
         if let Some((_, [_, stamp @ ..], _)) = parts(frame) {
             self.with(|state| state.follow(number(stamp), now));
         }
     }
 
-    /// What is to be written to flash at `now`, us, if what is there does not do.
+    /// What is to be written to flash at `now`, us, if it is not up to date.
     #[must_use]
     pub fn unkept(&self, now: u64) -> Option<[u32; WORDS]> {
         self.with(|state| {

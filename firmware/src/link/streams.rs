@@ -1,15 +1,15 @@
-//! What is sent by the clock, and how often: a table that a ground station may change.
+//! Periodic messages and their rates: a table that a ground station may change.
 
 use super::telemetry::kind::Kind;
 
-/// How often a message goes out unless somebody says otherwise.
+/// A message's default rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rate {
-    /// Only when it is asked for.
+    /// Only on request.
     OnRequest,
     /// Every so many us.
     Every(u64),
-    /// As often as [`crate::parameters::table::Name::TelemetryRate`] says.
+    /// At [`crate::parameters::table::Name::TelemetryRate`].
     Telemetry,
 }
 
@@ -45,7 +45,7 @@ const SHORTEST: u64 = 10_000;
 struct Stream {
     kind: Kind,
     rate: Rate,
-    /// What was asked for in the table's place, us; never for [`u64::MAX`].
+    /// The requested interval in place of the table's, us; never for [`u64::MAX`].
     asked: Option<u64>,
     due: u64,
 }

@@ -1,4 +1,4 @@
-//! Telemetry: what the vehicle knows, as MAVLink messages in MAVLink's frames.
+//! Telemetry: the vehicle's state, as MAVLink messages in MAVLink's frames.
 //!
 //! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
 //! - [`motion`]: how it moves: attitude, position, odometry, target, home;
@@ -17,16 +17,16 @@ use super::writer::Writer;
 use crate::shared::{Report, Traffic};
 use flight::Stamped;
 
-/// What is known when a message is written.
+/// The inputs of a message.
 #[derive(Debug, Clone)]
 pub struct View {
     /// The vehicle's clock, us.
     pub now: u64,
-    /// What control did last, if that is not long ago.
+    /// Control's last report, if it is recent.
     pub report: Option<Stamped<Report>>,
     /// V, if it is known.
     pub voltage: Option<f32>,
-    /// What the line carried.
+    /// The line's counts.
     pub traffic: Traffic,
     /// Whether a simulator has sensors and motors.
     pub simulated: bool,
@@ -37,7 +37,7 @@ pub struct View {
 }
 
 impl View {
-    /// Writes the message as `system`'s; whether there was anything to say.
+    /// Writes the message as `system`'s; whether there was a value to send.
     pub fn write(&self, kind: Kind, system: u8, writer: &mut Writer) -> bool {
         let Some(report) = &self.report else { return self.write_without_report(kind, system, writer) };
         let (time, report) = (report.time, &report.value);
@@ -56,7 +56,7 @@ impl View {
         }
     }
 
-    /// What can be said whatever control does.
+    /// Messages that do not depend on control.
     fn write_without_report(&self, kind: Kind, system: u8, writer: &mut Writer) -> bool {
         let report = self.report.as_ref().map(|report| &report.value);
         match kind {

@@ -1,4 +1,4 @@
-//! TIMESYNC: what a sender's clock and the vehicle's differ by, from questions and answers.
+//! TIMESYNC: the offset of a sender's clock from the vehicle's, from questions and answers.
 //!
 //! The vehicle asks at t_1 (its clock), the sender answers at s (its own), the answer is here at t_2. If the ways there
 //! and back take as long,
@@ -7,9 +7,9 @@
 //! o = (t_1 + t_2) / 2 - s          and if they do not, |error| <= (t_2 - t_1) / 2
 //! ```
 //!
-//! The answer with the least error counts. An old one's error grows by what two clocks part. Where two answers in a row
+//! The answer with the least error counts. An old one's error grows by the clocks' drift. Where two answers in a row
 //! cannot be of the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
-//! [`SenderClock`](super::sender_clock::SenderClock) cannot tell from a clock that is behind.
+//! [`SenderClock`](super::sender_clock::SenderClock) cannot distinguish from a clock that is behind.
 
 use super::sender_clock::DRIFT;
 use mavlink::dialects::common::TIMESYNC_DATA;
@@ -21,10 +21,10 @@ pub const ANSWER_MAX: u64 = 100_000;
 /// in the same system.
 const SET: u8 = 2;
 
-/// How long ago an answer may be that still speaks for what is known, us: three questions' time.
+/// The greatest age of an answer that counts, us: three questions' time.
 const RECENT: u64 = 3_000_000;
 
-/// What the clocks differ by, the vehicle's less the sender's.
+/// The clocks' offset, the vehicle's less the sender's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Offset {
     /// o, us.
@@ -33,7 +33,7 @@ pub struct Offset {
     pub error: u64,
 }
 
-/// What the answers of one sender have said.
+/// The estimate from one sender's answers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct TimeSync {
     /// The best answer, and when it came, us.
@@ -50,7 +50,7 @@ pub fn question(now: u64) -> TIMESYNC_DATA {
     TIMESYNC_DATA { tc1: 0, ts1: nanoseconds(now) }
 }
 
-/// The answer, at `now`, us, to a question that was asked at `ts1` of its sender's clock.
+/// The answer, at `now`, us, to a question of `ts1` of its sender's clock.
 #[must_use]
 pub fn answer(ts1: i64, now: u64) -> TIMESYNC_DATA {
     TIMESYNC_DATA { tc1: nanoseconds(now), ts1 }
@@ -62,13 +62,13 @@ fn nanoseconds(time: u64) -> i64 {
 }
 
 impl TimeSync {
-    /// Of a clock that differs by about `value`, us, at `now`, us: any answer knows better.
+    /// Of a clock that differs by about `value`, us, at `now`, us: any answer replaces it.
     #[must_use]
     pub fn presumed(value: i128, now: u64) -> Self {
         Self { best: Some((Offset { value, error: ANSWER_MAX }, now)), ..Self::default() }
     }
 
-    /// Takes an answer that arrived at `arrived`, us. One to a question of a time to come, or of long ago, says
+    /// Takes an answer that arrived at `arrived`, us. One to a question of the future, or of long ago, says
     /// nothing.
     pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
         let asked = u64::try_from(message.ts1 / 1_000).ok();
@@ -91,14 +91,14 @@ impl TimeSync {
         }
     }
 
-    /// What is known at `now`, us, if an answer has lately agreed.
+    /// The offset at `now`, us, if a recent answer has agreed.
     #[must_use]
     pub fn recent(&self, now: u64) -> Option<Offset> {
         let confirmed = self.confirmed?;
         self.offset(now).filter(|_| now.saturating_sub(confirmed) <= RECENT)
     }
 
-    /// What is known at `now`, us.
+    /// The offset at `now`, us.
     #[must_use]
     pub fn offset(&self, now: u64) -> Option<Offset> {
         let (offset, arrived) = self.best?;

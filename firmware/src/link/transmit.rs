@@ -1,4 +1,4 @@
-//! What goes out, and when: telemetry by the clock; answers, replies and events as they come.
+//! Outgoing messages and their times: telemetry by the clock; answers, replies and events as they come.
 //!
 //! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
 
@@ -69,7 +69,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
     }
 }
 
-/// Finds what to say next and writes it. Nothing here waits, so there is one future for all messages.
+/// Finds the next message and writes it. Nothing here waits, so there is one future for all messages.
 struct Speaker<'a, M: RawMutex> {
     shared: TransmitView<'a, M>,
     schedule: Schedule,
@@ -84,7 +84,7 @@ struct Speaker<'a, M: RawMutex> {
     answered: [Acknowledgement; ANSWERED],
     /// Where the last was put; the next takes the place of the oldest.
     next_answer: usize,
-    /// What is answered by one of them, now or once it is there.
+    /// Questions that one of them answers, now or once it is there.
     owed: [Owed; OWED],
     next_owed: usize,
 }
@@ -145,7 +145,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    /// Writes the next message about the logs, if somebody wants one and it is due.
+    /// Writes the next message about the logs, if one is requested and due.
     fn downloaded(&mut self, now: u64) -> bool {
         match self.download.next(now, self.shared) {
             Some(Message::Entry(entry)) => self.say(&entry),
@@ -155,7 +155,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    /// Writes a message of what is known now; whether there was anything to say.
+    /// Writes a message of the present state; whether there was a value to send.
     fn message(&mut self, kind: Kind, now: u64) -> bool {
         let shared = self.shared;
         let voltage = shared.voltage().get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
@@ -191,7 +191,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
-        // Not every one is something to say.
+        // Not every event is sent.
         while let Some(reply) = shared.replies().take() {
             if self.reply(reply, now) {
                 return true;

@@ -31,7 +31,7 @@ const BLANK: u32 = u32::MAX;
 pub enum Kind {
     /// Parameters.
     Parameters,
-    /// The key that frames are signed with. A firmware that does not know of it takes its records for cut short.
+    /// The key that frames are signed with. An older firmware takes its records for cut short.
     Signing,
 }
 

@@ -60,7 +60,7 @@ impl<F: Flash> Storage<F> {
         loop {
             // A change is announced by the signal; the time limit only makes the wait a bounded one.
             let _ = within(clock, LOOK, shared.parameters().changed.wait()).await;
-            // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+            // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
             shared.saving().raise();
             while shared.is_turning() {
                 shared.saving().lower();

@@ -70,7 +70,7 @@ pub enum Name {
     /// What a pose takes at least from the camera to the vehicle, where its sender does not answer TIMESYNC. Taken over
     /// at once.
     PoseDelay,
-    /// Below this voltage the vehicle lands, whoever would like to fly on; 0 never does. Taken over at once.
+    /// Below this voltage the vehicle lands, whatever is requested; 0 never does. Taken over at once.
     BatteryCritical,
     /// What the motors idle at, as a part of the command's range. Taken over at once.
     MotorIdle,
@@ -86,7 +86,7 @@ pub enum Name {
     FenceHeight,
     /// How far from its reference the vehicle may be for longer than 5 s before it lands.
     TrackingErrorMax,
-    /// The configuration that the following rows were tuned on. Told, never set.
+    /// The configuration that the following rows were tuned on. Read-only.
     TunedOn,
     /// Mass. The rows from here to the last gain are certified when they are set, and taken over at the next boot: see
     /// [`super::tuned`].

@@ -58,7 +58,7 @@ impl Built {
     /// The configuration with these values of the parameters; one that is no number is as built.
     ///
     /// # Errors
-    /// What the constructors refuse; or gains whose loops the build found without margin.
+    /// Values that the constructors refuse; or gains whose loops the build found without margin.
     #[inline(never)] // its stack must not be beside that of certifying
     pub fn tuned(&self, value: impl Fn(Name) -> f32) -> Result<Configuration, ParameterError> {
         let mut tuning = Tuning { figures: Figures::of(&self.configuration), factors: Factors::BUILT };

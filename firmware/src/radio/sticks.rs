@@ -1,6 +1,6 @@
-//! What sticks ask for: a velocity ahead, to the right and up, and a rate of turn, as a setpoint for the governor.
+//! The sticks' setpoint for the governor: a velocity ahead, to the right and up, and a rate of turn.
 //!
-//! Near their rest they ask for nothing; from there on in proportion, so that nothing jumps.
+//! Near their centre is a dead zone; beyond it the setpoint grows from zero in proportion.
 
 use crate::link::setpoint::Here;
 use controller_core::governor::{Motion, Setpoint, Turn};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// The part of its way that a stick may be from its rest and still be there.
 const DEAD: f32 = 0.06;
 
-/// The greatest speeds that sticks ask for, m/s, across and up or down; and the greatest rate of turn, rad/s.
+/// The greatest speeds of the sticks' setpoint, m/s, across and up or down; and the greatest rate of turn, rad/s.
 const ACROSS: f32 = 3.0;
 const VERTICAL: f32 = 1.0;
 const TURNING: f32 = 1.0;
@@ -33,7 +33,7 @@ pub struct Sticks {
 }
 
 impl Sticks {
-    /// Whether they ask for nothing.
+    /// Whether they are in the dead zone.
     #[must_use]
     pub fn rest(&self) -> bool {
         [self.forward, self.right, self.up, self.yaw].iter().all(|stick| live(*stick) == 0.0)

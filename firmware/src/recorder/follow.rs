@@ -1,7 +1,7 @@
 //! Following a recording while it is made: every record once, in order, and how many were overwritten before they were
 //! read.
 //!
-//! The ring is the queue between control, which never waits, and whoever follows: it may fall behind by as many records
+//! The ring is the queue between control, which never waits, and a reader: it may fall behind by as many records
 //! as the ring holds.
 
 use super::ring::Ring;
@@ -9,7 +9,7 @@ use super::tick;
 use super::{Recorder, Recording};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// How far somebody has read.
+/// A reader's position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follower {
     flight: u16,
@@ -44,7 +44,7 @@ pub enum Followed {
 }
 
 impl<M: RawMutex> Recorder<M> {
-    /// Somebody who reads what will be recorded from now on.
+    /// A reader of the records from now on.
     #[must_use]
     pub fn follower(&self) -> Follower {
         let (flight, next) = self.with(|recording| recording.ring.position()).unwrap_or((0, 1));
@@ -65,7 +65,7 @@ fn next(Recording { ring, left }: &mut Recording, follower: &mut Follower) -> Fo
     if is_first && !ring.is_empty() {
         *follower = Follower { flight, next: oldest };
     }
-    // Numbers that follow one another differ by less than the ring's length, so differences tell which came first.
+    // Numbers that follow one another differ by less than the ring's length, so differences give their order.
     let missed = oldest.wrapping_sub(follower.next).cast_signed().max(0).cast_unsigned();
     let number = follower.next.wrapping_add(missed);
     let record = (follower.flight == flight).then(|| ring.get(number.wrapping_sub(oldest) as usize)).flatten();

@@ -100,7 +100,7 @@ impl<'m> Ring<'m> {
         self.count
     }
 
-    /// Whether there is none.
+    /// Whether it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0

@@ -1,4 +1,4 @@
-//! What is recorded of a control tick, and how ULog is told.
+//! The record of a control tick, and its ULog format.
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is
 //! NaN.
@@ -28,7 +28,7 @@ pub struct Tick {
     pub is_airborne: bool,
     /// Where it is and how it moves, as it is estimated.
     pub state: Option<State>,
-    /// What the law follows, and what it asks for.
+    /// The reference, and the commanded wrench.
     pub reference: Option<Reference>,
     /// See [`Self::reference`].
     pub wrench: Option<Wrench>,
@@ -38,7 +38,7 @@ pub struct Tick {
     pub pose_age: Option<u64>,
     /// Ticks that were missed since boot.
     pub missed: u32,
-    /// What the motors are told.
+    /// The motors' command.
     pub command: MotorCommand,
     /// The battery, V, if it is known.
     pub voltage: Option<f32>,

@@ -23,7 +23,7 @@ const FLAGS: [u8; 43] = {
     message
 };
 
-/// What the file says about itself, by ULog's keys, and about its numbers.
+/// The file's metadata, by ULog's keys.
 const INFORMATION: [Information; 3] = [
     Information::new("char[25] sys_name", "saturated hybrid feedback"),
     Information::new("char[34] frames", "world z up, body x forward, y left"),
@@ -54,7 +54,7 @@ pub const fn head(kind: u8, length: usize) -> [u8; 3] {
     [low, high, kind]
 }
 
-/// The head of the message that says what a record is.
+/// The head of the message that defines a record.
 const FORMAT: [u8; 3] = head(b'F', tick::FORMAT.len());
 
 /// Kind A: records are subscription 0, the first of their name.

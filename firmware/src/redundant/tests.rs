@@ -1,4 +1,4 @@
-//! The wrapper against two sensors that do as they are told.
+//! The wrapper against two scripted sensors.
 
 use super::*;
 use core::future::pending;
@@ -21,7 +21,7 @@ enum Says {
 struct Sensor {
     says: Says,
     asked: u64,
-    /// Its rate about x, rad/s, tells one sensor from the other.
+    /// Its rate about x, rad/s, identifies the sensor.
     rate: f32,
 }
 
@@ -87,7 +87,7 @@ fn the_second_takes_over_at_the_fourth_fault_in_a_row_and_keeps_it() {
     assert_eq!((pair.unit(), pair.parameters().rate, pair.is_polled()), (Unit::Second, 1002.0, true));
     assert_eq!(pair.first.asked, asked);
     assert!(block_on(pair.standby()).is_none());
-    // If it fails as well, that is said.
+    // If it fails as well, that is reported.
     pair.second.says = Says::Faults;
     assert_eq!(rates(&mut pair, 10), [None; 10]);
 }

@@ -1,4 +1,4 @@
-//! Reports to people. An event is put into words where it is sent or logged, not in the control task it may come
+//! Events for the operator. An event is put into words where it is sent or logged, not in the control task it may come
 //! from.
 
 use controller_core::error::InputError;
@@ -18,7 +18,7 @@ impl Text {
     #[must_use]
     pub fn new(words: impl fmt::Display) -> Self {
         let mut text = Self::default();
-        // An error says that it is full.
+        // An error means that it is full.
         let _ = write!(text, "{words}");
         text
     }
@@ -41,7 +41,7 @@ impl Write for Text {
 /// How much it matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
-    /// Good to know.
+    /// Information.
     Information,
     /// Something is not as it should be.
     Warning,
@@ -49,7 +49,7 @@ pub enum Severity {
     Critical,
 }
 
-/// Something to tell people.
+/// An event for the operator.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// The flight rules changed the mode.
@@ -77,13 +77,13 @@ pub enum Event {
 }
 
 impl Event {
-    /// Something said in words.
+    /// A text.
     #[must_use]
     pub fn new(severity: Severity, words: impl fmt::Display) -> Self {
         Self::Words(severity, Text::new(words))
     }
 
-    /// What the vehicle does on its own is critical; what it was told to, or recovers from, is good to know.
+    /// Transitions by failure are critical; commanded ones, and recoveries, are information.
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {

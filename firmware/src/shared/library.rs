@@ -1,4 +1,4 @@
-//! What the link asks of the logs there are, and what it gets: the card's task reads its files, the link never waits
+//! The link's questions about logs, and the answers: the card's task reads its files, the link never waits
 //! for it.
 //!
 //! One question is open at a time, and a new one replaces it. An answer names its question, so that a late one is known
@@ -49,7 +49,7 @@ pub enum Answer {
 }
 
 impl<M: RawMutex> Recorder<M> {
-    /// What it has to say as if its recording were the only log.
+    /// Answers as if its recording were the only log.
     #[must_use]
     pub fn answer(&self, question: Question) -> Answer {
         let size = self.size();
@@ -73,7 +73,7 @@ pub struct Library<M: RawMutex> {
 }
 
 impl<M: RawMutex> Library<M> {
-    /// Nothing asked.
+    /// No question.
     #[must_use]
     pub const fn new() -> Self {
         Self { question: Latest::new(), answers: Queue::new() }
@@ -91,7 +91,7 @@ impl<M: RawMutex> Library<M> {
         self.question.take().map(|question| question.value)
     }
 
-    /// And answers it. An answer that nobody has fetched makes room.
+    /// And answers it. An answer that was not fetched makes room.
     pub fn answer(&self, question: Question, answer: Answer) {
         let _ = self.answers.take();
         let _ = self.answers.put((question, answer));

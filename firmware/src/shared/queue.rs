@@ -5,8 +5,8 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Deque;
 
-/// At most `ROOM` values, taken in the order in which they were put in. Nobody waits for it: neither for room nor for a
-/// value.
+/// At most `ROOM` values, taken in the order in which they were put in. No task waits for it: neither for room nor for
+/// a value.
 pub struct Queue<M: RawMutex, T, const ROOM: usize>(Mutex<M, RefCell<Deque<T, ROOM>>>);
 
 /// No room.

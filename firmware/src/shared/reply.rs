@@ -18,11 +18,11 @@ pub struct Asked {
     pub request: Request,
     /// The command it came by, if it came over the link.
     pub order: Option<Order>,
-    /// Whose setpoints are to be flown, system and component, where that is asked for over the link.
+    /// Whose setpoints are to be flown, system and component, where the link requests it.
     pub setpoints: Option<(u8, u8)>,
 }
 
-/// A calibration to be begun, or the end of the one under way; and the command that asked for it, to be answered.
+/// A calibration to be begun, or the end of the one under way; and the command that requested it, to be answered.
 pub type Calibration = (Option<Procedure>, Order);
 
 /// What is to be calibrated of the inertial sensors: see [`crate::imu`].
@@ -38,10 +38,10 @@ pub enum Procedure {
     OneSide,
 }
 
-/// A list of mission items that somebody asked about.
+/// A list of mission items that a client requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MissionList {
-    /// Who: system and component.
+    /// The client: system and component.
     pub sender: (u8, u8),
     /// Which: MAV_MISSION_TYPE, whether the dialect has that one or not.
     pub list: u8,
@@ -52,8 +52,8 @@ pub struct MissionList {
 pub enum Reply {
     /// COMMAND_ACK.
     Command(Acknowledgement),
-    /// COMMAND_ACK, as of a command that is the same: of the same frame, or of somebody who asks for the same at once.
-    /// What became of that may be still to come.
+    /// COMMAND_ACK, as of a command that is the same: of the same frame, or an equal one that another sender sent at
+    /// once. What became of that may be still to come.
     Likewise {
         /// What is answered.
         order: Order,
@@ -64,7 +64,7 @@ pub enum Reply {
     Ping(Ping),
     /// TIMESYNC: the time of day.
     TimeSync {
-        /// When it was asked, ns of the asker's clock.
+        /// The time of the question, ns of the sender's clock.
         asked: i64,
     },
     /// PARAM_VALUE of one parameter.
@@ -73,7 +73,7 @@ pub enum Reply {
     AllParameters,
     /// A message, once.
     Message(Kind),
-    /// A message, once, and COMMAND_ACK: whether there was anything to say.
+    /// A message, once, and COMMAND_ACK: whether it was sent.
     Requested(Kind, Order),
     /// AVAILABLE_MODES of one mode, counted from 1.
     Mode(u8),
@@ -93,7 +93,7 @@ pub enum Reply {
         /// The last; there may be fewer.
         last: u16,
     },
-    /// LOG_ENTRY: there is none.
+    /// LOG_ENTRY: no logs.
     NoLogs,
     /// LOG_DATA of a log.
     LogData {

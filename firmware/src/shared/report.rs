@@ -18,7 +18,7 @@ pub struct Report {
     pub ready: bool,
     /// Whether the vehicle has left the ground.
     pub is_airborne: bool,
-    /// Whether it was stopped in the air, and nothing says yet that it lies still.
+    /// Whether it was stopped in the air, and may still fall.
     pub may_fall: bool,
     /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
@@ -32,7 +32,7 @@ pub struct Report {
     pub home: Option<Vector3<f32>>,
     /// What the law follows; none while it does not fly.
     pub reference: Option<Reference>,
-    /// What the law asked for; none while it does not fly.
+    /// The commanded wrench; none while the law does not fly.
     pub wrench: Option<Wrench>,
     /// What the rotors are believed to give of it; none while the law does not fly.
     pub thrust_scale: Option<f32>,
@@ -60,7 +60,7 @@ impl Report {
 }
 
 impl Report {
-    /// For the flight recorder: with what the motors are told, and the battery, V.
+    /// For the flight recorder: with the motors' command, and the battery's voltage, V.
     #[must_use]
     pub fn tick(&self, time: u64, command: MotorCommand, voltage: Option<f32>) -> Tick {
         Tick {

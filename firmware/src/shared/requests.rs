@@ -1,7 +1,7 @@
 //! Requests that wait for control, which takes one a tick.
 //!
 //! Of each kind the latest waits, one of the link and one of the pilot's radio: a client that repeats one keeps another
-//! out. Who asked for the same a moment before is answered as that one is. Where there is no room, a lesser one of the
+//! out. An equal request that waits is answered with it. Where there is no room, a lesser one of the
 //! link makes some. So landing, disarming and the pilot's switches always have room, and none waits for more than the
 //! others, [`REQUESTS`] ticks.
 
@@ -14,7 +14,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Request;
 use heapless::Deque;
 
-/// How many may wait: the five that the radio asks for, landing and disarming by the link, and one of the others.
+/// How many may wait: the five of the radio, landing and disarming by the link, and one of the others.
 pub const REQUESTS: usize = 8;
 
 /// Requests in the order of their coming.
@@ -69,7 +69,7 @@ fn is_lesser(asked: &Asked) -> bool {
     asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
 }
 
-/// Whether two requests ask for the same, of those that are asked for again: not points and motors.
+/// Whether two requests are equal, of the kinds that clients repeat: not points and motors.
 fn is_same(one: &Asked, other: &Asked) -> bool {
     let is_alike = match (&one.request, &other.request) {
         (Request::TakeOff(one), Request::TakeOff(other)) => one == other,

@@ -1,4 +1,4 @@
-//! Euler angles for people to read. Approximate (`micromath`): good to 1 degree (2 near the vertical), and used nowhere
+//! Euler angles for reading. Approximate (`micromath`): good to 1 degree (2 near the vertical), and used nowhere
 //! in flight.
 
 use micromath::F32Ext;

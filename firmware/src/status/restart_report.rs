@@ -1,5 +1,5 @@
 //! Why the vehicle restarted by itself, reported: to the first ground station, to the card once it is ready, and every
-//! [`AGAIN`] until somebody arms.
+//! [`AGAIN`] until the vehicle arms.
 
 use crate::shared::{CardState, Event, Severity, StatusView, TEXT_MAX};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -10,7 +10,7 @@ pub const AGAIN: u64 = 60_000_000;
 /// When and to whom they are reported.
 #[derive(Debug, Default)]
 pub struct RestartReport {
-    /// Who listened at the last report: a ground station, the card.
+    /// The receivers of the last report: a ground station, the card.
     listened: [bool; 2],
     /// When they are due again, us.
     due: u64,

@@ -22,7 +22,7 @@ const RATE: f32 = 0.5;
 type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
 type Take = fn(&mut Estimator, &Increment);
 type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
-type Tell = fn(&Estimator, u64, &Vector3<f32>) -> Option<EstimatedState>;
+type StateOf = fn(&Estimator, u64, &Vector3<f32>) -> Option<EstimatedState>;
 
 /// Every figure, as lines of the table; whether all could be measured.
 pub fn measure(counter: &Counter) -> bool {
@@ -52,19 +52,19 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    /// Flies ten seconds, and prints what the poses cost; and `all` the rest if asked. False if a pose was not fused.
+    /// Flies ten seconds, and prints what the poses cost; and with `all` the rest. False if a pose was not fused.
     fn fly(&mut self, stream: &Stream, all: bool) -> bool {
         let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE) else { return false };
         *self.estimator = Estimator::new(&self.settings);
         let (sample, take): (Sample, Take) = (black_box(Conditioner::sample), black_box(Estimator::imu));
-        let (fuse, tell): (Fuse, Tell) = (black_box(Estimator::pose), black_box(Estimator::state));
+        let (fuse, state_of): (Fuse, StateOf) = (black_box(Estimator::pose), black_box(Estimator::state));
         let [mut samples, mut increments, mut poses, mut states] = [(); 4].map(|()| Cost::default());
         for n in 0..SAMPLES {
             let (now, jitter) = (n * 1_000, (n % 5) as f32 * 1e-4);
             let (rate, force) = (Vector3::new(jitter, 0.0, RATE), Vector3::new(jitter, 0.0, 9.81));
-            let (cost, said) = self.counter.short(|| sample(&mut conditioner, now, &rate, Some(&force)));
+            let (cost, conditioned) = self.counter.short(|| sample(&mut conditioner, now, &rate, Some(&force)));
             samples.add(cost);
-            if let Some(increment) = said.increment {
+            if let Some(increment) = conditioned.increment {
                 increments.add(self.counter.short(|| take(self.estimator, &increment)).0);
             }
             if n % stream.every != 0 || n < stream.late {
@@ -77,7 +77,7 @@ impl Flight<'_> {
                 Ok(_) => {}
                 Err(_) => return false,
             }
-            states.add(self.counter.short(|| black_box(tell(self.estimator, now, &rate))).0);
+            states.add(self.counter.short(|| black_box(state_of(self.estimator, now, &rate))).0);
         }
         if all {
             samples.print("IMU sample");

@@ -112,7 +112,7 @@ impl Body {
         Self { vehicle, state, past: [state; LATE + 1] }
     }
 
-    /// Moves on to `now`, us, under what the law asked for; tells what an IMU would. Without thrust it stands.
+    /// Moves on to `now`, us, under the commanded wrench; returns the IMU's sample. Without thrust it stands.
     fn advance(&mut self, wrench: Option<&Wrench>, now: u64, shared: SamplesView<'_, NoopRawMutex>) {
         let seconds = INCREMENT as f32 * 1e-6;
         for part in (0..INCREMENTS).rev() {

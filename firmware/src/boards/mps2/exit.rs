@@ -32,7 +32,7 @@ pub fn faulted(fault: &Fault) -> ! {
     fail(fault)
 }
 
-/// An interrupt that nobody handles.
+/// An unhandled interrupt.
 #[exception]
 unsafe fn DefaultHandler(interrupt: i16) -> ! {
     heprintln!("error: unexpected interrupt {}", interrupt);

@@ -10,10 +10,10 @@
 use cortex_m::asm;
 use cortex_m::interrupt;
 
-/// Sleeps while `awake` says false; it is asked again after every interrupt.
+/// Sleeps while `awake` is false; it is checked again after every interrupt.
 pub fn idle(awake: impl Fn() -> bool) -> ! {
     loop {
-        // With interrupts held back, what `awake` says cannot change before the processor sleeps; it wakes up all the
+        // With interrupts held back, `awake` cannot change before the processor sleeps; it wakes up all the
         // same.
         interrupt::free(|_| {
             if !awake() {

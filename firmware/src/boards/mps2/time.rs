@@ -81,7 +81,7 @@ impl Time {
         (rounds.get() + ended) * ROUND_CYCLES + (ROUND_CYCLES - u64::from(left)) % ROUND_CYCLES
     }
 
-    /// Wakes whoever is due, and sets the timer to the next.
+    /// Wakes the tasks that are due, and sets the timer to the next.
     fn arm(&self, cs: CriticalSection) {
         let mut queue = self.queue.borrow_ref_mut(cs);
         loop {

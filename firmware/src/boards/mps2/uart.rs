@@ -1,4 +1,5 @@
-//! CMSDK UARTs as byte streams: an interrupt moves each received byte into a buffer, and wakes whoever waits to send.
+//! CMSDK UARTs as byte streams: an interrupt moves each received byte into a buffer, and wakes a task that waits to
+//! send.
 //!
 //! A byte that finds the buffer full is lost and counted, as it would be on a wire.
 

@@ -1,4 +1,4 @@
-//! The chip's own bootloader, which takes an image over USB (DFU): asked for before a restart, entered right after it.
+//! The chip's own bootloader, which takes an image over USB (DFU): requested before a restart, entered right after it.
 //!
 //! It has to begin as after a reset: clocks as they come up, no peripheral at work, the watchdog, which nothing but a
 //! reset stops, not started. So the wish is kept in memory that no start clears, behind the flight recorder's, and
@@ -12,8 +12,8 @@ unsafe extern "C" {
     static _bootloader_wish: UnsafeCell<[u64; 4]>;
 }
 
-/// The wish. Said four times: a write to memory that has error-correcting codes may wait in the chip for the next one,
-/// and be lost if a reset comes first.
+/// The request, written four times: a write to memory that has error-correcting codes may wait in the chip for the next
+/// one, and be lost if a reset comes first.
 const WISH: [u64; 4] = [0x4446_5520_706C_6561; 4];
 
 /// Where the bootloader's vector table is.

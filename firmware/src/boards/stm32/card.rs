@@ -15,7 +15,7 @@ use embassy_stm32::time::Hertz;
 use embassy_time::{Duration, Instant};
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// The bus's clock: what every card bears without being asked.
+/// The bus's clock: what every card supports without negotiation.
 const FREQUENCY: Hertz = Hertz(25_000_000);
 
 /// The longest a transfer may take.

@@ -1,4 +1,4 @@
-//! Whether the board's crystal runs. The driver of the clocks would wait for it for ever, with no way to say so.
+//! Whether the board's crystal runs. The driver of the clocks would wait for it for ever, without a report.
 
 use embassy_stm32::pac::RCC;
 

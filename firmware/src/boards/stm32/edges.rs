@@ -29,7 +29,7 @@ impl<I: Interrupt> Handler<I> for Stamps {
     }
 }
 
-/// The lines that somebody waits for and whose edges are pending, a bit each.
+/// The lines that a task waits for and whose edges are pending, a bit each.
 fn risen() -> u32 {
     EXTI.pr(0).read().0 & EXTI.imr(0).read().0
 }

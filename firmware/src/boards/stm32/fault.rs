@@ -1,6 +1,6 @@
-//! The last thing a board does: stop the motors, say why, restart.
+//! The last thing a board does: stop the motors, report why, restart.
 //!
-//! Panics, faults and interrupts that nobody expects end here, in the order of [`Ending`]:
+//! Panics, faults and unhandled interrupts end here, in the order of [`Ending`]:
 //!
 //! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves
 //!    whether it was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
@@ -103,7 +103,7 @@ fn silence() {
     const HAS_ENDED: u32 = 1 << 16;
     // SAFETY: nothing else runs any more, and nothing else uses it.
     let timer = unsafe { &*SYST::PTR };
-    // SAFETY: as above; no interrupt is asked for.
+    // SAFETY: as above; no interrupt is enabled.
     unsafe {
         timer.rvr.write(SILENCE - 1);
         timer.cvr.write(0);

@@ -56,7 +56,7 @@ pub type BoardBmi088 = Bmi088<Bus, Output<'static>, StampedPin, SystemClock>;
 /// A BMI270 as the boards wire it.
 pub type BoardBmi270 = Bmi270<Bus, Output<'static>, StampedPin, SystemClock>;
 
-/// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above what was asked for too: this becomes
+/// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above the requested one too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
 const FREQUENCY: Hertz = Hertz(6_000_000);
 

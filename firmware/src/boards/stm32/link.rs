@@ -63,7 +63,7 @@ pub fn simulator_halves(uart: BufferedUart<'static>) -> (SimulatorReceiver, Simu
     (receiver, transmitter)
 }
 
-/// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: a line that nobody drives must not look like bytes.
+/// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: an undriven line must not look like bytes.
 #[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();

@@ -125,7 +125,7 @@ impl Drop for Resting {
 
 /// Stops the counter at zero with every channel low, and takes back its requests to the DMA controller.
 ///
-/// Order matters: requests off first, so that the update event that loads the zeros asks for no transfer.
+/// Order matters: requests off first, so that the update event that loads the zeros requests no transfer.
 pub fn rest(timer: TimGp16) {
     timer.dier().modify(|w| w.set_ude(false));
     timer.cr1().modify(|w| w.set_cen(false));

@@ -23,7 +23,7 @@ pub enum Cause {
 /// The chip, which can start itself anew.
 pub struct Chip;
 
-/// The motors have been told to stop, a hundred times a second, since the vehicle was disarmed.
+/// The motors have got the stop command, a hundred times a second, since the vehicle was disarmed.
 impl Restart for Chip {
     const HAS_BOOTLOADER: bool = true;
 
@@ -65,7 +65,7 @@ pub fn has_no_brown_out() -> bool {
     is_off
 }
 
-/// Reads the flags and clears them, so that the next start tells its own.
+/// Reads the flags and clears them, so that the next start reports its own.
 #[must_use]
 pub fn cause() -> Cause {
     let cause = flags();

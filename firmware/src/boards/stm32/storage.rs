@@ -31,7 +31,7 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 
 /// The two sectors.
 pub struct ParameterFlash {
-    /// Nobody else erases or programs.
+    /// No other code erases or programs.
     _flash: Peri<'static, FLASH>,
     watchdog: Iwdg,
 }
@@ -49,7 +49,7 @@ fn words(place: usize) -> Result<*mut u32, Fault> {
     if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
-/// Waits for the flash, and asks whether it did as it was told. Counts instead of asking the clock, which may stand
+/// Waits for the flash, and checks its error flags. Counts instead of reading the clock, which may stand
 /// still.
 fn done() -> Result<(), Fault> {
     let is_done = (0..chip::POLLS).any(|_| !chip::is_busy());

@@ -41,7 +41,7 @@ pub struct Usb {
 /// What answers the host, for ever: its `run`.
 pub type Device = UsbDevice<'static, Controller>;
 
-/// How the driver is set up: no pin tells whether the host's voltage is there.
+/// How the driver is set up: no pin senses the host's voltage.
 #[must_use]
 pub fn config() -> usb::Config {
     let mut config = usb::Config::default();
@@ -83,7 +83,7 @@ impl Usb {
 /// Whether the host has gone to sleep, or gone: both look the same.
 static ASLEEP: AtomicBool = AtomicBool::new(true);
 
-/// Hears of that.
+/// Follows the host's state.
 struct Watcher;
 
 impl Handler for Watcher {
@@ -96,7 +96,7 @@ impl Handler for Watcher {
     }
 }
 
-/// Whether a program has the port open: it says that it is ready (DTR), as every one does that opens a serial port.
+/// Whether a program has the port open: it sets DTR, as every one does that opens a serial port.
 pub struct UsbPort(ControlChanged<'static>);
 
 impl Port for UsbPort {

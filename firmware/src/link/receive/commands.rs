@@ -1,4 +1,4 @@
-//! Commands in: whom they are for, who may give them, and who answers.
+//! Commands in: their target, their sender's permission, and their answer.
 
 use super::Receiver;
 use crate::frames;
@@ -14,7 +14,7 @@ use flight::Request;
 use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
 use nalgebra::Vector3;
 
-/// A message that says whom it is for.
+/// A message with a target.
 pub(super) trait Addressed {
     /// System and component.
     fn target(&self) -> (u8, u8);
@@ -89,7 +89,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         self.shared.reply(Reply::Command(order.answered(result)));
     }
 
-    /// Acts on a command at `now`, us; what to answer, unless somebody else does.
+    /// Acts on a command at `now`, us; the answer, unless control gives it.
     fn act(&mut self, call: &Call, order: Order, now: u64) -> Option<MavResult> {
         let report = self.shared.report().get();
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
@@ -152,7 +152,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             } else {
                 shared.into_bootloader().lower();
             }
-            // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+            // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
             shared.restarting().raise();
             if !shared.is_turning() {
                 return MavResult::MAV_RESULT_ACCEPTED;

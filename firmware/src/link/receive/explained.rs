@@ -1,11 +1,11 @@
-//! What came that is not used.
+//! Messages that are not used.
 
 use flight::Stamped;
 
-/// What was explained of it.
+/// Which of them were explained.
 #[derive(Debug, Default)]
 pub(super) struct Explained {
-    /// What was explained, bit by bit, in the order of the list of such messages.
+    /// A bit for each that was explained, in the order of the list of such messages.
     pub explained: u16,
     /// The last setpoint's name.
     pub setpoint: Option<Stamped<&'static str>>,

@@ -1,4 +1,4 @@
-//! What other vehicles understand and this one does not: said once for each message, or answered.
+//! Messages that only other vehicles use: reported once for each, or answered.
 
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
@@ -36,7 +36,7 @@ const FLOWN: usize = 5;
 /// Behind every payload: for every system.
 const FOR_ALL: usize = 255;
 
-/// Where a mission item says whom it is for, after seven numbers of four bytes and two of two.
+/// The offset of a mission item's target, after seven numbers of four bytes and two of two.
 const TARGET: usize = 32;
 
 impl<M: RawMutex> Receiver<'_, M> {

@@ -59,7 +59,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
             return warn(&format_args!("{}: is a REAL32", name.row().name));
         }
-        // Raised first and looked at afterwards: control either sees it, or has said already that a motor turns.
+        // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
         shared.judging().raise();
         if shared.is_armed() {
             warn(&"Parameters change only while disarmed");

@@ -30,7 +30,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
     }
 
-    /// Missions are not flown here: whoever sends one is told.
+    /// Missions are not flown here: their sender is answered so.
     pub(super) fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
             self.shared.reply(Reply::Mission(asked(frame, message), MavMissionResult::MAV_MISSION_UNSUPPORTED));
@@ -43,7 +43,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
     }
 
-    /// There is none: that is what was wanted.
+    /// There is no mission: accepted.
     pub(super) fn mission_clear(&mut self, frame: &Frame<'_>, message: &MISSION_CLEAR_ALL_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
             self.shared.reply(Reply::Mission(asked(frame, message), MavMissionResult::MAV_MISSION_ACCEPTED));
@@ -60,7 +60,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 }
 
-/// Who asked, and about which list.
+/// The client, and its list.
 fn asked<D: MessageData>(frame: &Frame<'_>, _: &D) -> MissionList {
     MissionList { sender: (frame.header.system, frame.header.component), list: list_of::<D>(frame) }
 }

@@ -1,4 +1,4 @@
-//! Logs, asked for: listed, read in any order, erased. Only while disarmed, a request at another time is refused in
+//! Requests for logs: listed, read in any order, erased. Only while disarmed, a request at another time is refused in
 //! words.
 
 use super::Receiver;
@@ -8,7 +8,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA};
 
 impl<M: RawMutex> Receiver<'_, M> {
-    /// Whether logs may be handed out; says so if not.
+    /// Whether logs may be handed out; reports it if not.
     fn may_read(&mut self, frame: &Frame<'_>) -> bool {
         let is_armed = self.shared.is_armed();
         if is_armed {
@@ -22,7 +22,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        // A client that hears of an empty list stops asking; one that wants a part and hears nothing asks again, and
+        // A client that gets an empty list stops; one that wants a part and gets nothing repeats its request, and
         // gets it after landing.
         let list = Reply::Logs { first: message.start, last: message.end };
         self.shared.reply(if self.may_read(frame) { list } else { Reply::NoLogs });

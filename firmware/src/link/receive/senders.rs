@@ -1,4 +1,4 @@
-//! Who sends setpoints.
+//! The senders of setpoints.
 
 use controller_core::governor::Setpoint;
 use flight::{SETPOINT_AGE_MAX, Stamped};
@@ -6,13 +6,13 @@ use flight::{SETPOINT_AGE_MAX, Stamped};
 /// Senders that are known at a time.
 const SENDERS: usize = 4;
 
-/// Who sends: system and component.
+/// A sender: system and component.
 pub(super) type Sender = (u8, u8);
 
 /// A place for a sender. No system has this number.
 const NO_SENDER: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
 
-/// Who sends setpoints that can be flown.
+/// The senders of setpoints that can be flown.
 #[derive(Debug)]
 pub(super) struct Senders {
     /// Each sender, and when its last came, us.

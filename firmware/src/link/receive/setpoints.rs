@@ -35,7 +35,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
         self.setpoints.receive(sender, time);
         if self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
-            // The last one is kept for who asks to fly them once the radio is silent: a request without any is refused.
+            // The last one is kept for a client that requests to fly them once the radio is silent: a request without
+            // any is refused.
             self.setpoints.kept = Some((sender, Stamped { value, time }));
             return Err(SetpointRefusal::Sticks);
         }
@@ -48,8 +49,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         Ok(())
     }
 
-    /// Somebody asks to fly setpoints at `now`, us: whose they will be. Sticks that have fallen silent stand back, and
-    /// what was sent meanwhile counts.
+    /// A client requests to fly setpoints at `now`, us: whose they will be. Silent sticks give way, and setpoints sent
+    /// meanwhile count.
     ///
     /// # Errors
     /// What comes instead, in words.
@@ -67,7 +68,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         Ok(sender)
     }
 
-    /// Whose setpoints are flown if this sender asks for it; of who sends none yet its own, which may come.
+    /// Whose setpoints are flown if this sender requests it; its own if it sends none yet.
     fn whose(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
         let mut senders = self.setpoints.senders.iter().filter(|sender| counts(sender, now)).map(|sender| sender.value);
         if senders.clone().any(|sender| sender == asker) {

@@ -1,7 +1,7 @@
-//! Whose frames count, and the key that says so.
+//! Which frames count, by the key.
 //!
 //! The port is trusted: the cable's owner may set another key, and need not sign. No other line may set one: a key that
-//! goes over a radio is everybody's.
+//! goes over a radio is public.
 
 use super::Receiver;
 use crate::link::frame::Frame;
@@ -13,7 +13,7 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, RADIO_STATUS_DATA, SETUP_SIGNING_DATA};
 
 impl<M: RawMutex> Receiver<'_, M> {
-    /// Whether a frame counts. One that does not is counted as refused, and told; but not radios' own words and
+    /// Whether a frame counts. One that does not is counted as refused, and reported; but not radios' own words and
     /// heartbeats, which go on whatever anybody says.
     #[inline(never)]
     pub(super) fn is_genuine(&mut self, frame: &Frame<'_>) -> bool {

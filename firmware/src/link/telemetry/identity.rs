@@ -1,4 +1,4 @@
-//! What the vehicle is, to clients that ask before they do anything else.
+//! The vehicle's identity, for clients that request it first.
 
 #![expect(deprecated, reason = "PROTOCOL_VERSION: clients still ask for it")]
 

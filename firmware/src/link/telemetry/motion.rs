@@ -93,7 +93,7 @@ pub fn global_position(time: u64, report: &Report, origin: &Origin) -> Option<GL
     })
 }
 
-/// Position, attitude, velocity and rates, with what the estimator thinks of them.
+/// Position, attitude, velocity and rates, with the estimator's uncertainty.
 #[must_use]
 pub fn odometry(time: u64, report: &Report) -> Option<ODOMETRY_DATA> {
     let state = report.state.as_ref()?;
@@ -121,7 +121,7 @@ pub fn odometry(time: u64, report: &Report) -> Option<ODOMETRY_DATA> {
     })
 }
 
-/// The upper triangle of a covariance of which two traces are known by their roots; the rest is unknown, said as NaN,
+/// The upper triangle of a covariance of which two traces are known by their roots; the rest is unknown, sent as NaN,
 /// or zero.
 fn diagonal(first: f32, second: f32) -> [f32; 21] {
     // Row by row: the diagonal's places.
@@ -134,7 +134,7 @@ fn diagonal(first: f32, second: f32) -> [f32; 21] {
     triangle
 }
 
-/// The reference that is flown. By the IMU alone that is no place: the vehicle is held level and goes down so fast.
+/// The reference that is flown. By the IMU alone it has no position: the vehicle is held level and goes down so fast.
 #[must_use]
 pub fn position_target(time: u64, report: &Report) -> Option<POSITION_TARGET_LOCAL_NED_DATA> {
     let reference = report.reference.as_ref()?;
@@ -189,7 +189,7 @@ pub fn origin(origin: &Origin) -> GPS_GLOBAL_ORIGIN_DATA {
     GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude }
 }
 
-/// What the estimate is worth. Ratios are 1 where the estimator would call its poses inconsistent.
+/// The estimate's health. Ratios are 1 where the estimator would call its poses inconsistent.
 #[must_use]
 pub fn estimator_status(time: u64, report: &Report) -> ESTIMATOR_STATUS_DATA {
     use EstimatorStatusFlags as Flags;
@@ -215,7 +215,7 @@ pub fn estimator_status(time: u64, report: &Report) -> ESTIMATOR_STATUS_DATA {
     }
 }
 
-/// The time since boot; what time of day it is the vehicle does not know.
+/// The time since boot; the time of day is unknown.
 #[must_use]
 pub fn system_time(now: u64) -> SYSTEM_TIME_DATA {
     SYSTEM_TIME_DATA { time_unix_usec: 0, time_boot_ms: milliseconds(now) }

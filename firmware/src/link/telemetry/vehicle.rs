@@ -15,7 +15,7 @@ use mavlink::dialects::common::{
 /// The version of the protocol that HEARTBEAT names.
 const PROTOCOL: u8 = 3;
 
-/// Main and sub-modes by which PX4's clients know what a vehicle does.
+/// The main and sub-modes of PX4's clients.
 const AUTO: u32 = 4 << 16;
 const AUTO_READY: u32 = AUTO | 1 << 24;
 const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
@@ -35,7 +35,7 @@ fn custom_mode(mode: Mode) -> u32 {
     }
 }
 
-/// The modes that may be asked for, with their names and MAVLink's standard ones.
+/// The modes that may be requested, with their names and MAVLink's standard ones.
 const SELECTABLE: [(u32, &str, MavStandardMode); 4] = [
     (OFFBOARD, "Setpoints", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
     (AUTO_LOITER, "Hold", MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD),
@@ -84,7 +84,7 @@ pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     EXTENDED_SYS_STATE_DATA { vtol_state: MavVtolState::MAV_VTOL_STATE_UNDEFINED, landed_state }
 }
 
-/// What the vehicle is and how it does; no mode without a fresh report.
+/// The vehicle's type and state; no mode without a fresh report.
 #[must_use]
 pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
     let system_status = match mode {

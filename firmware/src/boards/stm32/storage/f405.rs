@@ -12,7 +12,7 @@ const FIRST_SECTOR: u8 = 10;
 /// the least. An erase takes up to two, and stalls most of them.
 pub const POLLS: u32 = 200_000_000;
 
-/// The flags of the status register that say what went wrong; writing them clears them.
+/// The error flags of the status register; writing them clears them.
 const FAILURES: u32 = 0b1111_0010;
 
 /// Forgets what failed before, and opens the control register with its two keys.
@@ -47,7 +47,7 @@ pub fn is_busy() -> bool {
     FLASH.sr().read().bsy()
 }
 
-/// Whether it refused what it was told.
+/// Whether it reports an error.
 pub fn has_failed() -> bool {
     FLASH.sr().read().0 & FAILURES != 0
 }

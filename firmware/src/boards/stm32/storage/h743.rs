@@ -19,7 +19,7 @@ const FIRST_SECTOR: u8 = 6;
 /// over a bus at half of that, so eight seconds together at the least. An erase takes up to four.
 pub const POLLS: u32 = 200_000_000;
 
-/// The flags of the status register that say what went wrong, and the same bits of the register that clears them.
+/// The error flags of the status register, and the same bits of the register that clears them.
 const FAILURES: u32 = 0x17EE_0000;
 
 /// A core that runs at the priority of a fault takes no notice of bus faults of data (bit BFHFNMIGN).
@@ -65,7 +65,7 @@ pub fn is_busy() -> bool {
     status.bsy() || status.qw()
 }
 
-/// Whether it refused what it was told.
+/// Whether it reports an error.
 pub fn has_failed() -> bool {
     bank().sr().read().0 & FAILURES != 0
 }
@@ -77,7 +77,7 @@ pub fn close() {
     bank().cr().modify(|w| w.set_lock(true));
 }
 
-/// Reads, and says whether what was read can be believed. Nothing but a non-maskable interrupt comes between.
+/// Reads, and whether the value is valid. Nothing but a non-maskable interrupt comes between.
 pub fn read(words: impl FnOnce()) -> Result<(), Fault> {
     bank().ccr().write_value(Ccr(FAILURES));
     // SAFETY: the only access to this register while nothing else runs, undone below.
